@@ -1,24 +1,20 @@
 #!/usr/bin/env bash
 # Prints every figure of the README: all scenarios of config/scenarios, seeds, what is spoilt one thing at a time, centres,
 # intrinsics, starts, then the costs of the hot paths and of reading files. Takes some hours on two cores. Fails where a wrong result
-# is called ok, or the errors over sigmas of twenty seeds leave 0.7 to 1.4, or one of the programs misses its targets.
+# is called ok, or the errors over sigmas of twenty seeds leave 0.7 to 1.4, or a benchmark misses its targets.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
-packaging/install-dependencies.sh
+packaging/install-dependencies.sh test
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed evical_costs \
-                                       evical evical-gui evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_no_board evical_check_accuracy
-benchmarks=build/release/tests/benchmarks
+cmake --build --preset release --target evical evical-gui evical_benchmarks
 scenarios=config/scenarios
 failed=0
 
 run() {
-  local program=$1
-  shift
-  "$benchmarks/$program" "$@" && return
+  build/release/tests/benchmarks/evical_benchmarks "$@" && return
   failed=1
-  echo "FAILED: $program $*"
+  echo "FAILED: evical_benchmarks $*"
 }
 
 # All but what has no IMU to be calibrated, or is for many seeds.
@@ -30,42 +26,42 @@ for file in "$scenarios"/*.yaml; do
     *) single+=("$file") ;;
   esac
 done
-run evical_accuracy --verdicts "${single[@]}"
-run evical_accuracy --verdicts --quantities "${rigs[@]}"
-for file in "$scenarios"/*_10s.yaml; do run evical_accuracy --verdicts --seeds 20 "$file"; done
+run accuracy --verdicts "${single[@]}"
+run accuracy --verdicts --quantities "${rigs[@]}"
+for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
 
 # Circle centres along the motion, in ordinary and in small motions.
-run evical_centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
+run centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
 
 # The board, wherever a recording begins.
-run evical_board_starts --duration 20 "${single[@]}"
+run board_starts --duration 20 "${single[@]}"
 
 # Frame cameras, further boards, lenses; real ones, too, where EVICAL_DATA names them.
-run evical_frame_cameras
+run frame_cameras
 
-run evical_intrinsics_accuracy "$scenarios"/intrinsics_*.yaml
-run evical_intrinsics_accuracy --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
-run evical_intrinsics_accuracy --seeds 20 "$scenarios/wide_frame.yaml"
-run evical_unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
+run intrinsics "$scenarios"/intrinsics_*.yaml
+run intrinsics --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
+run intrinsics --seeds 20 "$scenarios/wide_frame.yaml"
+run unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
 
 # One thing at a time that is not as the session says; fails where a wrong result is called ok.
-run evical_stress "$scenarios/davis346_10s.yaml"
-run evical_stress --perfect --seeds 5 "$scenarios/davis346_10s.yaml"
-run evical_stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yaml"
+run stress "$scenarios/davis346_10s.yaml"
+run stress --perfect --seeds 5 "$scenarios/davis346_10s.yaml"
+run stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yaml"
 
 # Five recordings before each of three boards, alone and together: half an hour.
-run evical_protocol --folder "$(mktemp -d)/recording" config/protocol
+run protocol --folder "$(mktemp -d)/recording" config/protocol
 
 # An old result beside a new recording, a hundred times.
-run evical_check_accuracy "$scenarios/davis346.yaml"
+run check "$scenarios/davis346.yaml"
 
 # Without a board: rooms, and logs of IMUs over time. Three hours.
 tests/benchmarks/without_board.sh build/release || failed=1
 
-run evical_speed "$scenarios/davis346.yaml"
-run evical_costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
-run evical_costs "$scenarios/davis346.yaml" --durations 10 30 60 120
-run evical_speed --duration 3 "$scenarios/hd.yaml"
+run speed "$scenarios/davis346.yaml"
+run costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
+run costs "$scenarios/davis346.yaml" --durations 10 30 60 120
+run speed --duration 3 "$scenarios/hd.yaml"
 
 # A run in the window beside one on the command line.
 window=$(mktemp -d)
@@ -75,5 +71,5 @@ tests/benchmarks/window_cost.sh build/release "$window/recording/session.yaml" |
 rm -rf "$window"
 
 # How fast files are decoded, per format; fails where a packed one is below 20 million events/s.
-run evical_formats "$scenarios/davis346.yaml"
+run formats "$scenarios/davis346.yaml"
 exit "$failed"

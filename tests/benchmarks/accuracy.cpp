@@ -1,4 +1,4 @@
-// Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
+// Accuracy against the truth of simulated recordings, as a table: `evical_benchmarks accuracy [--seeds N] [--duration S]
 // [--quantities] [--within SIGMAS [--or-doubtful] [--board] | --verdicts] [--windows SHARE] SCENARIO...`. Recordings are simulated in memory and go through the
 // same front end, initialisation and batch as `evical calibrate`. Fails where a target is missed; with --within, where an
 // error of rotation, translation or time offset is larger than so many of its sigmas (and called ok); with --verdicts, where a wrong
@@ -9,7 +9,6 @@
 #include "tests/benchmarks/scenario_run.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::accuracy {
 namespace {
 
 struct Targets {
@@ -173,18 +172,17 @@ struct Arguments {
   std::optional<double> within;
   double windows = 0.0;
 
-  void addTo(CLI::App& app) {
+  void addTo(Command& app) {
     scenarios.addTo(app);
-    app.add_flag("--quantities", all_quantities,
-                 "Also every quantity's error and sigma, and the weakest direction");
-    app.add_option("--within", within, "Fail where an error is beyond so many sigmas, instead of by targets");
-    app.add_flag("--or-doubtful", or_doubtful,
-                 "With --within: results that are not called ok may be further off");
-    app.add_flag("--board", board, "With --within: the board's size and shape too");
-    app.add_option("--windows", windows, "Fail where the board is found in a smaller share of what shows it");
-    app.add_flag(
-        "--verdicts", verdicts,
-        "Fail where a wrong result is ok, or sigmas of 20 seeds are not honest, instead of by targets");
+    app.flag("--quantities", all_quantities,
+             "Also every quantity's error and sigma, and the weakest direction");
+    app.option("--within", within, "Fail where an error is beyond so many sigmas, instead of by targets");
+    app.flag("--or-doubtful", or_doubtful,
+             "With --within: results that are not called ok may be further off");
+    app.flag("--board", board, "With --within: the board's size and shape too");
+    app.option("--windows", windows, "Fail where the board is found in a smaller share of what shows it");
+    app.flag("--verdicts", verdicts,
+             "Fail where a wrong result is ok, or sigmas of 20 seeds are not honest, instead of by targets");
   }
   bool isGood(const Outcome& outcome, bool met) const {
     if (isWrongOk(outcome)) fmt::print("WRONG, but called ok\n");
@@ -194,11 +192,13 @@ struct Arguments {
   }
 };
 
-int main(int argc, char** argv) {
-  CLI::App app("Accuracy on simulated recordings against their truth");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Accuracy on simulated recordings against their truth");
   Arguments arguments;
   arguments.addTo(app);
-  CLI11_PARSE(app, argc, argv);
+  if (!app.parse(argc, argv)) return 0;
   printHeader();
   bool all_good = true;
   OffsetSpread spread;
@@ -219,9 +219,4 @@ int main(int argc, char** argv) {
   return all_good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::accuracy

@@ -1,15 +1,13 @@
-// What the benchmarks' programs have in common.
+// What the benchmarks have in common.
 #pragma once
 
-#include "core/base/error.h"
+#include "app/command_line.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/processor_time.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <cstdint>
-#include <cstdio>
-#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,13 +21,11 @@ struct ScenarioArguments {
   int skipped = 0;
   std::optional<double> duration_s;
 
-  void addTo(CLI::App& app) {
-    app.add_option("SCENARIO", files, "Scenario files")->required();
-    app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
-    app.add_option("--skip", skipped, "So many seeds, which another run has done")
-        ->check(CLI::Range(0, 1000));
-    app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
-        ->check(CLI::Range(2.0, 3600.0));
+  void addTo(Command& app) {
+    app.option("SCENARIO", files, "Scenario files").required();
+    app.option("--seeds", seeds, "Each scenario with this many seeds").between(1, 1000);
+    app.option("--skip", skipped, "So many seeds, which another run has done").between(0, 1000);
+    app.option("--duration", duration_s, "Seconds, instead of the scenario's").between(2.0, 3600.0);
   }
   Scenario read(const std::string& file, int k) const {
     Scenario scenario = readScenario(file);
@@ -39,21 +35,57 @@ struct ScenarioArguments {
   }
 };
 
-// Of all threads of this process.
-inline double processCpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+namespace benchmarks {
 
-// Runs a program; an error is said, and makes its exit code.
-inline int guarded(int (*run)(int, char**), int argc, char** argv, int code_of_errors = 2) {
-  try {
-    return run(argc, argv);
-  } catch (const CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return code_of_errors;
-  }
+// Work of fixed size, of the kinds that the stages do, which says how fast the machine computes (speed_reference.cpp).
+double speedReference();
+
+// One in each source. argv[0] is the benchmark's name; the result is the exit code, 1 where a target is missed.
+namespace accuracy {
+int run(int argc, char** argv);
 }
+namespace board_starts {
+int run(int argc, char** argv);
+}
+namespace centre_errors {
+int run(int argc, char** argv);
+}
+namespace check {
+int run(int argc, char** argv);
+}
+namespace costs {
+int run(int argc, char** argv);
+}
+namespace formats {
+int run(int argc, char** argv);
+}
+namespace frame_cameras {
+int run(int argc, char** argv);
+}
+namespace intrinsics {
+int run(int argc, char** argv);
+}
+namespace maintain {
+int run(int argc, char** argv);
+}
+namespace no_board {
+int run(int argc, char** argv);
+}
+namespace protocol {
+int run(int argc, char** argv);
+}
+namespace speed {
+int run(int argc, char** argv);
+}
+namespace speed_guard {
+int run(int argc, char** argv);
+}
+namespace stress {
+int run(int argc, char** argv);
+}
+namespace unknown_intrinsics {
+int run(int argc, char** argv);
+}
+}  // namespace benchmarks
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Whether the board is laid rightly wherever a recording begins: `evical_board_starts [--moments N] [--length S]
+// Whether the board is laid rightly wherever a recording begins: `evical_benchmarks board_starts [--moments N] [--length S]
 // [--hidden S] [--duration S] [--seeds N] SCENARIO...`. A recording is simulated once; the front end begins at random
 // moments of it, with all of the board to be seen and with a third of it silent at first, along its columns or along
 // its rows. Fails where circles are named wrongly in more than 2 % of the windows found.
@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::board_starts {
 namespace {
 
 enum class Hidden { Nothing, AlongColumns, AlongRows };
@@ -148,17 +148,18 @@ Counts run(const Scenario& scenario, const SinusoidMotion& motion, const std::ve
   return counts;
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("Whether the board is laid rightly wherever a recording begins");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Whether the board is laid rightly wherever a recording begins");
   ScenarioArguments scenarios;
   int moments = 40;
   Start start;
   scenarios.addTo(app);
-  app.add_option("--moments", moments, "Starts of each kind")->check(CLI::Range(1, 10000));
-  app.add_option("--length", start.length_s, "Seconds from each start")->check(CLI::Range(0.2, 100.0));
-  app.add_option("--hidden", start.hidden_s, "Seconds for which a third is silent")
-      ->check(CLI::Range(0.0, 100.0));
-  CLI11_PARSE(app, argc, argv);
+  app.option("--moments", moments, "Starts of each kind").between(1, 10000);
+  app.option("--length", start.length_s, "Seconds from each start").between(0.2, 100.0);
+  app.option("--hidden", start.hidden_s, "Seconds for which a third is silent").between(0.0, 100.0);
+  if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "| scenario | seed | hidden at first | starts | without a view | windows found | named wrongly, % | "
       "starts wrong to the end | wrong after all is in view, s |\n|---|---|---|---|---|---|---|---|---|\n");
@@ -192,9 +193,4 @@ int main(int argc, char** argv) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::board_starts

@@ -1,4 +1,4 @@
-// Measured circle centres against the truth of simulated recordings, along the motion: `evical_centre_errors
+// Measured circle centres against the truth of simulated recordings, along the motion: `evical_benchmarks centre_errors
 // [--seeds N] [--duration S] [--speeds] [--variant OPTION=VALUE,...]... SCENARIO...`. A recording is simulated
 // once, in memory; the front end runs over it with each variant of its options.
 //
@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::centre_errors {
 namespace {
 
 struct CentreError {
@@ -211,17 +211,17 @@ void runVariant(const Scenario& scenario, const std::vector<Event>& events, cons
   std::fflush(stdout);
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("Errors of circle centres along the motion, on simulated recordings");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Errors of circle centres along the motion, on simulated recordings");
   ScenarioArguments scenarios;
   std::vector<std::string> variants;
   bool speeds = false;
   scenarios.addTo(app);
-  app.add_option("--variant", variants, "Options of a further run: group.option=value,...")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_flag("--speeds", speeds, "Also how far centres lie behind, by speed");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--variant", variants, "Options of a further run: group.option=value,...").repeated();
+  app.flag("--speeds", speeds, "Also how far centres lie behind, by speed");
+  if (!app.parse(argc, argv)) return 0;
   variants.insert(variants.begin(), std::string());
   printHeader();
   for (const std::string& file : scenarios.files) {
@@ -236,9 +236,4 @@ int main(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::centre_errors

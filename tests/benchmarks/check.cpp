@@ -1,5 +1,5 @@
 // `evical check` on pairs of simulated recordings of one rig, as a table: unchanged, with one thing changed, and too poor to
-// tell. `evical_check_accuracy [--pairs N] [--before S] [--after S] [--events] SCENARIO`. Of five pairs three are unchanged, one
+// tell. `evical_benchmarks check [--pairs N] [--before S] [--after S] [--events] SCENARIO`. Of five pairs three are unchanged, one
 // is changed, one poor; each five share their first recording. Without --events circles are as a good front end sees them.
 // Fails where more than 3 % of all are false alarms, or a change is missed that would have been noticed.
 #include "core/base/error.h"
@@ -17,7 +17,6 @@
 #include "tests/support/seen_through.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::check {
 namespace {
 
 constexpr double kNoise_px = 0.05, kWindow_s = 0.02;
@@ -170,15 +169,15 @@ struct Arguments {
   bool events = false;
   std::vector<std::string> settings;
 
-  void addTo(CLI::App& app) {
-    app.add_option("SCENARIO", scenario, "Scenario file")->required();
-    app.add_option("--pairs", pairs, "So many pairs");
-    app.add_option("--first", first, "The first of them");
-    app.add_option("--before", before_s, "Seconds of the first recording of a pair");
-    app.add_option("--after", after_s, "Seconds of the second one");
-    app.add_option("--factor", factor, "Changes are so many times 0.05 deg, 1 mm, 0.1 ms, 0.2 px");
-    app.add_flag("--events", events, "Simulate events, too, instead of circles only");
-    app.add_option("--set", settings, "group.option=value");
+  void addTo(Command& app) {
+    app.option("SCENARIO", scenario, "Scenario file").required();
+    app.option("--pairs", pairs, "So many pairs");
+    app.option("--first", first, "The first of them");
+    app.option("--before", before_s, "Seconds of the first recording of a pair");
+    app.option("--after", after_s, "Seconds of the second one");
+    app.option("--factor", factor, "Changes are so many times 0.05 deg, 1 mm, 0.1 ms, 0.2 px");
+    app.flag("--events", events, "Simulate events, too, instead of circles only");
+    app.option("--set", settings, "group.option=value");
   }
 };
 
@@ -220,11 +219,13 @@ Row checkPair(const Arguments& arguments, int pair, const NamedResult& before) {
   return row;
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("evical check on simulated pairs of recordings");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("evical check on simulated pairs of recordings");
   Arguments arguments;
   arguments.addTo(app);
-  CLI11_PARSE(app, argc, argv);
+  if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "would be noticed (change found):\n| pair | truth | verdict | rotation, deg | translation, mm | time "
       "offset, ms | "
@@ -241,9 +242,4 @@ int main(int argc, char** argv) {
   return tally.isGood() ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::check

@@ -1,4 +1,4 @@
-// What whole calibrations cost against duration, events, cameras and IMUs, as a table: `evical_costs [--recording FOLDER]
+// What whole calibrations cost against duration, events, cameras and IMUs, as a table: `evical_benchmarks costs [--recording FOLDER]
 // [--scratch FOLDER] [SCENARIO...] [--durations S...]`. A scenario is simulated once into a file, for the longest
 // duration, and calibrated over its first seconds, in a process of its own each time. Of several durations the growth's
 // exponent is told.
@@ -12,7 +12,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <QTemporaryDir>
 
@@ -24,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::costs {
 namespace {
 
 struct Cost {
@@ -109,17 +108,19 @@ void table(const std::string& name, Session session, const std::vector<double>& 
         (costs.back().memory_mb - costs.front().memory_mb) / (durations_s.back() - durations_s.front()));
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("What whole calibrations cost against their duration");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("What whole calibrations cost against their duration");
   std::vector<std::string> files;
   std::vector<double> durations_s;
   std::string recording, scratch;
-  app.add_option("SCENARIO", files, "Scenario files");
-  app.add_option("--durations", durations_s, "Seconds of the recording, each; else the scenario's own")
-      ->check(CLI::Range(2.0, 3600.0));
-  app.add_option("--recording", recording, "Folder with a session of a recording, in a scenario's place");
-  app.add_option("--scratch", scratch, "Where recordings are made; a folder that is removed again otherwise");
-  CLI11_PARSE(app, argc, argv);
+  app.option("SCENARIO", files, "Scenario files");
+  app.option("--durations", durations_s, "Seconds of the recording, each; else the scenario's own")
+      .between(2.0, 3600.0);
+  app.option("--recording", recording, "Folder with a session of a recording, in a scenario's place");
+  app.option("--scratch", scratch, "Where recordings are made; a folder that is removed again otherwise");
+  if (!app.parse(argc, argv)) return 0;
   std::sort(durations_s.begin(), durations_s.end());
   QTemporaryDir folder;
   if (scratch.empty()) scratch = folder.path().toStdString();
@@ -139,9 +140,4 @@ int main(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::costs

@@ -1,4 +1,4 @@
-// Decoding speed per format on a simulated recording, as a table: `evical_formats [--duration S] [--least M]
+// Decoding speed per format on a simulated recording, as a table: `evical_benchmarks formats [--duration S] [--least M]
 // SCENARIO`. CPU time of the process, files in the page's cache. Fails where a packed format is slower than
 // `--least` million events/s, or where not every event comes back.
 #include "core/recording/recording_reader.h"
@@ -10,11 +10,9 @@
 #include "tests/support/packed_events.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <unistd.h>
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -22,16 +20,10 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::formats {
 namespace {
 
 constexpr std::size_t kBatch = 50'000;
-
-double processCpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // From 1 s on, whole us: what the formats of cameras hold.
 std::vector<Event> simulatedEvents(const Scenario& scenario) {
@@ -180,12 +172,12 @@ std::uintmax_t sizeOf(const std::filesystem::path& path) {
 // True if it is fast enough and whole.
 bool measure(const Row& row, const std::filesystem::path& path, std::size_t written, double least) {
   row.write(path);
-  const double begin = processCpu_s();
+  const double begin = test::processCpu_s();
   const auto reader = openRecording(path);
   Packet packet;
   std::size_t read = 0;
   while (reader->read(packet)) read += packet.events.size();
-  const double speed = 1e-6 * static_cast<double>(read) / (processCpu_s() - begin);
+  const double speed = 1e-6 * static_cast<double>(read) / (test::processCpu_s() - begin);
   const bool good = read == written && (!row.packed || speed >= least);
   fmt::print("| {} | {:.1f} | {:.2f} | {} |\n", row.name, speed,
              static_cast<double>(sizeOf(path)) / static_cast<double>(written),
@@ -197,15 +189,17 @@ bool measure(const Row& row, const std::filesystem::path& path, std::size_t writ
   return good;
 }
 
+}  // namespace
+
 int run(int argc, char** argv) {
-  CLI::App app("Decoding speed per format.", "evical_formats");
+  CommandLine app("Decoding speed per format.");
   std::filesystem::path scenario_file, folder = std::filesystem::temp_directory_path();
   double duration_s = 17.0, least = 20.0;
-  app.add_option("scenario", scenario_file)->required();
-  app.add_option("--duration", duration_s, "s of recording; 17 s of davis346 are 20 million events");
-  app.add_option("--least", least, "Million events/s that packed formats must reach");
-  app.add_option("--folder", folder, "For the files, which are removed again");
-  CLI11_PARSE(app, argc, argv);
+  app.option("SCENARIO", scenario_file, "Scenario file").required();
+  app.option("--duration", duration_s, "s of recording; 17 s of davis346 are 20 million events");
+  app.option("--least", least, "Million events/s that packed formats must reach");
+  app.option("--folder", folder, "For the files, which are removed again");
+  if (!app.parse(argc, argv)) return 0;
   Scenario scenario = readScenario(scenario_file);
   scenario.duration_s = duration_s;
   const std::vector<Event> events = simulatedEvents(scenario);
@@ -218,9 +212,4 @@ int run(int argc, char** argv) {
   return good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::run, argc, argv, 1);
-}
+}  // namespace evical::benchmarks::formats

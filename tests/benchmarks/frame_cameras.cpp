@@ -1,4 +1,4 @@
-// What frame cameras, further boards and lenses reach, as one table: `evical_frame_cameras [--only NAME...] [--seconds S]`. Simulated
+// What frame cameras, further boards and lenses reach, as one table: `evical_benchmarks frame_cameras [--only NAME...] [--seconds S]`. Simulated
 // recordings against their truth; real ones, in the folder that EVICAL_DATA names, against what is published of them. Fails where a
 // target is missed.
 #include "core/base/stopwatch.h"
@@ -17,7 +17,6 @@
 #include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <QTemporaryDir>
 
@@ -30,7 +29,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::frame_cameras {
 namespace {
 
 constexpr double kMmPerM = 1e3, kMsPerS = 1e3;
@@ -326,14 +325,15 @@ void realOnes(Table& table, const std::function<bool(const char*)>& asked) {
     fmt::print(stderr, "The package opencv-doc is not installed: without its pictures\n");
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("What frame cameras, further boards and lenses reach, against their targets");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("What frame cameras, further boards and lenses reach, against their targets");
   std::vector<std::string> only;
   std::optional<double> seconds;
-  app.add_option("--only", only, "Recordings by name, instead of all");
-  app.add_option("--seconds", seconds, "Of simulated recordings, instead of their own")
-      ->check(CLI::Range(2.0, 3600.0));
-  CLI11_PARSE(app, argc, argv);
+  app.option("--only", only, "Recordings by name, instead of all");
+  app.option("--seconds", seconds, "Of simulated recordings, instead of their own").between(2.0, 3600.0);
+  if (!app.parse(argc, argv)) return 0;
   const auto asked = [&](const char* name) {
     return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
   };
@@ -348,9 +348,4 @@ int main(int argc, char** argv) {
   return table.allMet() ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::frame_cameras

@@ -1,4 +1,4 @@
-// Intrinsics against the truth of simulated recordings, as a table: `evical_intrinsics_accuracy [--seeds N]
+// Intrinsics against the truth of simulated recordings, as a table: `evical_benchmarks intrinsics [--seeds N]
 // [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and goes through
 // everything that `evical intrinsics` does.
 #include "core/geometry/camera_model.h"
@@ -10,7 +10,6 @@
 #include "tests/benchmarks/scenario_run.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::intrinsics {
 namespace {
 
 struct Targets {
@@ -102,13 +101,15 @@ Outcome compare(const Scenario& scenario, const IntrinsicsResult& result) {
   return outcome;
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("Intrinsics of simulated recordings against their truth");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Intrinsics of simulated recordings against their truth");
   ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_intrinsics_accuracy";
   scenarios.addTo(app);
-  app.add_option("--folder", folder, "For the recordings, which are removed again");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--folder", folder, "For the recordings, which are removed again");
+  if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "| scenario | seed | focal length, % (sigma) | principal point, px (sigma) | projection RMS, px "
       "(sigma) | max, px | normalised error | views | passes | s | targets |\n"
@@ -133,9 +134,4 @@ int main(int argc, char** argv) {
   return all_met ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::intrinsics

@@ -3,9 +3,9 @@
 #include "core/maintenance/stop_calibration.h"
 #include "core/pipeline/drive_simulation.h"
 #include "core/pipeline/maintain_imus.h"
+#include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <unistd.h>
 #include <algorithm>
@@ -17,8 +17,7 @@
 #include <fstream>
 #include <string>
 
-using namespace evical;
-
+namespace evical::benchmarks::maintain {
 namespace {
 
 struct Bench {
@@ -142,18 +141,18 @@ int maintainOnly(const std::filesystem::path& folder) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app("Accuracy of `evical maintain`");
+int run(int argc, char** argv) {
+  CommandLine app("Accuracy of `evical maintain`");
   Bench bench;
   int runs = 100, seeds = 20;
   bool hour = false;
   std::string only;
-  app.add_option("SCENARIOS", bench.scenarios, "config/scenarios/maintain")->required();
-  app.add_option("--runs", runs, "Logs in which nothing happens");
-  app.add_option("--seeds", seeds, "Logs of each other kind");
-  app.add_flag("--hour", hour, "Memory and time of an hour's log, too");
-  app.add_option("--maintain-only", only, "Of a folder that was simulated");
-  CLI11_PARSE(app, argc, argv);
+  app.option("SCENARIOS", bench.scenarios, "config/scenarios/maintain").required();
+  app.option("--runs", runs, "Logs in which nothing happens");
+  app.option("--seeds", seeds, "Logs of each other kind");
+  app.flag("--hour", hour, "Memory and time of an hour's log, too");
+  app.option("--maintain-only", only, "Of a folder that was simulated");
+  if (!app.parse(argc, argv)) return 0;
   if (!only.empty()) return maintainOnly(only);
   bench.scratch = std::filesystem::temp_directory_path() / fmt::format("evical_maintain_{}", ::getpid());
   std::filesystem::create_directories(bench.scratch);
@@ -167,11 +166,14 @@ int main(int argc, char** argv) {
   if (hour) {
     const std::filesystem::path folder = bench.scratch / "hour";
     simulateDrive(bench.scenario("three_imus_hour", 1), folder, RunContext{});
-    const std::string command =
-        fmt::format("'{}' --maintain-only '{}' '{}'", argv[0], folder.string(), bench.scenarios.string());
+    const std::string command = fmt::format("'{}' maintain --maintain-only '{}' '{}'",
+                                            std::filesystem::read_symlink("/proc/self/exe").string(),
+                                            folder.string(), bench.scenarios.string());
     bench.missed += std::system(command.c_str()) == 0 ? 0 : 1;
   }
   std::filesystem::remove_all(bench.scratch);
   std::printf("%s\n", bench.missed == 0 ? "All targets are reached." : "Targets are missed.");
   return bench.missed == 0 ? 0 : 1;
 }
+
+}  // namespace evical::benchmarks::maintain

@@ -7,9 +7,9 @@
 #include "core/report/check_report.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_record.h"
-#include "tests/support/thread_time.h"
 
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::no_board {
 namespace {
 
 // Of one kind of number, over all runs.
@@ -174,22 +174,19 @@ class Table {
   int missed_ = 0;
 };
 
-int main(int argc, char** argv) {
-  CLI::App app("Old calibrations checked without a board");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Old calibrations checked without a board");
   ScenarioArguments arguments;
   int jobs = 2;
   arguments.addTo(app);
-  app.add_option("--jobs", jobs, "So many seeds at a time")->check(CLI::Range(1, 64));
-  CLI11_PARSE(app, argc, argv);
+  app.option("--jobs", jobs, "So many seeds at a time").between(1, 64);
+  if (!app.parse(argc, argv)) return 0;
   Table table;
   for (const std::string& file : arguments.files) table.run(file, arguments, jobs);
   table.print();
   return table.missed() == 0 ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::no_board

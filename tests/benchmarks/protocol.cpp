@@ -1,5 +1,5 @@
 // The protocol of eKalibr's papers in simulation: several recordings before each board, each calibrated alone, and how far
-// the results scatter. `evical_protocol [--recordings N] [--duration S] [--only PART] [--folder DIR] config/protocol`. Rigs go
+// the results scatter. `evical_benchmarks protocol [--recordings N] [--duration S] [--only PART] [--folder DIR] config/protocol`. Rigs go
 // through everything that `evical repeat` does, lenses of cameras alone (scenarios without given intrinsics) through that of
 // `evical intrinsics`. Recordings are simulated one by one, and removed again. Fails where one can not be calibrated, or
 // results do not agree.
@@ -15,7 +15,6 @@
 #include "tests/support/scenario_session.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::protocol {
 namespace {
 
 struct Arguments {
@@ -32,15 +31,12 @@ struct Arguments {
   int recordings = 5;
   std::optional<double> duration_s;
 
-  void addTo(CLI::App& app) {
-    app.add_option("SCENARIOS", scenarios, "Folder of scenarios, one for each board and rig")
-        ->required()
-        ->check(CLI::ExistingDirectory);
-    app.add_option("--recordings", recordings, "So many of each")->check(CLI::Range(2, 100));
-    app.add_option("--duration", duration_s, "Seconds, instead of the scenarios'")
-        ->check(CLI::Range(3.0, 3600.0));
-    app.add_option("--only", only, "Scenarios with this in their names");
-    app.add_option("--folder", folder, "For recordings, of which there is one at a time");
+  void addTo(Command& app) {
+    app.option("SCENARIOS", scenarios, "Folder of scenarios, one for each board and rig").required().folder();
+    app.option("--recordings", recordings, "So many of each").between(2, 100);
+    app.option("--duration", duration_s, "Seconds, instead of the scenarios'").between(3.0, 3600.0);
+    app.option("--only", only, "Scenarios with this in their names");
+    app.option("--folder", folder, "For recordings, of which there is one at a time");
   }
   Scenario read(const std::filesystem::path& file, int k) const {
     Scenario scenario = readScenario(file);
@@ -209,11 +205,13 @@ std::vector<std::filesystem::path> scenariosOf(const Arguments& arguments) {
   return files;
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("The papers' protocol in simulation");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("The papers' protocol in simulation");
   Arguments arguments;
   arguments.addTo(app);
-  CLI11_PARSE(app, argc, argv);
+  if (!app.parse(argc, argv)) return 0;
   const Stopwatch stopwatch;
   Protocol all;
   const auto add = [&](const Protocol& one) {
@@ -241,9 +239,4 @@ int main(int argc, char** argv) {
   return all.good ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::protocol

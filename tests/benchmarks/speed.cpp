@@ -1,4 +1,4 @@
-// Costs of the hot paths on a simulated recording, as a table: `evical_speed [--duration S]
+// Costs of the hot paths on a simulated recording, as a table: `evical_benchmarks speed [--duration S]
 // SCENARIO`. CPU time of one thread, so that other work on the machine hardly counts; compare
 // ratios between builds, not machines. What whole runs cost: costs.cpp.
 #include "core/frontend/board_search.h"
@@ -10,20 +10,12 @@
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
-#include <ctime>
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::speed {
 namespace {
-
-double threadCpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 constexpr std::size_t kBatch = 50'000;
 
@@ -38,14 +30,14 @@ BoardObservations detect(const Scenario& scenario, const std::vector<Event>& eve
   std::vector<EdgeBurst> bursts;
   for (std::size_t k = 0; k < events.size(); k += kBatch) {
     const EventSpan batch(events.data() + k, std::min(kBatch, events.size() - k));
-    double begin = threadCpu_s();
+    double begin = test::threadCpu_s();
     bursts.clear();
     extractor.add(batch, bursts);
-    extracting_s += threadCpu_s() - begin;
+    extracting_s += test::threadCpu_s() - begin;
     burst_count += bursts.size();
-    begin = threadCpu_s();
+    begin = test::threadCpu_s();
     tracker.addBursts(bursts, batch.front().time_ns, extractor.completeUntil_ns());
-    tracking_s += threadCpu_s() - begin;
+    tracking_s += test::threadCpu_s() - begin;
   }
   BoardObservations observations = tracker.finish();
   const auto n = static_cast<double>(events.size()),
@@ -73,7 +65,7 @@ void search(const Scenario& scenario, const std::vector<Event>& events) {
     options.detection.method = source;
     constexpr int kSearches = 20;
     int found = 0;
-    const double begin = threadCpu_s();
+    const double begin = test::threadCpu_s();
     for (int k = 0; k < kSearches; ++k) {
       const std::int64_t span_ns = events.back().time_ns - events.front().time_ns;
       const std::int64_t middle_ns = events.front().time_ns + span_ns * (k + 2) / (kSearches + 4);
@@ -81,7 +73,7 @@ void search(const Scenario& scenario, const std::vector<Event>& events) {
     }
     fmt::print("| search, {} | {:.1f} ms | board found in {} of {} |\n",
                source == CandidateSource::NormalFlow ? "normal_flow" : "ring_vote",
-               1e3 * (threadCpu_s() - begin) / kSearches, found, kSearches);
+               1e3 * (test::threadCpu_s() - begin) / kSearches, found, kSearches);
   }
 }
 
@@ -94,26 +86,28 @@ void optimise(const Scenario& scenario, BoardObservations observations) {
   input.cameras.push_back({camera.name, givenLens(camera.intrinsics), std::move(observations)});
   input.imus.push_back(
       {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, 0)});
-  double begin = processCpu_s();
+  double begin = test::processCpu_s();
   const Initialisation initial = initialise(input, InitialisationOptions{}, RunContext{});
-  fmt::print("| initialisation | {:.0f} ms | {:.0f} s of recording |\n", 1e3 * (processCpu_s() - begin),
+  fmt::print("| initialisation | {:.0f} ms | {:.0f} s of recording |\n", 1e3 * (test::processCpu_s() - begin),
              scenario.duration_s);
-  begin = processCpu_s();
+  begin = test::processCpu_s();
   const BatchSolution solution = optimiseBatch(input, initial.state, OptimisationOptions{}, RunContext{});
-  const double spent_s = processCpu_s() - begin;
+  const double spent_s = test::processCpu_s() - begin;
   fmt::print(
       "| batch | {:.0f} ms an iteration, {:.2f} s in all | {} iterations, {} circles, {} IMU samples |\n",
       1e3 * spent_s / static_cast<double>(solution.iterations.size()), spent_s, solution.iterations.size(),
       solution.cameras.front().circles_used, input.imus.front().samples.size());
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("Costs of the hot paths, in CPU time");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Costs of the hot paths, in CPU time");
   std::string file;
   double duration_s = 10.0;
-  app.add_option("SCENARIO", file, "Scenario file")->required();
-  app.add_option("--duration", duration_s, "Seconds")->check(CLI::Range(2.0, 60.0));
-  CLI11_PARSE(app, argc, argv);
+  app.option("SCENARIO", file, "Scenario file").required();
+  app.option("--duration", duration_s, "Seconds").between(2.0, 60.0);
+  if (!app.parse(argc, argv)) return 0;
   Scenario scenario = readScenario(file);
   scenario.duration_s = duration_s;
   std::vector<Event> events;
@@ -127,9 +121,4 @@ int main(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::speed

@@ -1,4 +1,4 @@
-// What a calibration says where one thing is not as the session has it, as a table: `evical_stress [--only NAME...]
+// What a calibration says where one thing is not as the session has it, as a table: `evical_benchmarks stress [--only NAME...]
 // [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs once a recording; what is perturbed is
 // what comes after it, but for rows that say otherwise (tests/support/perturbations.cpp).
 #include "core/numerics/angles.h"
@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::stress {
 namespace {
 
 using test::Perturbation;
@@ -235,12 +234,12 @@ struct Arguments {
   Source source;
   bool notes = false;
 
-  void addTo(CLI::App& app) {
+  void addTo(Command& app) {
     scenarios.addTo(app);
-    app.add_option("--only", only, "Perturbations by name, instead of all");
-    app.add_option("--size", size, "One size, instead of those of the table");
-    app.add_flag("--notes", notes, "Also the notes of each result");
-    app.add_flag("--perfect", source.perfect, "Circles of a perfect front end, without events");
+    app.option("--only", only, "Perturbations by name, instead of all");
+    app.option("--size", size, "One size, instead of those of the table");
+    app.flag("--notes", notes, "Also the notes of each result");
+    app.flag("--perfect", source.perfect, "Circles of a perfect front end, without events");
   }
   std::vector<Perturbation> rows() const {
     std::vector<Perturbation> all(test::perturbations().begin(), test::perturbations().end());
@@ -257,11 +256,13 @@ struct Arguments {
   }
 };
 
-int main(int argc, char** argv) {
-  CLI::App app("What a calibration says where one thing is not as the session has it");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("What a calibration says where one thing is not as the session has it");
   Arguments arguments;
   arguments.addTo(app);
-  CLI11_PARSE(app, argc, argv);
+  if (!app.parse(argc, argv)) return 0;
   printHeader();
   Summary summary;
   for (const std::string& file : arguments.scenarios.files) {
@@ -285,9 +286,4 @@ int main(int argc, char** argv) {
   return summary.wrong_ok == 0 ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::stress

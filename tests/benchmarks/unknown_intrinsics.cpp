@@ -1,4 +1,4 @@
-// What it costs not to know a camera's intrinsics, as a table: `evical_unknown_intrinsics [--seeds N]
+// What it costs not to know a camera's intrinsics, as a table: `evical_benchmarks unknown_intrinsics [--seeds N]
 // [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated
 // three times, as `evical calibrate` does: with the true intrinsics; with those found first, held;
 // and solved with everything else.
@@ -11,7 +11,6 @@
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace evical {
+namespace evical::benchmarks::unknown_intrinsics {
 namespace {
 
 enum Way { kTrue, kFound, kJoint, kWays };
@@ -107,13 +106,15 @@ bool printSums(const std::string& file, int seeds, const std::array<Sums, kWays>
   return met;
 }
 
-int main(int argc, char** argv) {
-  CLI::App app("Calibrations with and without intrinsics, against the truth of simulated recordings");
+}  // namespace
+
+int run(int argc, char** argv) {
+  CommandLine app("Calibrations with and without intrinsics, against the truth of simulated recordings");
   ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_unknown_intrinsics";
   scenarios.addTo(app);
-  app.add_option("--folder", folder, "For the recordings, which are removed again");
-  CLI11_PARSE(app, argc, argv);
+  app.option("--folder", folder, "For the recordings, which are removed again");
+  if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "| scenario | seed | intrinsics | rotation, deg (sigma) | translation, mm (sigma) | time offset, ms "
       "(sigma) | projection off by, px RMS | optimise, s | verdict "
@@ -142,9 +143,4 @@ int main(int argc, char** argv) {
   return all_met ? 0 : 1;
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  return evical::guarded(evical::main, argc, argv);
-}
+}  // namespace evical::benchmarks::unknown_intrinsics

@@ -1,4 +1,4 @@
-// One thing at a time that a session says wrongly, or that a rig does: for the benchmark evical_stress, and for
+// One thing at a time that a session says wrongly, or that a rig does: for the benchmark evical_benchmarks stress, and for
 // tests of verdicts. What the events show is left as it is, so that the front end's work serves for all.
 #pragma once
 
