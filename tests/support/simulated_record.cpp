@@ -2,7 +2,7 @@
 
 #include "core/pipeline/camera_motion.h"
 #include "core/synthetic/event_simulator.h"
-#include "tests/support/thread_time.h"
+#include "tests/support/processor_time.h"
 
 #include <vector>
 

@@ -16,8 +16,9 @@ struct TestRegistration {
 
 }  // namespace evical::test_program
 
-#define EVICAL_TEST(Class)                                                                               \
-  static const evical::test_program::TestRegistration registration(__FILE__, [](int argc, char** argv) { \
-    Class test;                                                                                          \
-    return QTest::qExec(&test, argc, argv);                                                              \
-  });
+#define EVICAL_TEST(Class)                                                   \
+  static const evical::test_program::TestRegistration registrationOf##Class( \
+      __FILE__, [](int argc, char** argv) {                                  \
+        Class test;                                                          \
+        return QTest::qExec(&test, argc, argv);                              \
+      });

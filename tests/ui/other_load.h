@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "tests/support/processor_time.h"
 #include "tests/ui/slowdown.h"
 
 #include <QElapsedTimer>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <ctime>
 #include <vector>
 
 namespace evical::ui::test {
@@ -21,15 +21,27 @@ namespace evical::ui::test {
 inline double slowness() {
   constexpr double kUsual_ms = 18.0;
   std::vector<std::uint32_t> numbers(300'000);
-  timespec begin{}, end{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+  const double begin_s = evical::test::threadCpu_s();
   std::uint32_t state = 1;
   for (std::uint32_t& number : numbers) number = state = state * 1664525u + 1013904223u;
   std::sort(numbers.begin(), numbers.end());
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
-  const double took_ms = 1e3 * static_cast<double>(end.tv_sec - begin.tv_sec) +
-                         1e-6 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
+  const double took_ms = 1e3 * (evical::test::threadCpu_s() - begin_s);
   return std::max<double>(kSlowdown, took_ms / kUsual_ms);
+}
+
+// Time that this process computes from here on. Unlike time by the clock it stays the same while other tests run.
+class ComputedTime {
+ public:
+  double elapsed_ms() const { return 1e3 * (evical::test::processCpu_s() - begin_s_); }
+
+ private:
+  double begin_s_ = evical::test::processCpu_s();
+};
+
+// A job that is cancelled ends after half a second at most. Computing counts, so that tests can run beside each other;
+// tst_main_window measures the same by the clock.
+inline double mostAfterCancel_ms() {
+  return 500.0 * slowness();
 }
 
 // How many processors others kept busy since it was made: with them about, rates by the clock mean little,

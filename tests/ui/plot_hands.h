@@ -8,7 +8,6 @@
 #include <QtTest>
 
 #include <cmath>
-#include <ctime>
 #include <vector>
 
 namespace evical::ui::test {
@@ -43,12 +42,6 @@ inline void addImuAxes(PlotPanel& panel, int count, double rate_hz) {
 }
 
 // Of this thread: what a redraw costs, whoever else uses the machine.
-inline double cpuTime_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
 inline bool near(const QColor& a, const QColor& b) {
   return std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) + std::abs(a.blue() - b.blue()) < 60;
 }

@@ -4,9 +4,9 @@
 
 #include "core/pipeline/calibration_pipeline.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/ui/opengl.h"
 #include "tests/ui/slowdown.h"
 #include "ui/scene/trajectory_screen.h"
-#include "ui/scene/view3d.h"
 
 #include <QApplication>
 #include <QPalette>
@@ -100,12 +100,6 @@ inline std::unique_ptr<TrajectoryScreen> makeScreen(const Example& example, cons
   if (!QTest::qWaitFor([&] { return !screen->busy(); }, kWorkPatience_ms)) return nullptr;
   screen->grab();
   return screen;
-}
-
-inline bool hasOpenGl() {
-  View3D view;
-  view.grab();
-  return view.problem().isEmpty();
 }
 
 }  // namespace evical::ui::test

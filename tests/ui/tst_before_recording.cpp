@@ -30,7 +30,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-std::string contentOf(const QString& path) {
+std::string contentOfBeforeRecording(const QString& path) {
   QFile file(path);
   return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : std::string();
 }
@@ -94,7 +94,7 @@ class TestBeforeRecording : public QObject {
                                  : ending == "svg" ? boardSvg(board, options, dialog->tagPrint())
                                  : ending == "png" ? boardPng(board, 300.0, options, dialog->tagPrint())
                                                    : blinkPage(board, options.margin_m, dialog->tagPrint());
-    QVERIFY(contentOf(file) == expected);
+    QVERIFY(contentOfBeforeRecording(file) == expected);
     QVERIFY(saidBy(*dialog).contains(file));
   }
 

@@ -27,14 +27,14 @@ namespace {
 using Names = std::vector<std::string>;
 
 // The screen over a document, as the window wires it, with three cameras.
-struct Fixture {
+struct BoardsFormFixture {
   CalibrationDocument document;
   RecordingScreen screen;
 
-  Fixture() {
+  BoardsFormFixture() {
     QObject::connect(&screen, &RecordingScreen::sessionEdited, &document, &CalibrationDocument::edit);
     QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [this] { show(); });
-    Session session = readSession(test::simulatedSession().toStdString());
+    Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     for (const char* const name : {"frames", "side"}) {
       session.cameras.push_back(session.cameras[0]);
       session.cameras.back().name = session.cameras.back().stream = name;
@@ -97,7 +97,7 @@ class TestBoardsForm : public QObject {
   void initTestCase() { applyTheme(*qApp, Appearance::Light); }
 
   void oneBoard_needsNeitherChoiceNorName() {
-    Fixture test;
+    BoardsFormFixture test;
     for (QWidget* const hidden :
          {static_cast<QWidget*>(test.tabs()), static_cast<QWidget*>(test.find<QToolButton>("remove_board")),
           static_cast<QWidget*>(test.name()), static_cast<QWidget*>(test.find<QLabel>("seen_by"))})
@@ -111,7 +111,7 @@ class TestBoardsForm : public QObject {
   }
 
   void addedBoard_isChosen_andEditedAlone() {
-    Fixture test;
+    BoardsFormFixture test;
     const Board first = test.session().board;
     test.click("add_board");
     QCOMPARE(test.names(), (Names{"board", "board_2"}));
@@ -135,7 +135,7 @@ class TestBoardsForm : public QObject {
 
   // Steps of undo merge within one board only.
   void editsOfTwoBoards_areTwoSteps() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     QSpinBox* const rows = test.form()->findChildren<QSpinBox*>().at(0);
     rows->setValue(9);
@@ -151,7 +151,7 @@ class TestBoardsForm : public QObject {
 
   // Without the key that ends it.
   void typedNumber_isThatOfTheBoardItWasTypedFor() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     auto* const spacing = test.form()->findChildren<NumberField*>().at(0);
     spacing->setFocus();
@@ -164,7 +164,7 @@ class TestBoardsForm : public QObject {
   }
 
   void removedBoard_leavesItsCamerasToTheWorlds_andComesBack() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     test.see(1, "board_2");
     test.see(2, "board_2");
@@ -181,7 +181,7 @@ class TestBoardsForm : public QObject {
   }
 
   void renamedBoard_isWhatItsCamerasSee() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     test.see(1, "board_2");
     test.type(" tags ");
@@ -206,7 +206,7 @@ class TestBoardsForm : public QObject {
   void badName_isSaidAtItsField_andChangesNothing() {
     QFETCH(QString, typed);
     QFETCH(QString, said);
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     auto* const problem = test.find<QLabel>("name_problem");
     QVERIFY(!problem->isVisible());
@@ -221,7 +221,7 @@ class TestBoardsForm : public QObject {
   }
 
   void worldCameraThatSeesAnother_makesThatTheWorlds() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     test.form()->findChildren<QSpinBox*>().at(0)->setValue(9);
     test.see(0, "board_2");
@@ -232,7 +232,7 @@ class TestBoardsForm : public QObject {
   }
 
   void problemsOfBoards_sayOfWhich() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     test.choose(0);
     QVERIFY2(test.problem().startsWith("board_2: no camera sees it"), qPrintable(test.problem()));
@@ -245,7 +245,7 @@ class TestBoardsForm : public QObject {
   }
 
   void boards_areSavedAndOpened() {
-    Fixture test;
+    BoardsFormFixture test;
     test.click("add_board");
     test.see(1, "board_2");
     test.type("left wall");
@@ -263,7 +263,7 @@ class TestBoardsForm : public QObject {
 
   // What has no pattern cannot be shown on a screen.
   void givenPoints_doNotFlash() {
-    Fixture test;
+    BoardsFormFixture test;
     Session session = test.session();
     session.board = boardOfPoints({{-0.1, 0.0}, {0.1, 0.0}, {0.0, 0.1}, {0.1, 0.2}});
     QVERIFY(test.find<QCheckBox>("blinks")->isVisible());

@@ -28,7 +28,7 @@ class TestCalibrationDocument : public QObject {
 
  private slots:
   void openAndSave_roundTrip() {
-    const QString file = test::copyOfSimulatedSession(scratch_.path());
+    const QString file = evical::ui::test::copyOfSimulatedSession(scratch_.path());
     CalibrationDocument document;
     QSignalSpy replaced(&document, &CalibrationDocument::sessionReplaced);
     document.open(file);
@@ -58,7 +58,7 @@ class TestCalibrationDocument : public QObject {
     int said = 0;
     {
       CalibrationDocument document;
-      document.open(test::copyOfSimulatedSession(scratch_.path()));
+      document.open(evical::ui::test::copyOfSimulatedSession(scratch_.path()));
       document.edit(withRows(document, 9), "Rows");
       connect(&document, &CalibrationDocument::fileChanged, [&] { ++said; });
     }
@@ -67,7 +67,7 @@ class TestCalibrationDocument : public QObject {
 
   void open_ofWhatIsNoSession_changesNothing() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     const QString broken = scratch_.filePath("broken.yaml");
     QFile file(broken);
     QVERIFY(file.open(QIODevice::WriteOnly));
@@ -76,21 +76,21 @@ class TestCalibrationDocument : public QObject {
     QSignalSpy replaced(&document, &CalibrationDocument::sessionReplaced);
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.open(broken));
     QVERIFY(replaced.isEmpty());
-    QCOMPARE(document.file(), test::simulatedSession());
+    QCOMPARE(document.file(), evical::ui::test::simulatedSession());
   }
 
   void save_intoNowhere_keepsTheChanges() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     document.edit(withRows(document, 9), "Rows");
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.save("/nowhere/at/all/session.yaml"));
     QVERIFY(document.modified());
-    QCOMPARE(document.file(), test::simulatedSession());
+    QCOMPARE(document.file(), evical::ui::test::simulatedSession());
   }
 
   void options_areUndoneAndRedone() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     QSignalSpy changed(&document, &CalibrationDocument::sessionChanged);
     document.setOption("grid.least_circles", "9");
     QCOMPARE(document.session().options.front_end.grid.least_circles, 9);
@@ -108,7 +108,7 @@ class TestCalibrationDocument : public QObject {
 
   void stepsOfOneOption_areOneUndo() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     for (const char* value : {"9", "10", "11"}) document.setOption("grid.least_circles", value);
     QCOMPARE(document.undoStack().count(), 1);
     document.setOption("bursts.least_events", "3");
@@ -117,7 +117,7 @@ class TestCalibrationDocument : public QObject {
 
   void option_outOfRange_isRefused() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.setOption("grid.least_circles", "-5"));
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.setOption("grid.no_such", "5"));
     QVERIFY(!document.modified());
@@ -125,7 +125,7 @@ class TestCalibrationDocument : public QObject {
 
   void optionThatAnotherExcludes_isRefused() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     QVERIFY_THROWS_EXCEPTION(OptionConflict, document.setOption("detection.shortest_window_s", "0.1"));
     QVERIFY(!document.modified());
     document.setOption("detection.longest_window_s", "0.15");
@@ -134,7 +134,7 @@ class TestCalibrationDocument : public QObject {
   }
 
   void sessionWithOptionsThatExcludeEachOther_hasAProblem() {
-    Session session = readSession(test::simulatedSession().toStdString());
+    Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     QCOMPARE(sessionProblems(session).size(), std::size_t(0));
     session.options.front_end.tracking.least_polarity_cosine = 0.9;
     const std::vector<SessionProblem> problems = sessionProblems(session);
@@ -144,7 +144,7 @@ class TestCalibrationDocument : public QObject {
 
   void run_isOutdatedByAChange_andNotByItsUndo() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     QVERIFY(!document.runIsOutdated());
     document.addRun({std::make_shared<CalibrationRun>(), document.session(), "log"});
     QVERIFY(!document.runIsOutdated());
@@ -156,24 +156,24 @@ class TestCalibrationDocument : public QObject {
 
   void runs_areKeptTwo_andGoWithTheSession() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     const auto first = std::make_shared<CalibrationRun>(), second = std::make_shared<CalibrationRun>();
     document.addRun({first, document.session(), {}});
     QVERIFY(!document.previous().run);
     document.addRun({second, document.session(), {}});
     QCOMPARE(document.last().run.get(), second.get());
     QCOMPARE(document.previous().run.get(), first.get());
-    document.open(test::simulatedSession());
+    document.open(evical::ui::test::simulatedSession());
     QVERIFY(!document.last().run && !document.previous().run);
   }
 
   void reference_isReadFromATruth() {
     CalibrationDocument document;
-    document.open(test::simulatedSession());
-    const QString truth = QFileInfo(test::simulatedSession()).path() + "/truth.yaml";
+    document.open(evical::ui::test::simulatedSession());
+    const QString truth = QFileInfo(evical::ui::test::simulatedSession()).path() + "/truth.yaml";
     document.loadReference(truth);
     QCOMPARE(document.reference()->named.cameras.at(0).name, std::string("left"));
-    QVERIFY_THROWS_EXCEPTION(CalibrationError, document.loadReference(test::simulatedSession()));
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, document.loadReference(evical::ui::test::simulatedSession()));
     QVERIFY(document.reference().has_value());
     document.forgetReference();
     QVERIFY(!document.reference().has_value());
@@ -181,7 +181,7 @@ class TestCalibrationDocument : public QObject {
 
   void intrinsicsThatTheRunFound_areItsOwn_andNotOutdated() {
     CalibrationDocument document;
-    Session session = readSession(test::simulatedSession().toStdString());
+    Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     const CameraIntrinsics known = *session.cameras[0].intrinsics;
     session.cameras[0].intrinsics.reset();
     document.startSession(session);
@@ -214,7 +214,7 @@ class TestCalibrationDocument : public QObject {
   void problems_nameTheField() {
     QFETCH(int, fault);
     QFETCH(QString, field);
-    Session session = readSession(test::simulatedSession().toStdString());
+    Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     if (fault == 1) session.recording.clear();
     if (fault == 2) session.recording = "/nowhere.bag";
     if (fault == 3) session.cameras.clear();

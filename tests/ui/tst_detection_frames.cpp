@@ -20,15 +20,15 @@ using namespace evical::ui::test;
 
 namespace {
 
-constexpr std::size_t kEvents = 0, kFrames = 1;
+constexpr std::size_t kDetectionFramesEvents = 0, kDetectionFramesFrames = 1;
 
 // All frames of the recording, and questions to ask of them.
-struct Asked {
+struct DetectionFramesAsked {
   EventWindowReader reader;
   FrameQuestion question;
 
-  explicit Asked(const Recorded& recorded)
-      : reader(recorded.session, kFrames, recorded.folder.path().toStdString(), [] {}) {
+  explicit DetectionFramesAsked(const Recorded& recorded)
+      : reader(recorded.session, kDetectionFramesFrames, recorded.folder.path().toStdString(), [] {}) {
     reader.read({});
     question.frames = reader.caches().frames;
     question.start_ns = reader.overview().start_ns;
@@ -91,15 +91,16 @@ class TestDetectionFrames : public QObject {
   }
 
   void reader_readsTheOtherKindAlong() {
-    for (const std::size_t camera : {kEvents, kFrames}) {
+    for (const std::size_t camera : {kDetectionFramesEvents, kDetectionFramesFrames}) {
       EventWindowReader reader(recorded_->session, camera, recorded_->folder.path().toStdString(), [] {});
       reader.read({});
       const RecordingOverview overview = reader.overview();
-      QCOMPARE(overview.kind, camera == kEvents ? CameraKind::Events : CameraKind::Frames);
-      QCOMPARE(*overview.companion, camera == kEvents ? kFrames : kEvents);
+      QCOMPARE(overview.kind, camera == kDetectionFramesEvents ? CameraKind::Events : CameraKind::Frames);
+      QCOMPARE(*overview.companion,
+               camera == kDetectionFramesEvents ? kDetectionFramesFrames : kDetectionFramesEvents);
       QCOMPARE(overview.start_ns, recorded_->pass.start_ns);
       const RecordingCaches caches = reader.caches();
-      QCOMPARE(caches.events->eventCount(), recorded_->pass.cameras[kEvents].events);
+      QCOMPARE(caches.events->eventCount(), recorded_->pass.cameras[kDetectionFramesEvents].events);
       QVERIFY(std::abs(static_cast<double>(caches.frames->count()) - 40.0) <= 1.0);  // 2 s at 20 Hz
       QVERIFY(std::abs(overview.read_until_s - 2.0) < 0.06);
     }
@@ -107,9 +108,9 @@ class TestDetectionFrames : public QObject {
 
   // Followed from as far away as the run did.
   void analysis_findsWhatTheRunFound() {
-    Asked asked(*recorded_);
-    const BoardObservations& run = recorded_->pass.cameras[kFrames];
-    const CameraIntrinsics& lens = *recorded_->session.cameras[kEvents].intrinsics;
+    DetectionFramesAsked asked(*recorded_);
+    const BoardObservations& run = recorded_->pass.cameras[kDetectionFramesFrames];
+    const CameraIntrinsics& lens = *recorded_->session.cameras[kDetectionFramesEvents].intrinsics;
     int views = 0, differing = 0;
     double furthest_px = 0.0;
     for (const WindowReport& window : run.windows) {
@@ -137,7 +138,7 @@ class TestDetectionFrames : public QObject {
   }
 
   void analysis_saysThatARunLeavesAFrameOut() {
-    Asked asked(*recorded_);
+    DetectionFramesAsked asked(*recorded_);
     int left_out = 0;
     for (asked.question.frame = 0; asked.question.frame < 10; ++asked.question.frame) {
       const WindowAnalysis analysis = analyseFrame(asked.question);
@@ -175,8 +176,9 @@ class TestDetectionFrames : public QObject {
     QFETCH(WindowOutcome, outcome);
     QFETCH(QString, stage);
     QFETCH(bool, points);
-    Asked asked(*recorded_);
-    QCOMPARE(asked.at(foundAt_s()).outcome, recorded_->pass.cameras[kFrames].windows[foundWindow()].outcome);
+    DetectionFramesAsked asked(*recorded_);
+    QCOMPARE(asked.at(foundAt_s()).outcome,
+             recorded_->pass.cameras[kDetectionFramesFrames].windows[foundWindow()].outcome);
     asked.change(recorded_->folder.path().toStdString(), frames);
     const WindowAnalysis analysis = asked.at(foundAt_s());
     QCOMPARE(analysis.outcome, outcome);
@@ -251,7 +253,7 @@ class TestDetectionFrames : public QObject {
                            [](const QComboBox* box) { return box->findText("Time surface") >= 0; });
     };
     QVERIFY(!modes()->isVisible());
-    screen.setCamera(kEvents);
+    screen.setCamera(kDetectionFramesEvents);
     QTRY_VERIFY_WITH_TIMEOUT(screen.view().frame() && !screen.view().frame()->photograph, 20000 * kSlowdown);
     QVERIFY(modes()->isVisible());
     QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->frame, 20000 * kSlowdown);
@@ -279,17 +281,19 @@ class TestDetectionFrames : public QObject {
     screen.show();
     screen.setSession(recorded_->session);
     screen.setRun(recorded_->run(), recorded_->session);
-    screen.setCamera(kFrames);
+    screen.setCamera(kDetectionFramesFrames);
   }
   // The last in which the run has seen the board.
   std::size_t foundWindow() const {
-    const BoardObservations& seen = recorded_->pass.cameras[kFrames];
+    const BoardObservations& seen = recorded_->pass.cameras[kDetectionFramesFrames];
     for (std::size_t k = 0; k < seen.windows.size(); ++k) {
       if (seen.windows[k].time_s == seen.views.back().time_s) return k;
     }
     qFatal("the run saw no board in frames");
   }
-  double foundAt_s() const { return recorded_->pass.cameras[kFrames].windows[foundWindow()].time_s; }
+  double foundAt_s() const {
+    return recorded_->pass.cameras[kDetectionFramesFrames].windows[foundWindow()].time_s;
+  }
 
   std::unique_ptr<Recorded> recorded_;
 };

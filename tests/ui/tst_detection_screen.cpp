@@ -27,13 +27,13 @@ using namespace evical::ui::test;
 namespace {
 
 // A burst band over the whole recording, and questions to ask of it.
-struct Asked {
+struct DetectionScreenAsked {
   const Recorded& recorded;
   EventWindowReader reader;
   std::unique_ptr<BurstBand> band;
   WindowQuestion question;
 
-  explicit Asked(const Recorded& from)
+  explicit DetectionScreenAsked(const Recorded& from)
       : recorded(from), reader(from.session, 0, from.folder.path().toStdString(), [] {}) {
     reader.read({});
     const RecordingOverview overview = reader.overview();
@@ -66,7 +66,7 @@ class TestDetectionScreen : public QObject {
   void initTestCase() { recorded_ = std::make_unique<Recorded>(); }
 
   void reader_findsWhatThePassRead() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     const RecordingOverview overview = asked.reader.overview();
     QVERIFY(overview.finished);
     QVERIFY2(overview.error.empty(), overview.error.c_str());
@@ -82,7 +82,7 @@ class TestDetectionScreen : public QObject {
   }
 
   void cache_givesWhatLiesBetweenTwoTimes() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     const auto cache = asked.reader.cache();
     std::vector<Event> all, part;
     cache->gather(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), all);
@@ -111,7 +111,7 @@ class TestDetectionScreen : public QObject {
 
   // The window's own options and the same bursts: the same circles, far within their sigma.
   void analysis_tracksAsThePassDid() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     int compared = 0;
     double worst = 0.0;
@@ -135,7 +135,7 @@ class TestDetectionScreen : public QObject {
   }
 
   void analysis_findsTheBoardFromNothing() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     int found = 0, asked_for = 0;
     double slowest_s = 0.0;
     const auto& windows = recorded_->pass.cameras.front().windows;
@@ -153,7 +153,7 @@ class TestDetectionScreen : public QObject {
 
   // What a changed option shows first, before the search from nothing: processor time, at 346 x 260.
   void analysis_firstAnswerTakesLessThanATenthOfASecond() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     double slowest_s = 0.0;
     const auto& windows = recorded_->pass.cameras.front().windows;
@@ -198,7 +198,7 @@ class TestDetectionScreen : public QObject {
   }
 
   void analysis_saysWhereItWasLost() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     asked.question.options.detection.try_both = false;
     asked.question.options.normal_flow.least_cluster_px = 10000;
     const WindowAnalysis analysis = asked.at(recorded_->pass.cameras.front().windows[40]);
@@ -211,7 +211,7 @@ class TestDetectionScreen : public QObject {
   }
 
   void analysis_saysWhyACircleIsNotMeasured() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     std::vector<int> bursts;
     for (const CircleObservation& circle : asked.at(recorded_->goodWindow()).trace().circles)
@@ -226,7 +226,7 @@ class TestDetectionScreen : public QObject {
 
   // Tracked, but with too few circles: not in the colour of success, nor in two minds about why.
   void missedWindow_isDrawnAsMissed_forOneReason() {
-    Asked asked(*recorded_);
+    DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     std::vector<int> bursts;
     for (const CircleObservation& circle : asked.at(recorded_->goodWindow()).trace().circles)

@@ -49,7 +49,7 @@ QList<QPointF> placesOf(const QImage& image, QRgb colour, int tolerance = 0) {
   return places;
 }
 
-void wheel(EventView& view, const QPointF& at, int steps) {
+void wheelForEventView(EventView& view, const QPointF& at, int steps) {
   QWheelEvent event(at, view.mapToGlobal(at), {}, {0, 120 * steps}, Qt::NoButton, Qt::NoModifier,
                     Qt::NoScrollPhase, false);
   QCoreApplication::sendEvent(&view, &event);
@@ -96,7 +96,7 @@ class TestEventView : public QObject {
     QCOMPARE(placesOf(view.grab().toImage(), theme().brighter.rgb()).size(), 0);
   }
 
-  // Each colour of the wheel lies where an edge of that colour moves to.
+  // Each colour of the wheelForEventView lies where an edge of that colour moves to.
   void caption_isWhole_whereItIsWiderThanTheView() {
     const auto rowsUnderCaption = [](int width_px) {
       EventView view;
@@ -165,10 +165,10 @@ class TestEventView : public QObject {
     view.setFrame(smallFrame());
     const QPointF at(200.0, 150.0);
     const QPointF before = view.sensorFromWidget(at);
-    wheel(view, at, 6);
+    wheelForEventView(view, at, 6);
     QVERIFY(view.scale() > 30.0);
     QVERIFY((view.sensorFromWidget(at) - before).manhattanLength() < 1e-9);
-    wheel(view, at, -40);
+    wheelForEventView(view, at, -40);
     QVERIFY(std::abs(view.scale() - 468.0 / 48.0) < 1e-9);  // never smaller than what fits
   }
 
@@ -178,7 +178,7 @@ class TestEventView : public QObject {
     view.show();
     view.setFrame(smallFrame());
     view.fit();
-    wheel(view, {320.0, 240.0}, 8);
+    wheelForEventView(view, {320.0, 240.0}, 8);
     const QPointF before = view.sensorFromWidget({0.0, 0.0});
     QTest::mousePress(&view, Qt::LeftButton, {}, {300, 200});
     QTest::mouseMove(&view, {340, 230});
@@ -230,7 +230,7 @@ class TestEventView : public QObject {
     }
     const double frame_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / kFrames;
     qInfo("%.1f ms a frame", frame_ms);
-    QVERIFY(frame_ms < 33.0 * test::slowness());
+    QVERIFY(frame_ms < 33.0 * evical::ui::test::slowness());
   }
 };
 

@@ -20,7 +20,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-constexpr std::size_t kEvents = 0, kFrames = 1;
+constexpr std::size_t kEventsOverFrameEvents = 0, kEventsOverFrameFrames = 1;
 
 const CameraIntrinsics kEventLens{
     CameraModel::PinholeRadtan, {346, 260}, {262.0, 263.0}, {172.0, 131.0}, {-0.3, 0.1, 0.0006, -0.0004}};
@@ -41,19 +41,19 @@ CalibrationState swayingState(double line_delay_us) {
     state.imu_in_world_m.control_points.emplace_back(0.15 + 0.05 * std::cos(phase), 0.25, -0.9);
   }
   state.cameras.resize(2);
-  state.cameras[kEvents].lens = givenLens(kEventLens);
-  state.cameras[kEvents].time_offset_s = 0.004;
-  state.cameras[kFrames].lens = givenLens(kFrameLens);
-  state.cameras[kFrames].time_offset_s = -0.021;
-  state.cameras[kFrames].line_delay_us = line_delay_us;
-  state.cameras[kFrames].reference_from_camera = {
+  state.cameras[kEventsOverFrameEvents].lens = givenLens(kEventLens);
+  state.cameras[kEventsOverFrameEvents].time_offset_s = 0.004;
+  state.cameras[kEventsOverFrameFrames].lens = givenLens(kFrameLens);
+  state.cameras[kEventsOverFrameFrames].time_offset_s = -0.021;
+  state.cameras[kEventsOverFrameFrames].line_delay_us = line_delay_us;
+  state.cameras[kEventsOverFrameFrames].reference_from_camera = {
       Eigen::Quaterniond(Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitY())), {0.06, -0.02, 0.01}};
   return state;
 }
 
 // Where the frame camera sees the point in the row that it sees it in.
 Eigen::Vector2d seenInFrame(const CalibrationState& state, const Eigen::Vector3d& point, double time_s) {
-  const CameraState& camera = state.cameras[kFrames];
+  const CameraState& camera = state.cameras[kEventsOverFrameFrames];
   Eigen::Vector2d pixel = *project(kFrameLens, *cameraFromWorldAt(state, camera, time_s) * point);
   for (int k = 0; k < 5; ++k) {
     const double row_time_s = time_s + 1e-6 * camera.line_delay_us * (pixel.y() - 511.5);
@@ -105,14 +105,15 @@ class TestEventsOverFrame : public QObject {
   void event_liesWhereTheFrameCameraSeesTheSamePointOfTheBoard() {
     QFETCH(double, line_delay_us);
     const auto state = std::make_shared<CalibrationState>(swayingState(line_delay_us));
-    EventsOverFrame transfer(state, kEvents, kFrames, kEventLens.resolution_px);
+    EventsOverFrame transfer(state, kEventsOverFrameEvents, kEventsOverFrameFrames, kEventLens.resolution_px);
     QCOMPARE(transfer.pixelsOfEvent(), 3);  // 900 of 262
     int compared = 0;
     for (double frame_time_s = 0.4; frame_time_s < 1.6; frame_time_s += 0.3) {
       transfer.setFrameTime(frame_time_s);
       for (const double before_s : {0.0, 0.0203, 0.0501}) {  // whole steps of poses
         const double time_s = std::round(1e4 * (transfer.eventTime_s(frame_time_s) - before_s)) * 1e-4;
-        const auto camera_from_world = *cameraFromWorldAt(*state, state->cameras[kEvents], time_s);
+        const auto camera_from_world =
+            *cameraFromWorldAt(*state, state->cameras[kEventsOverFrameEvents], time_s);
         for (const double x_m : {0.0, 0.1, 0.25}) {
           const Eigen::Vector3d point(x_m, 1.5 * x_m, 0.0);
           const auto at_px = project(kEventLens, camera_from_world * point);
@@ -131,14 +132,14 @@ class TestEventsOverFrame : public QObject {
 
   void event_withoutTrajectoryOrPlane_isNowhere() {
     auto state = std::make_shared<CalibrationState>(swayingState(0.0));
-    EventsOverFrame transfer(state, kEvents, kFrames, kEventLens.resolution_px);
+    EventsOverFrame transfer(state, kEventsOverFrameEvents, kEventsOverFrameFrames, kEventLens.resolution_px);
     transfer.setFrameTime(1.0);
     QVERIFY(transfer.pixelOf(170, 130, 1.0));
     QVERIFY(!transfer.pixelOf(170, 130, 7.0));
     transfer.setFrameTime(7.0);
     QVERIFY(!transfer.pixelOf(170, 130, 1.0));
-    state->cameras[kFrames].lens = {};
-    QVERIFY(!EventsOverFrame::isPossible(*state, kEvents, kFrames));
+    state->cameras[kEventsOverFrameFrames].lens = {};
+    QVERIFY(!EventsOverFrame::isPossible(*state, kEventsOverFrameEvents, kEventsOverFrameFrames));
   }
 
   // Events within the board lie where the frame has edges; with a wrong time offset they do not.
@@ -152,7 +153,7 @@ class TestEventsOverFrame : public QObject {
   void screen_saysWhyThereIsNoOverlay() {
     DetectionScreen screen;
     open(screen, nullptr);
-    screen.setCamera(kFrames);
+    screen.setCamera(kEventsOverFrameFrames);
     settle(screen);
     QVERIFY2(screen.whyNoOverlay().startsWith("Calibrate first"), qPrintable(screen.whyNoOverlay()));
     screen.setPicture(PictureChoice::Overlaid);
@@ -160,15 +161,15 @@ class TestEventsOverFrame : public QObject {
     QCOMPARE(screen.view().frame()->events, std::size_t{0});
     screen.setRun(run_, recorded_->session);
     QCOMPARE(screen.whyNoOverlay(), QString());
-    screen.setCamera(kEvents);
+    screen.setCamera(kEventsOverFrameEvents);
     QTRY_VERIFY_WITH_TIMEOUT(screen.whyNoOverlay().startsWith("Choose the camera with frames"),
                              20000 * kSlowdown);
   }
 
   void screen_showsBothKinds_data() {
     QTest::addColumn<std::size_t>("camera");
-    QTest::newRow("frames first") << kFrames;
-    QTest::newRow("events first") << kEvents;
+    QTest::newRow("frames first") << kEventsOverFrameFrames;
+    QTest::newRow("events first") << kEventsOverFrameEvents;
   }
   void screen_showsBothKinds() {
     QFETCH(std::size_t, camera);
@@ -180,13 +181,14 @@ class TestEventsOverFrame : public QObject {
     screen.setPicture(PictureChoice::SideBySide);
     QTRY_VERIFY_WITH_TIMEOUT(screen.companionView().isVisible() && screen.companionView().frame(),
                              20000 * kSlowdown);
-    QCOMPARE(screen.companionView().frame()->photograph.has_value(), camera == kEvents);
-    QCOMPARE(screen.view().frame()->photograph.has_value(), camera == kFrames);
-    const double offset_s =
-        run_->result.state.cameras[kFrames].time_offset_s - run_->result.state.cameras[kEvents].time_offset_s;
+    QCOMPARE(screen.companionView().frame()->photograph.has_value(), camera == kEventsOverFrameEvents);
+    QCOMPARE(screen.view().frame()->photograph.has_value(), camera == kEventsOverFrameFrames);
+    const double offset_s = run_->result.state.cameras[kEventsOverFrameFrames].time_offset_s -
+                            run_->result.state.cameras[kEventsOverFrameEvents].time_offset_s;
     const double apart_s = screen.companionView().frame()->time_s - screen.view().frame()->time_s;
-    if (camera == kFrames) QVERIFY(std::abs(apart_s - offset_s) < 1e-6);
-    if (camera == kEvents) QVERIFY(std::abs(apart_s + offset_s) < 0.026);  // the nearest of 20 Hz
+    if (camera == kEventsOverFrameFrames) QVERIFY(std::abs(apart_s - offset_s) < 1e-6);
+    if (camera == kEventsOverFrameEvents)
+      QVERIFY(std::abs(apart_s + offset_s) < 0.026);  // the nearest of 20 Hz
     screen.setPicture(PictureChoice::Alone);
     QVERIFY(!screen.companionView().isVisible());
   }
@@ -194,7 +196,7 @@ class TestEventsOverFrame : public QObject {
   void screen_drawsEventsOverTheFrame() {
     DetectionScreen screen;
     open(screen, run_);
-    screen.setCamera(kFrames);
+    screen.setCamera(kEventsOverFrameFrames);
     settle(screen);
     screen.setPicture(PictureChoice::Overlaid);
     QTRY_VERIFY_WITH_TIMEOUT(screen.view().frame()->events > 1000, 20000 * kSlowdown);
@@ -219,7 +221,7 @@ class TestEventsOverFrame : public QObject {
     DetectionScreen screen;
     open(screen, run_);
     screen.resize(size);
-    screen.setCamera(kFrames);
+    screen.setCamera(kEventsOverFrameFrames);
     screen.setLayerVisible(Layer::Grid, false);
     screen.setLayerVisible(Layer::Ellipses, false);
     settle(screen);
@@ -253,16 +255,17 @@ class TestEventsOverFrame : public QObject {
   // Of frames at the events of the 20 ms before each, where they are within the board's points, with the frames'
   // time offset off by so much.
   double meanSlope(double offset_error_s) const {
-    EventWindowReader reader(recorded_->session, kFrames, recorded_->folder.path().toStdString(), [] {});
+    EventWindowReader reader(recorded_->session, kEventsOverFrameFrames,
+                             recorded_->folder.path().toStdString(), [] {});
     reader.read({});
     const RecordingCaches caches = reader.caches();
     const std::int64_t start_ns = reader.overview().start_ns;
     auto state = std::make_shared<CalibrationState>(run_->result.state);
-    state->cameras[kFrames].time_offset_s += offset_error_s;
-    EventsOverFrame transfer(state, kEvents, kFrames, caches.events_px);
+    state->cameras[kEventsOverFrameFrames].time_offset_s += offset_error_s;
+    EventsOverFrame transfer(state, kEventsOverFrameEvents, kEventsOverFrameFrames, caches.events_px);
     double sum = 0.0;
     std::size_t count = 0;
-    for (const BoardView& view : run_->pass.cameras[kFrames].views) {
+    for (const BoardView& view : run_->pass.cameras[kEventsOverFrameFrames].views) {
       if (view.time_s < 0.3 || view.time_s > 1.7) continue;
       const GrayImage image = decodeFrame(
           caches.frames->frame(*caches.frames->nearest(start_ns + nanosecondsFrom(view.time_s))), "frame");

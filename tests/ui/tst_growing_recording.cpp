@@ -26,7 +26,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-QByteArray contentOf(const std::filesystem::path& path) {
+QByteArray contentOfGrowingRecording(const std::filesystem::path& path) {
   QFile file(QString::fromStdString(path.string()));
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
@@ -140,7 +140,7 @@ class TestGrowingRecording : public QObject {
   void card_goesAlongWithTheFile_toItsEnd() {
     QFETCH(const QString, suffix);
     Session session = sessionOf(suffix);
-    const QByteArray whole = contentOf(session.recording);
+    const QByteArray whole = contentOfGrowingRecording(session.recording);
     QVERIFY(whole.size() > 100000);
     const QString path = scratch_.filePath("growing." + suffix);
     Recorder recorder(path, whole);

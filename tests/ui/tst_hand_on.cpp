@@ -105,7 +105,7 @@ QString clipboard() {
   return QGuiApplication::clipboard()->text();
 }
 
-QByteArray contentOf(const QString& path) {
+QByteArray contentOfHandOn(const QString& path) {
   QFile file(path);
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
@@ -122,7 +122,7 @@ QByteArray saved(const std::vector<SavedForm>& forms, const QString& suffix) {
   QSignalSpy done(&saver, &FileSaver::saved);
   const QString path = folder.filePath("file." + suffix);
   saver.save(path, formOf(forms, suffix));
-  return done.wait(20000) ? contentOf(path) : QByteArray();
+  return done.wait(20000) ? contentOfHandOn(path) : QByteArray();
 }
 
 }  // namespace

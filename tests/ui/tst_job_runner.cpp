@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/other_load.h"
 #include "tests/ui/slowdown.h"
 
 #include <QSignalSpy>
@@ -15,7 +16,7 @@ using namespace evical::ui;
 
 namespace {
 
-constexpr int kPatience_ms = 5000 * kSlowdown;
+constexpr int kJobRunnerPatience_ms = 5000 * kSlowdown;
 
 // Works until it is asked to stop.
 void workUntilStopped(const RunContext& context) {
@@ -25,14 +26,14 @@ void workUntilStopped(const RunContext& context) {
   }
 }
 
-struct Watched {
+struct JobRunnerWatched {
   JobRunner runner;
   QSignalSpy finished{&runner, &JobRunner::finished};
   QSignalSpy failed{&runner, &JobRunner::failed};
   QSignalSpy progressed{&runner, &JobRunner::progressed};
 
   JobOutcome outcome() {
-    if (finished.isEmpty()) finished.wait(kPatience_ms);
+    if (finished.isEmpty()) finished.wait(kJobRunnerPatience_ms);
     return finished.isEmpty() ? JobOutcome::Failed : finished.last().at(0).value<JobOutcome>();
   }
   JobError error() const { return failed.isEmpty() ? JobError{} : failed.last().at(0).value<JobError>(); }
@@ -45,7 +46,7 @@ class TestJobRunner : public QObject {
 
  private slots:
   void work_runsInAnotherThread() {
-    Watched test;
+    JobRunnerWatched test;
     std::thread::id worker;
     QVERIFY(test.runner.start("Job", {}, [&](const RunContext&) { worker = std::this_thread::get_id(); }));
     QVERIFY(test.runner.running());
@@ -55,7 +56,7 @@ class TestJobRunner : public QObject {
   }
 
   void secondJob_isRefusedWhileOneRuns() {
-    Watched test;
+    JobRunnerWatched test;
     QVERIFY(test.runner.start("First", {}, workUntilStopped));
     QVERIFY(!test.runner.start("Second", {}, [](const RunContext&) {}));
     QCOMPARE(test.runner.title(), QString("First"));
@@ -67,7 +68,7 @@ class TestJobRunner : public QObject {
   }
 
   void progress_countsStagesByTheirShares() {
-    Watched test;
+    JobRunnerWatched test;
     test.runner.start("Job", {{"a", 1.0}, {"b", 3.0}}, [](const RunContext& context) {
       context.progress.stageStarted("a");
       context.progress.stageProgress(1.0);
@@ -85,7 +86,7 @@ class TestJobRunner : public QObject {
   }
 
   void progress_neverFalls() {
-    Watched test;
+    JobRunnerWatched test;
     test.runner.start("Job", {{"a", 1.0}}, [](const RunContext& context) {
       context.progress.stageStarted("a");
       for (const double fraction : {0.5, 0.2, 0.7, 2.0, -1.0}) {
@@ -104,7 +105,7 @@ class TestJobRunner : public QObject {
   }
 
   void manyReports_becomeFewSignals() {
-    Watched test;
+    JobRunnerWatched test;
     QSignalSpy lines(&test.runner, &JobRunner::logged);
     test.runner.start("Job", {{"a", 1.0}}, [](const RunContext& context) {
       context.progress.stageStarted("a");
@@ -120,15 +121,14 @@ class TestJobRunner : public QObject {
   }
 
   void cancel_isAnsweredWithinHalfASecond() {
-    Watched test;
+    JobRunnerWatched test;
     test.runner.start("Job", {}, workUntilStopped);
     QTest::qWait(50);
-    QElapsedTimer clock;
-    clock.start();
+    const evical::ui::test::ComputedTime since_cancel;
     test.runner.cancel();
     QVERIFY(test.runner.cancelling());
     QCOMPARE(test.outcome(), JobOutcome::Cancelled);
-    QVERIFY(clock.elapsed() < 500 * kSlowdown);
+    QVERIFY(since_cancel.elapsed_ms() < evical::ui::test::mostAfterCancel_ms());
     QVERIFY(test.failed.isEmpty());
   }
 
@@ -144,7 +144,7 @@ class TestJobRunner : public QObject {
   }
   void exception_becomesAnError() {
     QFETCH(int, kind);
-    Watched test;
+    JobRunnerWatched test;
     test.runner.start("Job", {}, [kind](const RunContext&) {
       if (kind == 0) throw badInput("a.bag", "is no recording", "Give a bag");
       if (kind == 1) throw calibrationFailed("left", "no board", "Show it");
@@ -184,7 +184,7 @@ class TestJobRunner : public QObject {
   }
 
   void inputsOfTheWork_areGoneWhenItHasFinished() {
-    Watched test;
+    JobRunnerWatched test;
     auto input = std::make_shared<int>(1);
     test.runner.start("Job", {}, [copy = input](const RunContext&) {});
     QCOMPARE(test.outcome(), JobOutcome::Done);

@@ -74,7 +74,7 @@ const QTreeWidgetItem* rowOf(const LensScreen& screen, const QString& name) {
   return found.isEmpty() ? nullptr : found.front();
 }
 
-QString allText(const QWidget& widget) {
+QString allTextForLensScreen(const QWidget& widget) {
   QString all;
   for (const QLabel* const label : widget.findChildren<QLabel*>())
     if (!label->isHidden()) all += label->text() + "\n";
@@ -117,13 +117,13 @@ class TestLensScreen : public QObject {
 
   void verdict_isInWords_withReasonAndAdvice() {
     LensScreen screen;
-    QVERIFY(allText(screen).contains("not calibrated yet"));
+    QVERIFY(allTextForLensScreen(screen).contains("not calibrated yet"));
     NamedIntrinsics doubtful = lens();
     doubtful.result.status = CalibrationStatus::Doubtful;
     doubtful.result.reason = "the focal length is known to 2 % only";
     screen.setLens(doubtful);
-    QVERIFY(allText(screen).contains("Camera calibrated, but doubtful"));
-    QVERIFY(allText(screen).contains("The focal length is known to 2 % only."));
+    QVERIFY(allTextForLensScreen(screen).contains("Camera calibrated, but doubtful"));
+    QVERIFY(allTextForLensScreen(screen).contains("The focal length is known to 2 % only."));
     QVERIFY(screen.findChild<QListWidget*>()->item(0)->text().contains("right edge"));
   }
 
@@ -140,7 +140,7 @@ class TestLensScreen : public QObject {
     const auto expected_px = projectionDifference(lens().result.intrinsics, otherLens().camera);
     const LensComparison comparison = compareLenses(lens().result, otherLens());
     QVERIFY(std::abs(comparison.rms_px - expected_px.rms_px) < 0.05 * expected_px.rms_px);
-    QVERIFY(allText(screen).contains(QString::number(comparison.rms_px, 'g', 2) + " px RMS"));
+    QVERIFY(allTextForLensScreen(screen).contains(QString::number(comparison.rms_px, 'g', 2) + " px RMS"));
     setAgainst(screen, "nothing");
     QVERIFY(tree->isColumnHidden(4));
   }
@@ -166,12 +166,13 @@ class TestLensScreen : public QObject {
     equidistant.camera.distortion = {};
     screen.setOthers({{"equidistant.yaml", equidistant}});
     QVERIFY(screen.findChild<QTreeWidget*>("lens_numbers")->isColumnHidden(4));
-    QVERIFY(allText(screen).contains("Their models differ"));
+    QVERIFY(allTextForLensScreen(screen).contains("Their models differ"));
     KnownIntrinsics larger = otherLens();
     larger.camera.resolution_px = {640, 480};
     screen.setOthers({{"vga.yaml", larger}});
-    QVERIFY2(allText(screen).contains("is for an image of 640 x 480 px, this one for 346 x 260 px"),
-             qPrintable(allText(screen)));
+    QVERIFY2(
+        allTextForLensScreen(screen).contains("is for an image of 640 x 480 px, this one for 346 x 260 px"),
+        qPrintable(allTextForLensScreen(screen)));
   }
 
   void maps_sayWhatTheyShowWhereThePointerIs() {
@@ -196,14 +197,14 @@ class TestLensScreen : public QObject {
     QVERIFY2(at(0.25, 0.5).endsWith(": 12"), qPrintable(at(0.25, 0.5)));
     QVERIFY2(at(0.75, 0.5).endsWith(": 0"), qPrintable(at(0.75, 0.5)));
     QVERIFY((*coverage)->textAt({1, (*coverage)->height() - 1}).isEmpty());
-    QVERIFY(allText(screen).contains("50 % of the image"));
+    QVERIFY(allTextForLensScreen(screen).contains("50 % of the image"));
     auto* const views = screen.findChild<ViewsChart*>();
     tabs->setCurrentIndex(2);
     QVERIFY(views->textAt(views->placeOf(1).toPoint()).contains("1.20 m away, tilted by 31 deg"));
     screen.setOthers({{"factory.yaml", otherLens()}});
     for (int tab = 0; tab < tabs->count(); ++tab) {
       tabs->setCurrentIndex(tab);
-      QVERIFY(screen.grab().save(ui::test::screenshotPath("lens_%1.png").arg(tab)));
+      QVERIFY(screen.grab().save(evical::ui::test::screenshotPath("lens_%1.png").arg(tab)));
     }
   }
 

@@ -41,7 +41,7 @@ void writeFile(const QString& path, const QByteArray& content) {
   file.write(content);
 }
 
-QByteArray contentOf(const QString& path) {
+QByteArray contentOfMainWindowBadInput(const QString& path) {
   QFile file(path);
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
@@ -251,7 +251,7 @@ class TestMainWindowBadInput : public QObject {
     test.window.files().open(simulatedSession());
     const QString good = test.document().file();
     const QString bad = scratch_.filePath("unknown.yaml");
-    writeFile(bad, contentOf(simulatedSession()) + "\nrecordings: a.bag\n");
+    writeFile(bad, contentOfMainWindowBadInput(simulatedSession()) + "\nrecordings: a.bag\n");
     test.window.files().open(bad);
     auto* const panel = test.child<ErrorPanel>();
     QVERIFY(panel->isVisible());

@@ -22,12 +22,12 @@ using namespace evical::ui;
 namespace {
 
 // A form over options, as the window wires it to the document.
-struct Fixture {
+struct OptionFormFixture {
   CalibrationOptions options;
   OptionForm form;
   QSignalSpy edited{&form, &OptionForm::edited};
 
-  Fixture() {
+  OptionFormFixture() {
     form.resize(340, 700);
     form.setRows(optionRows(options));
     QObject::connect(&form, &OptionForm::edited, &form, [this](const QString& name, const QString& value) {
@@ -66,7 +66,7 @@ class TestOptionForm : public QObject {
   void initTestCase() { applyTheme(*qApp, Appearance::Light); }
 
   void everyOption_hasAnEditorWithHelpUnitAndRange() {
-    Fixture test;
+    OptionFormFixture test;
     test.form.showExpert(true);
     const std::vector<OptionRow> rows = optionRows();
     for (const OptionRow& row : rows) {
@@ -82,7 +82,7 @@ class TestOptionForm : public QObject {
   }
 
   void typedNumber_isSaid_andMarkedAsChanged() {
-    Fixture test;
+    OptionFormFixture test;
     test.type("grid.least_circles", "9");
     QCOMPARE(test.edited.count(), 1);
     QCOMPARE(test.options.front_end.grid.least_circles, 9);
@@ -90,7 +90,7 @@ class TestOptionForm : public QObject {
   }
 
   void numberOutOfRange_isRefusedNextToTheField_untilItIsMended() {
-    Fixture test;
+    OptionFormFixture test;
     const int before = test.options.front_end.grid.least_circles;
     test.type("grid.least_circles", "-3");
     QCOMPARE(test.options.front_end.grid.least_circles, before);
@@ -106,7 +106,7 @@ class TestOptionForm : public QObject {
   }
 
   void slider_turnsTheNumber_andIsTurnedByIt() {
-    Fixture test;
+    OptionFormFixture test;
     auto* const slider = test.form.editor("detection.window_travel_px")->findChild<OptionSlider*>();
     slider->setValue(slider->maximum());
     QCOMPARE(test.options.front_end.detection.window_travel_px, 20.0);
@@ -120,7 +120,7 @@ class TestOptionForm : public QObject {
   }
 
   void slider_ofWholeNumbersHasNoOthers_andOfSeveralPowersStepsInPowers() {
-    Fixture test;
+    OptionFormFixture test;
     auto* const whole = test.form.editor("intrinsics.radtan_coefficients")->findChild<OptionSlider*>();
     QCOMPARE(whole->maximum() - whole->minimum(), 1);
     auto* const powers = test.form.editor("normal_flow.fastest_px_s")->findChild<OptionSlider*>();
@@ -135,7 +135,7 @@ class TestOptionForm : public QObject {
 
   // Every position of every slider is a value that the option takes.
   void slider_endsAreWithinTheRange() {
-    Fixture test;
+    OptionFormFixture test;
     for (const OptionRow& row : optionRows()) {
       auto* const slider = test.form.editor(QString::fromStdString(row.name))->findChild<OptionSlider*>();
       if (slider == nullptr) continue;
@@ -151,7 +151,7 @@ class TestOptionForm : public QObject {
   }
 
   void searchedWords_standOut() {
-    Fixture test;
+    OptionFormFixture test;
     QTest::keyClicks(test.search(), "least circ");
     QVERIFY(test.allText("grid.least_circles").contains("background-color"));
     test.search()->clear();
@@ -159,7 +159,7 @@ class TestOptionForm : public QObject {
   }
 
   void optionWithoutEffect_saysWhy() {
-    Fixture test;
+    OptionFormFixture test;
     test.form.setIdle({{"grid.least_circles", "there is no board"}});
     QVERIFY(test.allText("grid.least_circles").contains("No effect here: there is no board."));
     test.form.setIdle({});
@@ -167,7 +167,7 @@ class TestOptionForm : public QObject {
   }
 
   void optionThatAnotherExcludes_isRefusedNextToBoth_untilOneIsMended() {
-    Fixture test;
+    OptionFormFixture test;
     const QString lower = "detection.shortest_window_s", upper = "detection.longest_window_s";
     const QString said = "detection.shortest_window_s (0.1 s) is above detection.longest_window_s (0.05 s)";
     test.type(lower, "0.1");
@@ -190,7 +190,7 @@ class TestOptionForm : public QObject {
   }
 
   void resetThatAnotherExcludes_isRefusedNextToBoth() {
-    Fixture test;
+    OptionFormFixture test;
     test.type("detection.longest_window_s", "0.15");
     test.type("detection.shortest_window_s", "0.1");
     QTest::mouseClick(test.form.editor("detection.longest_window_s")->findChild<QToolButton*>(),
@@ -201,7 +201,7 @@ class TestOptionForm : public QObject {
   }
 
   void expertOptions_areShownWhenAskedFor() {
-    Fixture test;
+    OptionFormFixture test;
     QStringList common, all;
     for (const OptionRow& row : optionRows()) {
       all << QString::fromStdString(row.name);
@@ -217,7 +217,7 @@ class TestOptionForm : public QObject {
   }
 
   void expertOption_thatIsChangedOrSearchedFor_isShown() {
-    Fixture test;
+    OptionFormFixture test;
     QVERIFY(!test.form.shownOptions().contains("tracking.gate_ratio"));
     test.search()->setText("gate_ratio");
     QCOMPARE(test.form.shownOptions(), QStringList{"tracking.gate_ratio"});
@@ -229,7 +229,7 @@ class TestOptionForm : public QObject {
   }
 
   void reset_bringsTheDefaultBack() {
-    Fixture test;
+    OptionFormFixture test;
     const int before = test.options.front_end.grid.least_circles;
     test.type("grid.least_circles", "9");
     OptionEditor* const editor = test.form.editor("grid.least_circles");
@@ -240,7 +240,7 @@ class TestOptionForm : public QObject {
   }
 
   void switchesAndChoices_areBoxes() {
-    Fixture test;
+    OptionFormFixture test;
     int switches = 0, choices = 0;
     for (const OptionRow& row : optionRows()) {
       OptionEditor* const editor = test.form.editor(QString::fromStdString(row.name));
@@ -256,7 +256,7 @@ class TestOptionForm : public QObject {
   }
 
   void search_leavesWhatMatchesInNameOrHelp() {
-    Fixture test;
+    OptionFormFixture test;
     test.form.showExpert(true);
     QTest::keyClicks(test.search(), "least circles");
     QVERIFY(test.form.shownOptions().contains("grid.least_circles"));
@@ -268,7 +268,7 @@ class TestOptionForm : public QObject {
   }
 
   void rowsFromElsewhere_areShown() {
-    Fixture test;
+    OptionFormFixture test;
     setOption(test.options, "grid.least_circles", "11");
     test.form.setRows(optionRows(test.options));
     QCOMPARE(test.field("grid.least_circles")->text(), QString("11"));
@@ -293,24 +293,24 @@ class TestOptionForm : public QObject {
     QFETCH(bool, dark);
     QFETCH(bool, expert);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
-    Fixture test;
+    OptionFormFixture test;
     test.form.showExpert(expert);
     for (QToolButton* const heading : test.form.findChildren<QToolButton*>("group"))
       if (heading->text() == "Detection" || heading->text().contains("solver")) heading->setChecked(true);
     test.type("detection.shortest_window_s", "0.1");
     QTest::qWait(50);
     QVERIFY(test.form.minimumSizeHint().width() <= 340);
-    QVERIFY(
-        test.form.grab().save(ui::test::screenshotPath("option_form_%1.png").arg(QTest::currentDataTag())));
+    QVERIFY(test.form.grab().save(
+        evical::ui::test::screenshotPath("option_form_%1.png").arg(QTest::currentDataTag())));
     applyTheme(*qApp, Appearance::Light);
   }
 
   void form_fitsIntoItsDock() {
-    Fixture test;
+    OptionFormFixture test;
     test.search()->setText("circle");
     QTest::qWait(50);
     QVERIFY(test.form.minimumSizeHint().width() <= 340);
-    QVERIFY(test.form.grab().save(ui::test::screenshotPath("option_form.png")));
+    QVERIFY(test.form.grab().save(evical::ui::test::screenshotPath("option_form.png")));
   }
 };
 

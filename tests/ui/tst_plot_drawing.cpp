@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a plot draws, and how fast.
+#include "tests/support/processor_time.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/plot_hands.h"
@@ -68,9 +69,9 @@ void TestPlotDrawing::longLines_areDrawnFluently() {
   std::vector<double> times_ms;
   for (int k = 0; k < 15; ++k) {
     panel.setXRange(0.1 * k, 30.0 - 0.3 * k);
-    const double before_ms = cpuTime_ms();
+    const double before_ms = 1e3 * evical::test::threadCpu_s();
     panel.redraw();
-    times_ms.push_back(cpuTime_ms() - before_ms);
+    times_ms.push_back(1e3 * evical::test::threadCpu_s() - before_ms);
   }
   const double least_ms = *std::min_element(times_ms.begin(), times_ms.end());
   QVERIFY2(least_ms < 33.0 * slowness(),
@@ -158,9 +159,9 @@ void TestPlotDrawing::manyPoints_areDrawnFluently() {
   panel.redraw();
   double least_ms = 1e9;
   for (int k = 0; k < 10; ++k) {
-    const double before_ms = cpuTime_ms();
+    const double before_ms = 1e3 * evical::test::threadCpu_s();
     panel.redraw();
-    least_ms = std::min(least_ms, cpuTime_ms() - before_ms);
+    least_ms = std::min(least_ms, 1e3 * evical::test::threadCpu_s() - before_ms);
   }
   qInfo("%.1f ms", least_ms);
   QVERIFY2(least_ms < 33.0 * slowness(), qPrintable(QString::number(least_ms)));

@@ -29,14 +29,14 @@ using namespace evical::ui;
 namespace {
 
 // The screen over a session, as the window wires it.
-struct Fixture {
+struct RecordingScreenFixture {
   Session session;
   std::shared_ptr<const Inspection> inspection;
   RecordingScreen screen;
   QStringList edits;
 
-  Fixture() {
-    session = readSession(test::simulatedSession().toStdString());
+  RecordingScreenFixture() {
+    session = readSession(evical::ui::test::simulatedSession().toStdString());
     const auto reader = openRecording(session.recording);
     inspection = std::make_shared<Inspection>(inspectRecording(*reader));
     QObject::connect(&screen, &RecordingScreen::sessionEdited, &screen,
@@ -79,7 +79,7 @@ class TestRecordingScreen : public QObject {
   void initTestCase() { applyTheme(*qApp, Appearance::Light); }
 
   void streams_areListedWithRatesAndRoles() {
-    Fixture test;
+    RecordingScreenFixture test;
     QCOMPARE(test.streams()->rowCount(), 2);
     QStringList all;
     for (int row = 0; row < 2; ++row)
@@ -92,7 +92,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void role_ignored_takesTheSensorOut_andBack() {
-    Fixture test;
+    RecordingScreenFixture test;
     const int imu_row = test.streams()->role(0) == StreamRole::Imu ? 0 : 1;
     test.choose(imu_row, StreamRole::Ignore);
     QVERIFY(test.session.imus.empty());
@@ -103,7 +103,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void framesAndPoints_mayBeCameras() {
-    Fixture test;
+    RecordingScreenFixture test;
     StreamSummary frames;
     frames.info.name = "/cam0/image_raw";
     frames.info.type = StreamType::Frames;
@@ -127,7 +127,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void role_isReadInFull() {
-    Fixture test;
+    RecordingScreenFixture test;
     QApplication::processEvents();
     for (int row = 0; row < test.streams()->rowCount(); ++row) {
       const auto* const box = test.streams()->cellWidget(row, 0)->findChild<QComboBox*>();
@@ -136,17 +136,17 @@ class TestRecordingScreen : public QObject {
   }
 
   void board_isEdited() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
     form->findChildren<QSpinBox*>().at(0)->setValue(9);
     QCOMPARE(test.session.board.rows, 9);
-    Fixture::type(form->findChildren<NumberField*>().at(0), "35.5");
+    RecordingScreenFixture::type(form->findChildren<NumberField*>().at(0), "35.5");
     QCOMPARE(test.session.board.spacing_m, 0.0355);
     QCOMPARE(test.edits.size(), 2);
   }
 
   void boardOfAnotherType_hasItsOwnSizes() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
     QComboBox* const type = form->findChildren<QComboBox*>().at(0);
     NumberField *const radius = form->findChildren<NumberField*>().at(3),
@@ -160,7 +160,7 @@ class TestRecordingScreen : public QObject {
     QVERIFY(test.session.board.type == BoardType::AprilGrid && test.session.board.radius_m == 0.0);
     QVERIFY(!radius->isVisible() && tag->isVisible());
     validate(test.session.board);
-    Fixture::type(tag, "30");
+    RecordingScreenFixture::type(tag, "30");
     QCOMPARE(test.session.board.tag_size_m, 0.03);
     choose("Asymmetric (staggered)");
     QVERIFY(test.session.board.tag_size_m == 0.0 && test.session.board.radius_m > 0.0);
@@ -200,7 +200,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void boardMeasuredOverManySpacings_tellsSpacingAndSigma() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
     auto* const measured = form->findChild<QCheckBox*>();
     NumberField* const spacing = form->findChildren<NumberField*>().at(0);
@@ -211,12 +211,12 @@ class TestRecordingScreen : public QObject {
     measured->click();
     QVERIFY(test.session.measured == (MeasuredLength{10, 10 * test.session.board.spacing_m, 0.0005}));
     QVERIFY(!spacing->isEnabled() && length->isVisible());
-    Fixture::type(length, "352");
+    RecordingScreenFixture::type(length, "352");
     QCOMPARE(test.session.board.spacing_m, 0.352 / 10);
     QCOMPARE(spacing->text(), QString("35.2"));
     spacings->setValue(8);
     QCOMPARE(test.session.board.spacing_m, 0.352 / 8);
-    Fixture::type(sigma, "0.2");
+    RecordingScreenFixture::type(sigma, "0.2");
     QCOMPARE(test.session.options.optimisation.board_spacing_sigma, 0.0002 / 0.352);
     QCOMPARE(test.edits.size(), 4);
     measured->click();
@@ -226,16 +226,16 @@ class TestRecordingScreen : public QObject {
   }
 
   void timeRange_isEdited_andEmptyMeansAll() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const begin = test.screen.findChild<QLineEdit*>("time_range_begin");
     auto* const end = test.screen.findChild<QLineEdit*>("time_range_end");
     auto* const words = test.screen.findChild<QLabel*>("time_range_words");
     QVERIFY(words->text().contains("All of the recording"));
-    Fixture::type(begin, "0.5");
+    RecordingScreenFixture::type(begin, "0.5");
     QVERIFY(test.session.time_range_s.has_value());
     QCOMPARE((*test.session.time_range_s)[0], 0.5);
     QVERIFY((*test.session.time_range_s)[1] > 3.0);  // the recording's end
-    Fixture::type(end, "2,5");
+    RecordingScreenFixture::type(end, "2,5");
     QCOMPARE((*test.session.time_range_s)[1], 2.5);
     QVERIFY2(words->text().startsWith("2 s"), qPrintable(words->text()));
     QTest::mouseClick(test.screen.findChild<TimeRangeForm*>()->findChild<QToolButton*>(), Qt::LeftButton);
@@ -268,7 +268,7 @@ class TestRecordingScreen : public QObject {
     QFETCH(QString, begin);
     QFETCH(QString, end);
     QFETCH(QString, words);
-    Fixture test;
+    RecordingScreenFixture test;
     test.session.time_range_s = {0.25, 1.75};
     test.screen.setSession(test.session);
     test.edits.clear();
@@ -285,7 +285,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void units_areTheFormats_untilTheyAreGiven() {
-    Fixture test;
+    RecordingScreenFixture test;
     test.session.imus[0].angular_rate_unit.reset();
     test.session.imus[0].acceleration_unit.reset();
     test.screen.setSession(test.session);
@@ -301,7 +301,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void noisePreset_setsBothDensities_andNoMore() {
-    Fixture test;
+    RecordingScreenFixture test;
     test.session.imus[0].noise.gyroscope_random_walk = 2e-5;
     test.screen.setSession(test.session);
     auto* const presets = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>().at(0);
@@ -314,19 +314,19 @@ class TestRecordingScreen : public QObject {
   }
 
   void numberThatIsNone_isMarked_andGivesWayToTheOneThatHolds() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const density = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().at(0);
-    Fixture::type(density, "much");
+    RecordingScreenFixture::type(density, "much");
     QVERIFY(density->hasRefused());
     QVERIFY(test.edits.isEmpty());
     QCOMPARE(density->text().toDouble(), test.session.imus[0].noise.gyroscope_density);
-    Fixture::type(density, "2e-4");
+    RecordingScreenFixture::type(density, "2e-4");
     QVERIFY(!density->hasRefused());
     QCOMPARE(test.session.imus[0].noise.gyroscope_density, 2e-4);
   }
 
   void intrinsics_areReadFromAFile() {
-    Fixture test;
+    RecordingScreenFixture test;
     QTemporaryDir folder;
     QFile file(folder.filePath("camera.yaml"));
     QVERIFY(file.open(QIODevice::WriteOnly));
@@ -337,13 +337,13 @@ class TestRecordingScreen : public QObject {
     auto* const form = test.screen.findChild<CameraForm*>();
     form->loadIntrinsics(file.fileName());
     QCOMPARE(test.session.cameras[0].intrinsics->focal_length_px.x(), 300.0);
-    form->loadIntrinsics(test::simulatedSession());
+    form->loadIntrinsics(evical::ui::test::simulatedSession());
     QVERIFY(!test.problems().isEmpty());
     QCOMPARE(test.session.cameras[0].intrinsics->focal_length_px.x(), 300.0);
   }
 
   void intrinsics_mayBeLeftToTheRecording() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const form = test.screen.findChild<CameraForm*>();
     auto* const model = form->findChild<QComboBox*>();
     const auto choose = [&](int index) {
@@ -361,7 +361,7 @@ class TestRecordingScreen : public QObject {
 
   // The fields are those of the model, and start as a lens of that model does.
   void coefficients_areThoseOfTheModel() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const form = test.screen.findChild<CameraForm*>();
     auto* const model = form->findChild<QComboBox*>();
     const double focal_px = test.session.cameras[0].intrinsics->focal_length_px.x();
@@ -381,15 +381,15 @@ class TestRecordingScreen : public QObject {
   }
 
   void rename_keepsTheReference() {
-    Fixture test;
+    RecordingScreenFixture test;
     auto* const name = test.screen.findChild<ImuForm*>()->findChildren<QLineEdit*>().at(0);
-    Fixture::type(name, "handheld");
+    RecordingScreenFixture::type(name, "handheld");
     QCOMPARE(test.session.imus[0].name, std::string("handheld"));
     QCOMPARE(test.session.reference, std::string("handheld"));
   }
 
   void shutterAndSensor_areChosen() {
-    Fixture test;
+    RecordingScreenFixture test;
     SessionCamera frames;
     frames.name = "frames";
     frames.stream = "/davis_left/image_raw";
@@ -411,14 +411,14 @@ class TestRecordingScreen : public QObject {
     QVERIFY(test.session.cameras[1].shutter == Shutter::Rolling);
     choose("same_sensor_as", 1);
     QCOMPARE(test.session.cameras[1].same_sensor_as, first.toStdString());
-    Fixture::type(nameOf(formOf(first)), "davis");
+    RecordingScreenFixture::type(nameOf(formOf(first)), "davis");
     QCOMPARE(test.session.cameras[1].same_sensor_as, std::string("davis"));
     // Which another camera's sensor is cannot be another's.
     QCOMPARE(formOf("davis")->findChild<QComboBox*>("same_sensor_as")->count(), 1);
   }
 
   void problems_areSaidAtTheirFields() {
-    Fixture test;
+    RecordingScreenFixture test;
     test.screen.setProblems({{"cameras.left.intrinsics", "no intrinsics"}, {"board", "circles touch"}});
     const auto ofBoard = test.screen.findChild<BoardForm*>()->findChildren<QLabel*>();
     QVERIFY(std::any_of(ofBoard.begin(), ofBoard.end(),
@@ -429,7 +429,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void sensorsOfAnotherFile_areListedAndUsed() {
-    Fixture test;
+    RecordingScreenFixture test;
     const QString other = "/elsewhere/other.bag";
     auto* const clock_offset = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().last();
     QVERIFY(!clock_offset->isVisibleTo(&test.screen));
@@ -448,12 +448,12 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.streams()->role(2 + imu_row), StreamRole::Imu);
     auto* const offset = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().last();
     QVERIFY(offset->isVisibleTo(offset->parentWidget()));
-    Fixture::type(offset, "-12.5");
+    RecordingScreenFixture::type(offset, "-12.5");
     QCOMPARE(test.session.imus[0].clock_offset_s, -12.5);
   }
 
   void missingSensors_areTakenFromAnotherRecording() {
-    Fixture test;
+    RecordingScreenFixture test;
     Session session = test.session;
     QCOMPARE(withMissingSensors(session, "other.bag", *test.inspection).imus.size(), std::size_t{1});
     session.imus.clear();
@@ -465,7 +465,7 @@ class TestRecordingScreen : public QObject {
   }
 
   void guessedSession_takesTheStreamsAsTheyAre() {
-    Fixture test;
+    RecordingScreenFixture test;
     const Session guessed = guessedSession("some.bag", *test.inspection);
     QCOMPARE(guessed.cameras.at(0).stream, std::string("/davis_left/events"));
     QCOMPARE(guessed.cameras.at(0).name, std::string("davis_left"));

@@ -128,13 +128,11 @@ class TestRepeatPage : public QObject {
     QTest::mouseClick(button(test, "start_repeat"), Qt::LeftButton);
     QVERIFY2(test.runner().running(), qPrintable(test.child<ErrorPanel>()->text()));
     spin(300);
-    const OtherLoad others;
-    QElapsedTimer since_cancel;
-    since_cancel.start();
+    const ComputedTime since_cancel;
     QTest::mouseClick(button(test, "cancel_repeat"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
-    const int most_ms = (others.quiet() ? 500 : 3000) * kSlowdown;
-    QVERIFY2(since_cancel.elapsed() < most_ms, qPrintable(QString::number(since_cancel.elapsed())));
+    QVERIFY2(since_cancel.elapsed_ms() < mostAfterCancel_ms(),
+             qPrintable(QString::number(since_cancel.elapsed_ms())));
   }
   void shows(WindowFixture& test, const Repeatability& repeat) {
     auto* const screen = test.child<RepeatScreen>();

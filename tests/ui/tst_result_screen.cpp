@@ -30,7 +30,7 @@ const ParameterRow* find(const std::vector<ParameterGroup>& groups, const QStrin
   return nullptr;
 }
 
-QString allText(const QWidget& widget) {
+QString allTextForResultScreen(const QWidget& widget) {
   QString all;
   for (const QLabel* const label : widget.findChildren<QLabel*>())
     if (!label->isHidden()) all += label->text() + "\n";
@@ -143,12 +143,12 @@ class TestResultScreen : public QObject {
     ResultScreen screen;
     screen.resize(1040, 660);
     screen.show();
-    QVERIFY(allText(screen).contains("No calibration yet"));
+    QVERIFY(allTextForResultScreen(screen).contains("No calibration yet"));
     screen.setResult(result_);
-    QVERIFY(allText(screen).contains("Calibrated"));
-    QVERIFY(allText(screen).contains("px RMS"));
+    QVERIFY(allTextForResultScreen(screen).contains("Calibrated"));
+    QVERIFY(allTextForResultScreen(screen).contains("px RMS"));
     screen.setOutdated(true);
-    QVERIFY(allText(screen).contains("has changed"));
+    QVERIFY(allTextForResultScreen(screen).contains("has changed"));
   }
 
   void reference_addsItsColumns_andOtherSensorsAreExplained() {
@@ -163,7 +163,7 @@ class TestResultScreen : public QObject {
     other.cameras = {{"right"}};
     screen.setReference(other, "other.yaml");
     QVERIFY(table->isColumnHidden(4));
-    QVERIFY(allText(screen).contains("cannot be compared"));
+    QVERIFY(allTextForResultScreen(screen).contains("cannot be compared"));
   }
 
   void correlation_namesItsStrongestPair() {

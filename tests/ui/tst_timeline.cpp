@@ -40,7 +40,7 @@ void fill(Timeline& timeline) {
   timeline.setWindows(hundredWindows());
 }
 
-void wheel(Timeline& timeline, double x, int steps, Qt::KeyboardModifiers modifiers = {}) {
+void wheelForTimeline(Timeline& timeline, double x, int steps, Qt::KeyboardModifiers modifiers = {}) {
   const QPointF at(x, 50.0);
   QWheelEvent event(at, timeline.mapToGlobal(at), {}, {0, 120 * steps}, Qt::NoButton, modifiers,
                     Qt::NoScrollPhase, false);
@@ -111,11 +111,11 @@ class TestTimeline : public QObject {
     Timeline timeline;
     fill(timeline);
     const double x = timeline.xOf(7.0);
-    wheel(timeline, x, 5);
+    wheelForTimeline(timeline, x, 5);
     QVERIFY(timeline.visibleEnd_s() - timeline.visibleBegin_s() < 3.0);
     QVERIFY(std::abs(timeline.timeOf(x) - 7.0) < 1e-6);
     const double begin_s = timeline.visibleBegin_s();
-    wheel(timeline, x, 1, Qt::ShiftModifier);
+    wheelForTimeline(timeline, x, 1, Qt::ShiftModifier);
     QVERIFY(timeline.visibleBegin_s() < begin_s);
     QTest::mouseDClick(&timeline, Qt::LeftButton, {}, at(timeline, 7.0));
     QCOMPARE(timeline.visibleBegin_s(), 0.0);
@@ -195,7 +195,8 @@ class TestTimeline : public QObject {
     timeline.setEventRate(events);
     timeline.setRotationRate(rotation);
     timeline.setTime(3.21);
-    QVERIFY(timeline.grab().save(ui::test::screenshotPath("timeline_%1.png").arg(dark ? "dark" : "light")));
+    QVERIFY(timeline.grab().save(
+        evical::ui::test::screenshotPath("timeline_%1.png").arg(dark ? "dark" : "light")));
     QApplication::setPalette(QPalette());
   }
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/test_program.h"
+#include "tests/ui/opengl.h"
 #include "ui/scene/turntable_camera.h"
 #include "ui/scene/view3d.h"
 
@@ -72,12 +73,6 @@ int countPixels(const QImage& image, QRgb colour) {
   return count;
 }
 
-bool hasOpenGl() {
-  View3D view;
-  view.grab();
-  return view.problem().isEmpty();
-}
-
 }  // namespace
 
 class TestView3D : public QObject {
@@ -140,7 +135,7 @@ void TestView3D::pan_movesThePictureByTheStepOnScreen() {
 }
 
 void TestView3D::project_agreesWithThePicture() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView square;
   square.view.look(StandardView::Home);
   const QImage image = square.image();
@@ -156,7 +151,7 @@ void TestView3D::project_agreesWithThePicture() {
 }
 
 void TestView3D::picture_followsTheSize() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView square;
   const int small = countPixels(square.image(), qRgb(255, 0, 0));
   square.view.resize(800, 600);
@@ -167,7 +162,7 @@ void TestView3D::picture_followsTheSize() {
 }
 
 void TestView3D::picture_isTheSameAfterALongWay() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView square;
   const QImage before = square.image();
   for (int k = 0; k < 5; ++k) QTest::keyClick(&square.view, Qt::Key_Left);
@@ -177,7 +172,7 @@ void TestView3D::picture_isTheSameAfterALongWay() {
 }
 
 void TestView3D::drag_turnsTheView() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView square;
   QSignalSpy turned(&square.view, &View3D::turned);
   const QImage before = square.image();
@@ -247,7 +242,7 @@ void TestView3D::click_isNoDrag() {
 }
 
 void TestView3D::overlay_isPaintedOnTop() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView square;
   square.view.setOverlay([](QPainter& painter) { painter.fillRect(QRect(195, 145, 10, 10), Qt::green); });
   const QImage image = square.image();
@@ -256,7 +251,7 @@ void TestView3D::overlay_isPaintedOnTop() {
 }
 
 void TestView3D::views_comeAndGo() {
-  if (!hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
   SquareView stays;
   const QImage before = stays.image();
   for (int k = 0; k < 20; ++k) {
