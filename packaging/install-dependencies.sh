@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
-# Installs what building and testing Evical needs, from Debian 12's own packages. Does nothing, and asks for no rights,
-# when all of it is there. With --list it only prints the names; --fuzz in front adds what packaging/fuzz.sh needs.
+# Installs Debian 12 packages: packaging/install-dependencies.sh [LIST...]. Lists:
+#   run      what building and running the programs needs (without a list: this one)
+#   test     what packaging/test.sh needs besides: it includes run and package
+#   package  what makes and checks Debian packages
+#   fuzz     clang for packaging/fuzz.sh
+# Does nothing, and needs no rights, if all packages are installed. With --list in front it only prints their names.
 set -euo pipefail
 
-packages=(
+run=(
   # build
   build-essential cmake ninja-build ccache git ca-certificates
   # core
@@ -14,26 +18,45 @@ packages=(
   libbz2-dev liblz4-dev libzstd-dev zlib1g-dev libsqlite3-dev libhdf5-dev libblosc-dev liblzf-dev
   # command line
   libcli11-dev nlohmann-json3-dev
-  # Python module, its tests and its notebooks
-  pybind11-dev python3-dev python3-numpy python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
+  # Python module
+  pybind11-dev python3-dev python3-numpy
   # desktop program
   qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
-  # tests
+)
+package=(dpkg-dev file lintian appstream desktop-file-utils man-db)
+test=(
   clang-format clang-tidy python3 xvfb xauth xdotool openbox imagemagick python3-h5py python3-rosbag slurm-wlm munge
+  # Python module and notebooks
+  python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
   # documentation site
   mkdocs
-  # packages, and what looks at them
-  dpkg-dev file lintian appstream desktop-file-utils man-db
   # other programs' loaders of what Evical exports, and libraries that they read with
   python3-camera-calibration-parsers liburdfdom-tools python3-yaml libcereal-dev libgflags-dev
 )
+fuzz=(clang libclang-rt-14-dev)
 
-if [ "${1:-}" = "--fuzz" ]; then
-  packages+=(clang libclang-rt-14-dev)
+only_list=
+if [ "${1:-}" = --list ]; then
+  only_list=1
   shift
 fi
+[ "$#" -gt 0 ] || set -- run
+packages=()
+for list in "$@"; do
+  case "$list" in
+    run) packages+=("${run[@]}") ;;
+    package) packages+=("${package[@]}") ;;
+    test) packages+=("${run[@]}" "${package[@]}" "${test[@]}") ;;
+    fuzz) packages+=("${fuzz[@]}") ;;
+    *)
+      echo "There is no list '$list'. Choose from run, test, package, fuzz." >&2
+      exit 2
+      ;;
+  esac
+done
+mapfile -t packages < <(printf '%s\n' "${packages[@]}" | awk '!seen[$0]++')
 
-if [ "${1:-}" = "--list" ]; then
+if [ -n "$only_list" ]; then
   printf '%s\n' "${packages[@]}"
   exit 0
 fi
@@ -44,7 +67,7 @@ for package in "${packages[@]}"; do
   [ "$status" = installed ] || missing+=("$package")
 done
 if [ "${#missing[@]}" -eq 0 ]; then
-  echo "All packages are there."
+  echo "All packages are installed."
   exit 0
 fi
 
@@ -60,3 +83,10 @@ echo "Installing: ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+
+# The Slurm test starts daemons of its own: those of the packages must not run, now or at boot.
+if [[ " ${missing[*]} " == *" slurm-wlm "* ]] && command -v systemctl >/dev/null; then
+  for service in slurmctld slurmd munge; do
+    "${as_root[@]}" systemctl disable --now "$service" >/dev/null 2>&1 || "${as_root[@]}" systemctl disable "$service" >/dev/null 2>&1 || true
+  done
+fi

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 which=${1:-both}
 
-packaging/install-dependencies.sh
+packaging/install-dependencies.sh test
 suppressions=$PWD/packaging/sanitizers
 
 if [ "$which" != tsan ]; then
