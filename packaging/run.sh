@@ -1,19 +1,28 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, simulates the demo recording, calibrates it, and prints the result against the truth.
-# Where there is a display, the desktop program then opens on the demo.
-# With a folder as argument the demo goes there.
+# Installs missing packages, builds, simulates the demo recording, calibrates it, and compares the result with the truth.
+# Opens the desktop program on the demo if there is a display. An argument names the folder for the demo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 demo=${1:-demo}
-
-packaging/install-dependencies.sh
-cmake --preset release -DEVICAL_TESTS=OFF
-cmake --build --preset release
 evical=build/release/evical
 
+step() { printf '\n[%d:%02d] %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$1"; }
+
+if [ -x "$evical" ]; then
+  echo "Evical: updates the build and calibrates a simulated recording."
+else
+  echo "Evical: builds everything and calibrates a simulated recording. On two cores this takes about 10 minutes the first time."
+fi
+step "1/4 Installing packages"
+packaging/install-dependencies.sh run
+step "2/4 Building"
+cmake --preset release -DEVICAL_TESTS=OFF >/dev/null
+cmake --build --preset release
+step "3/4 Simulating a recording with known truth"
 if [ ! -f "$demo/session.yaml" ]; then
   "$evical" simulate config/scenarios/davis346.yaml -o "$demo"
 fi
+step "4/4 Calibrating it, and comparing the result with the truth"
 "$evical" calibrate "$demo/session.yaml" -o "$demo/result"
 "$evical" compare "$demo/result/result.yaml" "$demo/truth.yaml"
 
@@ -23,6 +32,7 @@ programs    $evical, build/release/evical-gui
 recording   $demo/recording.bag, with $demo/session.yaml and $demo/truth.yaml
 result      $demo/result: result.yaml, trajectory.csv, detections.csv, log.txt
 TEXT
+step "Done"
 
 if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
   exec build/release/evical-gui "$demo/session.yaml"
