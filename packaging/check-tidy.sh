@@ -1,8 +1,35 @@
 #!/usr/bin/env bash
-# Fails, and names the places, where clang-tidy finds something in core, app, ui or python: packaging/check-tidy.sh [SOURCE...]. Needs a
-# configured build/ci. EVICAL_TIDY_TIMES=1 shows what it spends its time on.
+# Fails, and names the places, where clang-tidy finds something in core, app, ui or python:
+#   packaging/check-tidy.sh                    all sources
+#   packaging/check-tidy.sh SOURCE...          these
+#   packaging/check-tidy.sh --changed [BASE]   what differs from commit BASE, and what includes a header that differs
+# BASE is by default $EVICAL_BASE, or where the branch left its upstream; on a plain clone of main, the state one day before the last
+# commit. EVICAL_TIDY_TIMES=1 shows where the time goes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-[ -f build/ci/compile_commands.json ] || cmake --preset ci >/dev/null
-python3 packaging/tidy_groups.py build/ci "$@"
+default_base() {
+  local base newest
+  if [ -n "${EVICAL_BASE:-}" ] && git rev-parse -q --verify "$EVICAL_BASE^{commit}" >/dev/null; then
+    echo "$EVICAL_BASE"
+    return
+  fi
+  base=$(git merge-base HEAD '@{upstream}' 2>/dev/null) || base=
+  if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ]; then
+    newest=$(git log -1 --format=%ct)
+    base=$(git rev-list -1 --before=$((newest - 86400)) HEAD)
+  fi
+  echo "$base"
+}
+
+cmake --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
+if [ "${1:-}" = --changed ]; then
+  base=${2:-$(default_base)}
+  if [ -n "$base" ]; then
+    echo "clang-tidy: what differs from $(git log -1 --format='%h of %cs' "$base")"
+    set -- --changed "$base"
+  else
+    shift "$#"
+  fi
+fi
+exec python3 packaging/tidy_groups.py build/tidy "$@"
