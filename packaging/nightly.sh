@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# The checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes some ten hours on two cores.
+#   no-unity    build with one source a unit, and all tests: each source includes what it needs
+#   debug       build without optimisation and with assertions, and all tests
+#   clang       build with clang, and all tests
+#   sanitizers  packaging/sanitizers.sh
+#   fuzz        packaging/fuzz.sh, one hour over all targets
+#   benchmarks  packaging/benchmarks.sh, with their targets
+#   tidy        clang-tidy on all sources
+# A failed step does not stop the others. Output is in build/nightly/STEP.log; the exit code is 1 if a step has failed.
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 2
+
+steps=(no-unity debug clang sanitizers fuzz benchmarks tidy)
+[ "$#" -gt 0 ] || set -- "${steps[@]}"
+for step in "$@"; do
+  if [[ " ${steps[*]} " != *" $step "* ]]; then
+    echo "There is no step '$step'. Choose from: ${steps[*]}" >&2
+    exit 2
+  fi
+done
+
+build_and_test() { # FOLDER TIMEOUT_s CMAKE_ARGUMENT...
+  local folder=$1 timeout_s=$2
+  shift 2
+  cmake -B "$folder" "$@" && cmake --build "$folder" -j2 &&
+    ctest --test-dir "$folder" --output-on-failure -j2 --timeout "$timeout_s"
+}
+run_step() {
+  case "$1" in
+    no-unity) build_and_test build/no-unity 1500 --preset ci -DEVICAL_UNITY=OFF ;;
+    debug) build_and_test build/debug 7200 --preset debug ;;
+    clang) build_and_test build/clang 1500 --preset clang ;;
+    sanitizers) packaging/sanitizers.sh ;;
+    fuzz) packaging/fuzz.sh 190 ;; # seconds for each of 19 targets
+    benchmarks) packaging/benchmarks.sh ;;
+    tidy) packaging/check-tidy.sh ;;
+  esac
+}
+
+mkdir -p build/nightly
+packaging/install-dependencies.sh test fuzz || exit 1
+table=() failed=0
+for step in "$@"; do
+  begin=$SECONDS outcome=passed
+  echo "$step: output in build/nightly/$step.log"
+  run_step "$step" >"build/nightly/$step.log" 2>&1 || { outcome=FAILED; failed=1; tail -n 40 "build/nightly/$step.log"; }
+  table+=("$(printf '%-12s %7d s  %s' "$step" $((SECONDS - begin)) "$outcome")")
+done
+printf '\n'
+printf '%s\n' "${table[@]}"
+exit "$failed"
