@@ -27,6 +27,12 @@ if(UNIX AND TARGET Qt6::moc)
   set(CMAKE_AUTOMOC_EXECUTABLE "${CMAKE_BINARY_DIR}/moc_alone.sh")
 endif()
 
+# It links the tests in a tenth of the time that the usual linker needs.
+find_program(EVICAL_MOLD mold)
+if(EVICAL_MOLD AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12.1))
+  add_link_options(-fuse-ld=mold)
+endif()
+
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 

@@ -9,7 +9,7 @@ set -euo pipefail
 
 run=(
   # build
-  build-essential cmake ninja-build ccache git ca-certificates
+  build-essential cmake ninja-build ccache mold git ca-certificates
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
   libopencv-dev libapriltag-dev libpng-dev
