@@ -146,8 +146,7 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias_data() {
                      charuco = boardOfBlinkTracker(BoardType::Charuco, 4, 6, 0.08, 0.0, 0.05);
   for (const auto& [flashing, name] :
        {std::pair{Flashing::Ink, "ink"}, std::pair{Flashing::Paper, "paper"}}) {
-    QTest::addRow("checkerboardForBlinkTracker, %s", name)
-        << checkerboardForBlinkTracker() << 0.75 << flashing;
+    QTest::addRow("checkerboard, %s", name) << checkerboardForBlinkTracker() << 0.75 << flashing;
     QTest::addRow("circles, %s", name) << circles << 0.55 << flashing;
     QTest::addRow("aprilgrid, %s", name) << grid << 0.5 << flashing;
     QTest::addRow("charuco, %s", name) << charuco << 0.6 << flashing;

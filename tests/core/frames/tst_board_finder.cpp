@@ -302,7 +302,7 @@ void TestBoardFinder::drawingOfOpenCv_isFound() {
   }
 }
 
-// A sensor of few pixels: the checkerboardForBoardFinder is searched in an enlarged picture.
+// A sensor of few pixels: the checkerboard is searched in an enlarged picture.
 void TestBoardFinder::coarsePicture_isFound() {
   CameraIntrinsics camera = aCameraForBoardFinder();
   camera.resolution_px = {128, 128};

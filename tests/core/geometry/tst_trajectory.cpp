@@ -63,7 +63,7 @@ class TestTrajectory : public QObject {
   }
 
   void steadyMotion_hasItsRatesByHand() {
-    // Control points move by the sameForTrajectory step from knot to knot: 0.2 rad about z and 0.05 m along x in 0.1 s.
+    // Control points move by the same step from knot to knot: 0.2 rad about z and 0.05 m along x in 0.1 s.
     So3Spline rotation = makeUniformSo3Spline(kBegin_s, kEnd_s, kKnot_s);
     VectorSpline position = makeUniformVectorSpline(kBegin_s, kEnd_s, kKnot_s);
     for (std::size_t k = 0; k < rotation.control_points.size(); ++k) {

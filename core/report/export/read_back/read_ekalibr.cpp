@@ -1,4 +1,4 @@
-// After Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (ekalibrAt d9e93fd: CalibParamManager::load), and its library
+// After Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (at d9e93fd: CalibParamManager::load), and its library
 // veta's camera/pinhole*.h, which since 29195b0 asks for the notes. cereal's YAML archive searches each name and throws
 // where it is missing; a std::map is a list of {key, value}, a pointer has an id, marked by the highest bit where it is
 // met first.

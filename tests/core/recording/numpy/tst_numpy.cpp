@@ -3,7 +3,7 @@
 //   82magnolia/n_imagenet, real_cnn_model/data/imagenet.py (a0b1f73): event_data of x, y, t, p in archives;
 //   open-neuromorphic/expelliarmus, README.md: structured t, x, y, p in us;
 //   uzh-rpg/rpg_vid2e, esim_torch/scripts/generate_events.py (ecbb11a): numbered archives of x, y, t, p in ns;
-//   better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rowsForNumpy of t, x, y, p and pickled meta,
+//   better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rows of t, x, y, p and pickled meta,
 //   EVIMO2's dataset_events_t, _xy and _p;
 //   dv's Python package hands out timestamp, x, y, polarity with padding (seen in programs that use it, not in its source).
 #include "core/base/error.h"
@@ -429,10 +429,8 @@ void TestNumpy::rowsThatAreNoEvents_areLeftOut() {
       read(npyArray("[('t_s', '<f8'), ('x', '<f8'), ('y', '<f8'), ('p', '<f8')]", "(8,)", bytes));
   QVERIFY(sameEvents(contents.events.at(0), {{1'500'000'000, 1, 2, true}, {2'000'000'000, 3, 65535, false}}));
   QCOMPARE(contents.faults.size(), std::size_t{2});
-  QVERIFY2(contents.faults[0].text.starts_with("2 rowsForNumpy have no time"),
-           contents.faults[0].text.c_str());
-  QVERIFY2(contents.faults[1].text.starts_with("4 rowsForNumpy have coordinates"),
-           contents.faults[1].text.c_str());
+  QVERIFY2(contents.faults[0].text.starts_with("2 rows have no time"), contents.faults[0].text.c_str());
+  QVERIFY2(contents.faults[1].text.starts_with("4 rows have coordinates"), contents.faults[1].text.c_str());
   QVERIFY(contents.faults[1].text.ends_with("from row 2 on."));
 }
 
@@ -556,7 +554,7 @@ void TestNumpy::damage_isSaid_data() {
                         << said;
   };
   row("a million million rows", tonic(1'000'000'000'000), kCount, FaultKind::Truncated,
-      "claims 1000000000000 rowsForNumpy and has 3000");
+      "claims 1000000000000 rows and has 3000");
   std::vector<ZipFile> files = fourArrays(false);
   files[3].content = npyArray("'|i1'", "(10,)", "0123456789");
   row("one is shorter", zipArchive(files), 10, FaultKind::Truncated, "the first 10 are read");
@@ -569,7 +567,7 @@ void TestNumpy::damage_isSaid_data() {
   files = {{"events.npy", tonic(2 * kCount), true}};
   files[0].claimed_bytes = std::uint64_t{1} << 31;
   row("fewer bytes than claimed", zipArchive(files), kCount, FaultKind::Truncated,
-      "fewer rowsForNumpy than it claims");
+      "fewer rows than it claims");
   files = {{"events.npy", tonic(), true}};
   files[0].left_out_bytes = 500;
   QTest::newRow("packed bytes end early")
@@ -666,7 +664,7 @@ np.save('record.npy', a.view(np.recarray))
 aligned = np.zeros(3000, dtype=np.dtype([('p', '?'), ('t', '>f8'), ('x', '<f2'), ('y', '<u4')], align=True))
 aligned['t'], aligned['x'], aligned['y'], aligned['p'] = t * 1e-6, x, y, p
 np.save('aligned.npy', aligned)
-np.save('rowsForNumpy.npy', np.stack([t * 1e-6, x, y, p], axis=1))
+np.save('rows.npy', np.stack([t * 1e-6, x, y, p], axis=1))
 np.save('fortran.npy', np.asfortranarray(np.stack([x, y, t, p], axis=1)))
 np.savez('arrays.npz', x=x, y=y, t=t, p=p, more=np.array({'a': 1}))
 np.savez_compressed('packed.npz', x=x, y=y, timestamps=t, polarity=p.astype(np.int8) * 2 - 1, t_offset=0)
@@ -676,7 +674,7 @@ np.savez_compressed('events.npz', a)
   python.setWorkingDirectory(QString::fromStdString(scratch_.path().string()));
   python.start("/usr/bin/python3", {"-c", kScript});
   if (!python.waitForFinished(60'000) || python.exitCode() != 0) QSKIP("NumPy is not installed");
-  for (const char* file : {"structured.npy", "record.npy", "aligned.npy", "rowsForNumpy.npy", "fortran.npy",
+  for (const char* file : {"structured.npy", "record.npy", "aligned.npy", "rows.npy", "fortran.npy",
                            "arrays.npz", "packed.npz", "events.npz"})
     QVERIFY2(sameEvents(readAll(scratch_ / file).events.at(0), theEvents()), file);
 }
