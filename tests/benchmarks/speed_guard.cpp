@@ -170,7 +170,8 @@ class Guard {
  public:
   explicit Guard(const std::string& scenario) : stages_of_(readScenario(scenario)) {}
 
-  void readBaseline(const std::string& file) {
+  // A file that is renewed may lack new stages.
+  void readBaseline(const std::string& file, bool renew) {
     const YamlNode root = YamlNode::load(file);
     const YamlNode ratios = root["ratios"];
     const bool same = root["processor"].text() == processor();
@@ -178,6 +179,7 @@ class Guard {
     for (const Stage& stage : stages_) known.emplace_back(stage.name);
     ratios.allowOnly(known);
     for (Stage& stage : stages_) {
+      if (renew && !ratios.find(stage.name)) continue;
       const YamlNode row = ratios[stage.name];
       row.allowOnly({"ratio", "may_grow"});
       stage.baseline = row["ratio"].real();
@@ -215,14 +217,12 @@ class Guard {
 
   std::string baseline() const {
     std::string text =
-        "# CPU time of each stage over that to read and copy the same events: what evical_benchmarks "
-        "speed_guard holds "
-        "runs against.\n"
-        "# A stage may grow by 0.3, or by its may_grow, where its own scatter on a busy machine is wider. To "
-        "renew, on a\n"
-        "# quiet machine: build/ci/tests/benchmarks/evical_benchmarks speed_guard "
-        "tests/benchmarks/speed_baseline.yaml "
-        "--renew\n"
+        "# CPU time of each stage over that of tests/benchmarks/speed_reference.cpp: what evical_benchmarks "
+        "speed_guard "
+        "holds runs against.\n# A stage may grow by 0.3, or by its may_grow if its own scatter on a busy "
+        "machine is wider. "
+        "To renew, on a\n# quiet machine: build/ci/tests/benchmarks/evical_benchmarks speed_guard "
+        "tests/benchmarks/speed_baseline.yaml --renew\n"
         "processor: " +
         yamlText(processor()) + "\nratios:\n";
     for (const Stage& stage : stages_) {
@@ -270,7 +270,7 @@ int run(int argc, char** argv) {
       .between(1, 100);
   if (!app.parse(argc, argv)) return 0;
   Guard guard(scenario);
-  if (std::filesystem::exists(baseline) || !renew) guard.readBaseline(baseline);
+  if (std::filesystem::exists(baseline) || !renew) guard.readBaseline(baseline, renew);
   for (int k = 0; k < (renew ? most_rounds : rounds); ++k) guard.round();
   for (int k = rounds; k < most_rounds && !renew && guard.anyGrown(); ++k) guard.round();
   fmt::print("{}", guard.table());
