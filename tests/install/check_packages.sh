@@ -10,10 +10,11 @@ fail() {
   echo "FAILED: $*" >&2
   exit 1
 }
+# Packed by gzip, which takes a tenth of the time of the packages' xz.
 pack() { # FOLDER
   rm -rf "${1:?}"
   mkdir -p "$1"
-  (cd "$1" && cpack --config "$build/CPackConfig.cmake" -B "$1") >"$1.log" 2>&1
+  (cd "$1" && cpack -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip --config "$build/CPackConfig.cmake" -B "$1") >"$1.log" 2>&1
 }
 umask 022
 rm -rf "${scratch:?}"
