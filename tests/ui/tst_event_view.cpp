@@ -96,7 +96,7 @@ class TestEventView : public QObject {
     QCOMPARE(placesOf(view.grab().toImage(), theme().brighter.rgb()).size(), 0);
   }
 
-  // Each colour of the wheelForEventView lies where an edge of that colour moves to.
+  // Each colour of the wheel lies where an edge of that colour moves to.
   void caption_isWhole_whereItIsWiderThanTheView() {
     const auto rowsUnderCaption = [](int width_px) {
       EventView view;
