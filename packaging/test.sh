@@ -1,32 +1,68 @@
 #!/usr/bin/env bash
-# Installs what is missing, checks the sources' format, builds with warnings as errors, runs clang-tidy and every
-# test. Prints at its end how long each of these took.
+# Installs missing packages, checks the format, builds with warnings as errors, runs clang-tidy on what has changed, and every
+# test. Prints at its end the wall time and the processor time of each step. Fails if a build that took nothing from ccache
+# needed much more processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# Processor time of a build with nothing in ccache, over that of compiling packaging/build_reference.cpp on the same machine.
+build_budget=120
+build_may_exceed_percent=15
+
 times=()
+failed=()
+# Of all children that have ended, in hundredths of a second.
+processor_cs() {
+  times | awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); printf "%d", 100 * (60 * (u[1] + s[1]) + u[2] + s[2]) }'
+}
 step() { # NAME COMMAND...
-  local name=$1 begin=$SECONDS code=0
+  local name=$1 begin=$SECONDS code=0 before after
+  before=$(processor_cs)
   shift
   "$@" || code=$?
-  times+=("$(printf '%-20s %5d s' "$name" $((SECONDS - begin)))")
+  after=$(processor_cs)
+  last_processor_cs=$((after - before))
+  times+=("$(printf '%-20s %6d s %6d s' "$name" $((SECONDS - begin)) $((last_processor_cs / 100)))")
   [ "$code" -eq 0 ] || failed+=("$name")
   return "$code"
 }
-failed=()
 summary() {
-  printf '\n'
+  printf '\n%-20s %8s %8s\n' step wall CPU
   [ "${#times[@]}" -eq 0 ] || printf '%s\n' "${times[@]}"
-  printf '%-20s %5d s\n' "all of it" "$SECONDS"
+  printf '%-20s %6d s %6d s\n' "all of it" "$SECONDS" $(($(processor_cs) / 100))
   [ "${#failed[@]}" -eq 0 ] || printf 'Failed: %s\n' "${failed[*]}"
 }
 trap summary EXIT
 
-step install packaging/install-dependencies.sh
+# The processor time of the build against its budget. A build with hits in ccache tells nothing of it.
+check_build_budget() {
+  local hits misses before reference ratio
+  hits=$(grep -c '_cache_hit$' build/ccache.log || true)
+  misses=$(grep -c '^cache_miss$' build/ccache.log || true)
+  if [ "$misses" -lt 150 ] || [ "$hits" -gt $((misses / 50)) ]; then
+    echo "Build budget: not judged, since $hits of $((hits + misses)) objects came from ccache."
+    return
+  fi
+  before=$(processor_cs)
+  CCACHE_DISABLE=1 g++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o build/build_reference.o
+  reference=$(($(processor_cs) - before))
+  ratio=$((build_cs / reference))
+  echo "Build budget: the build took $ratio times the reference's $((reference / 100)) s of processor time; the budget is $build_budget."
+  if [ $((100 * ratio)) -gt $((build_budget * (100 + build_may_exceed_percent))) ]; then
+    echo "The build has become slower. 'ninja -C build/ci -d stats' and build/ci/.ninja_log show where. If it is worth it, raise build_budget in packaging/test.sh." >&2
+    return 1
+  fi
+}
+
+step install packaging/install-dependencies.sh test
 step format packaging/check-format.sh
 step configure cmake --preset ci
-step build cmake --build --preset ci
-step clang-tidy packaging/check-tidy.sh
-step tests ctest --preset ci
-# What stages of a calibration cost against reading its events.
+rm -f build/ccache.log
+CCACHE_STATSLOG=$PWD/build/ccache.log step build cmake --build --preset ci
+build_cs=$last_processor_cs
+step "build budget" check_build_budget
+step clang-tidy packaging/check-tidy.sh --changed
+step tests ctest --preset ci -LE realtime
+step "real-time tests" packaging/realtime-tests.sh
+# Processor time of a calibration's stages.
 cat build/ci/speed_guard.txt 2>/dev/null || true
