@@ -9,19 +9,21 @@ cd "$(dirname "$0")/.."
 build_budget=120
 build_may_exceed_percent=15
 
-times=()
-failed=()
-# Of all children that have ended, in hundredths of a second.
-processor_cs() {
-  times | awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); printf "%d", 100 * (60 * (u[1] + s[1]) + u[2] + s[2]) }'
+times=() failed=()
+scratch=$(mktemp -d)
+# Sets processor_cs: hundredths of a second that all children which have ended have computed. Not in a subshell, which has none.
+count_processor() {
+  times >"$scratch/times"
+  processor_cs=$(awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); printf "%d", 100 * (60 * (u[1] + s[1]) + u[2] + s[2]) }' "$scratch/times")
 }
 step() { # NAME COMMAND...
-  local name=$1 begin=$SECONDS code=0 before after
-  before=$(processor_cs)
+  local name=$1 begin=$SECONDS code=0 before
+  count_processor
+  before=$processor_cs
   shift
   "$@" || code=$?
-  after=$(processor_cs)
-  last_processor_cs=$((after - before))
+  count_processor
+  last_processor_cs=$((processor_cs - before))
   times+=("$(printf '%-20s %6d s %6d s' "$name" $((SECONDS - begin)) $((last_processor_cs / 100)))")
   [ "$code" -eq 0 ] || failed+=("$name")
   return "$code"
@@ -29,10 +31,11 @@ step() { # NAME COMMAND...
 summary() {
   printf '\n%-20s %8s %8s\n' step wall CPU
   [ "${#times[@]}" -eq 0 ] || printf '%s\n' "${times[@]}"
-  printf '%-20s %6d s %6d s\n' "all of it" "$SECONDS" $(($(processor_cs) / 100))
+  count_processor
+  printf '%-20s %6d s %6d s\n' "all of it" "$SECONDS" $((processor_cs / 100))
   [ "${#failed[@]}" -eq 0 ] || printf 'Failed: %s\n' "${failed[*]}"
 }
-trap summary EXIT
+trap 'summary; rm -rf "$scratch"' EXIT
 
 # The processor time of the build against its budget. A build with hits in ccache tells nothing of it.
 check_build_budget() {
@@ -43,9 +46,11 @@ check_build_budget() {
     echo "Build budget: not judged, since $hits of $((hits + misses)) objects came from ccache."
     return
   fi
-  before=$(processor_cs)
-  CCACHE_DISABLE=1 g++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o build/build_reference.o
-  reference=$(($(processor_cs) - before))
+  count_processor
+  before=$processor_cs
+  CCACHE_DISABLE=1 g++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o "$scratch/reference.o"
+  count_processor
+  reference=$((processor_cs - before))
   ratio=$((build_cs / reference))
   echo "Build budget: the build took $ratio times the reference's $((reference / 100)) s of processor time; the budget is $build_budget."
   if [ $((100 * ratio)) -gt $((build_budget * (100 + build_may_exceed_percent))) ]; then
