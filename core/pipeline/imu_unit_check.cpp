@@ -13,12 +13,12 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kFewest = 20;  // windows
+constexpr std::size_t kFewestUnitWindows = 20;  // windows
 
 }  // namespace
 
 void checkUnits(const ImuMeans& imu) {
-  if (imu.windows.size() < kFewest) return;
+  if (imu.windows.size() < kFewestUnitWindows) return;
   std::vector<double> norms;
   for (const MeansWindow& window : imu.windows) norms.push_back(window.force_m_s2.norm());
   const double norm = medianOf(std::move(norms));
@@ -63,7 +63,7 @@ void checkDirection(const ImuMeans& own, const ImuMeans& reference,
                       std::max(turned.norm() * other->force_m_s2.norm(), 1e-9));
   }
   constexpr double kAgainst = -0.5;
-  if (cosines.size() < kFewest || medianOf(std::move(cosines)) > kAgainst) return;
+  if (cosines.size() < kFewestUnitWindows || medianOf(std::move(cosines)) > kAgainst) return;
   throw badInput(own.name,
                  fmt::format("its specific force points against that of {}: one of the two logs has the "
                              "direction of gravity, or that one was mounted upside down",

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kNumbers = 8;
+constexpr std::size_t kNumbersInRow = 8;
 // Poses that are nearer than this to each other tell nothing more.
 constexpr double kNearest_s = 0.0095;
 constexpr double kEpoch_s = 1e8;
@@ -26,8 +26,8 @@ bool isComment(const std::string& line) {
          (std::isalpha(static_cast<unsigned char>(line[first])) != 0);
 }
 
-std::array<double, kNumbers> numbersOf(const std::string& line, const std::string& place) {
-  std::array<double, kNumbers> numbers = {};
+std::array<double, kNumbersInRow> numbersOf(const std::string& line, const std::string& place) {
+  std::array<double, kNumbersInRow> numbers = {};
   const char* at = line.c_str();
   for (double& number : numbers) {
     while (*at == ' ' || *at == '\t' || *at == ',' || *at == ';') ++at;
@@ -41,7 +41,7 @@ std::array<double, kNumbers> numbersOf(const std::string& line, const std::strin
   return numbers;
 }
 
-TimedPose poseFrom(const std::array<double, kNumbers>& n, double start_s, const std::string& place) {
+TimedPose poseFrom(const std::array<double, kNumbersInRow>& n, double start_s, const std::string& place) {
   TimedPose pose;
   pose.time_s = std::abs(n[0]) > kEpoch_s ? n[0] - start_s : n[0];
   pose.position_m = {n[1], n[2], n[3]};

@@ -6,6 +6,10 @@
 
 namespace evical::ui::test {
 
+// Set to kNoEglVendor, this variable of the environment hides all OpenGL of a machine.
+inline constexpr const char* kEglVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
+inline constexpr const char* kNoEglVendor = "/nonexistent";
+
 inline bool hasOpenGl() {
   View3D view;
   view.grab();

@@ -7,6 +7,7 @@
 #include "core/recording/conversion.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/full_disk.h"
+#include "tests/ui/opengl.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/window_fixture.h"
@@ -32,8 +33,6 @@ using namespace evical::ui::test;
 namespace {
 
 constexpr int kSoon_ms = 20'000 * kSlowdown;  // of what takes next to nothing
-constexpr const char* kVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
-constexpr const char* kNoVendor = "/nonexistent";
 
 void writeFile(const QString& path, const QByteArray& content) {
   QFile file(path);
@@ -338,10 +337,10 @@ class TestMainWindowBadInput : public QObject {
 
   // In a process of its own: the drivers are looked for once.
   void withoutOpenGl_everythingElseWorks() {
-    if (qEnvironmentVariable(kVendors) != kNoVendor) {
+    if (qEnvironmentVariable(kEglVendors) != kNoEglVendor) {
       QProcess process;
       QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
-      environment.insert(kVendors, kNoVendor);
+      environment.insert(kEglVendors, kNoEglVendor);
       process.setProcessEnvironment(environment);
       process.start(QCoreApplication::applicationFilePath(),
                     {"tst_main_window_bad_input", "withoutOpenGl_everythingElseWorks"});

@@ -29,9 +29,6 @@ using evical::ui::ViewPose;
 
 namespace {
 
-constexpr const char* kVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
-constexpr const char* kNoVendor = "/nonexistent";
-
 // A square of 0.4 m in the plane z = 0, around the origin.
 vtkSmartPointer<vtkActor> makeSquare(const QColor& colour) {
   vtkNew<vtkPoints> points;
@@ -265,10 +262,10 @@ void TestView3D::views_comeAndGo() {
 
 // In a process of its own: the drivers are looked for once.
 void TestView3D::withoutOpenGl_saysSo() {
-  if (qEnvironmentVariable(kVendors) != kNoVendor) {
+  if (qEnvironmentVariable(evical::ui::test::kEglVendors) != evical::ui::test::kNoEglVendor) {
     QProcess process;
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
-    environment.insert(kVendors, kNoVendor);
+    environment.insert(evical::ui::test::kEglVendors, evical::ui::test::kNoEglVendor);
     process.setProcessEnvironment(environment);
     process.start(QCoreApplication::applicationFilePath(), {"tst_view3d", "withoutOpenGl_saysSo"});
     QVERIFY(process.waitForFinished());

@@ -34,12 +34,12 @@ std::string piece(const std::string& bytes, std::size_t at, std::size_t size, co
 }
 
 // One file that the archive's directory names, and where the next entry of the directory is.
-struct ZipEntry {
+struct ArchivedArray {
   std::string name, content;
   std::size_t next;
 };
 
-ZipEntry entryAt(const std::string& zip, std::size_t at, const std::string& place) {
+ArchivedArray entryAt(const std::string& zip, std::size_t at, const std::string& place) {
   if (piece(zip, at, 4, place) != "PK\x01\x02") throw npzArraysBroken(place, "its directory is damaged");
   const auto compression = numberAt<std::uint16_t>(zip, at + 10, place);
   const std::size_t size = numberAt<std::uint32_t>(zip, at + 24, place),
@@ -47,7 +47,7 @@ ZipEntry entryAt(const std::string& zip, std::size_t at, const std::string& plac
                     extra = std::size_t{numberAt<std::uint16_t>(zip, at + 30, place)} +
                             numberAt<std::uint16_t>(zip, at + 32, place),
                     own = numberAt<std::uint32_t>(zip, at + 42, place);
-  ZipEntry entry{piece(zip, at + 46, length, place), {}, at + 46 + length + extra};
+  ArchivedArray entry{piece(zip, at + 46, length, place), {}, at + 46 + length + extra};
   const std::string inside = place + ": " + entry.name;
   if (compression != 0) throw npzArraysBroken(inside, "is compressed");
   // Both headers say the same of the file, as Python's zipfile demands of names.
@@ -159,7 +159,7 @@ NpzArrays NpzArrays::load(const std::filesystem::path& file) {
   if (end == std::string::npos) throw npzArraysBroken(loaded.file_, "is no .npz file, or is cut off");
   std::size_t at = numberAt<std::uint32_t>(zip, end + 16, loaded.file_);
   for (int left = numberAt<std::uint16_t>(zip, end + 10, loaded.file_); left > 0; --left) {
-    const ZipEntry entry = entryAt(zip, at, loaded.file_);
+    const ArchivedArray entry = entryAt(zip, at, loaded.file_);
     const std::string inside = loaded.place(entry.name);
     if (!entry.name.ends_with(".npy")) throw npzArraysBroken(inside, "is no array");
     const std::string name = entry.name.substr(0, entry.name.size() - 4);

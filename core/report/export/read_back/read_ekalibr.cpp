@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kEkalibrFirst = 0x80000000;
+constexpr std::int64_t kFirstOccurrence = 0x80000000;
 
 // A std::map keeps one of two entries of one key.
 std::map<std::string, YamlNode> mapOf(const YamlNode& list) {
@@ -38,7 +38,7 @@ Eigen::Quaterniond rotationOf(const YamlNode& node) {
 
 YamlNode ekalibrDataOf(const YamlNode& value) {
   const YamlNode wrapper = value["ptr_wrapper"];
-  if ((wrapper["id"].nanoseconds() & kEkalibrFirst) == 0)
+  if ((wrapper["id"].nanoseconds() & kFirstOccurrence) == 0)
     throw wrapper["id"].error("has no highest bit, and data");
   return wrapper["data"];
 }
@@ -48,8 +48,8 @@ class Types {
  public:
   std::string nameOf(const YamlNode& value) {
     const std::int64_t id = value["polymorphic_id"].nanoseconds();
-    if ((id & kEkalibrFirst) != 0) names_[id & ~kEkalibrFirst] = value["polymorphic_name"].text();
-    const auto found = names_.find(id & ~kEkalibrFirst);
+    if ((id & kFirstOccurrence) != 0) names_[id & ~kFirstOccurrence] = value["polymorphic_name"].text();
+    const auto found = names_.find(id & ~kFirstOccurrence);
     if (found == names_.end()) throw value["polymorphic_id"].error("has not been met before");
     return found->second;
   }
