@@ -4,9 +4,7 @@
 
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/recording_pass.h"
-#include "core/pipeline/simulation.h"
-#include "core/synthetic/scenario_yaml.h"
-#include "tests/support/test_folders.h"
+#include "tests/support/simulated_recording.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
@@ -24,15 +22,12 @@ namespace evical::ui::test {
 
 // The first seconds of a scenario, and what the front end says about them.
 struct Recorded {
-  QTemporaryDir folder;
+  QTemporaryDir folder;  // for what tests write
   Session session;
   RecordingPass pass;
 
   explicit Recorded(const std::string& name = "davis346", double duration_s = 2.0) {
-    Scenario scenario = readScenario(evical::test::scenarioPath(name));
-    scenario.duration_s = duration_s;
-    const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
-    session = readSession(files.session);
+    session = readSession(evical::test::simulatedRecording(name, duration_s));
     pass = readAndDetect(session, {});
   }
   // A window in the middle, with all of its circles.

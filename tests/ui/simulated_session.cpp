@@ -9,34 +9,21 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/simulated_recording.h"
 #include "tests/support/test_folders.h"
 
-#include <QDir>
 #include <QFile>
-#include <QLockFile>
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <functional>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace evical::ui::test {
 namespace {
-
-// `make` writes session.yaml last.
-QString simulateOnce(const QString& name, const std::function<void(const std::string& folder)>& make) {
-  const QString folder = QString::fromStdString(evical::test::buildPath("tests/ui/simulated/")) + name;
-  QDir().mkpath(folder + "/recording");
-  QLockFile lock(folder + "/lock");
-  lock.setStaleLockTime(0);
-  lock.lock();
-  const QString session = folder + "/recording/session.yaml";
-  if (!QFile::exists(session)) make((folder + "/recording").toStdString());
-  return session;
-}
 
 Scenario scenario(const char* name, double duration_s) {
   Scenario read = readScenario(evical::test::scenarioPath(name));
@@ -65,7 +52,7 @@ StreamInfo streamInfo(const std::string& name, StreamType type, Resolution resol
 }
 
 // The IMU beside the first camera.
-void writeBag(const Scenario& rig, std::size_t camera, const std::string& file) {
+void writeBag(const Scenario& rig, std::size_t camera, const std::filesystem::path& file) {
   const SimulatedCamera& own = rig.cameras[camera];
   std::vector<StreamInfo> streams = {
       streamInfo(own.stream, StreamType::Events, own.intrinsics.resolution_px)};
@@ -87,43 +74,43 @@ void writeBag(const Scenario& rig, std::size_t camera, const std::string& file) 
   writer->finish();
 }
 
-void simulateTwoCameras(const std::string& folder) {
+void simulateTwoCameras(const std::filesystem::path& folder) {
   const Scenario rig = twoCameras();
   for (std::size_t k = 0; k < rig.cameras.size(); ++k)
-    writeBag(rig, k, folder + '/' + rig.cameras[k].name + ".bag");
-  const std::string of_one_bag = folder + "/of_one_bag.yaml";
+    writeBag(rig, k, folder / (rig.cameras[k].name + ".bag"));
+  const std::filesystem::path of_one_bag = folder / "of_one_bag.yaml";
   writeFileWhole(of_one_bag, sessionYaml(rig, "left.bag"));
   Session session = readSession(of_one_bag);
-  session.cameras[1].recording = folder + "/right.bag";
-  writeSession(session, folder + "/session.yaml");
+  session.cameras[1].recording = folder / "right.bag";
+  writeSession(session, folder / "session.yaml");
 }
 
 }  // namespace
 
 QString simulatedSession() {
-  return simulateOnce("everyday",
-                      [](const std::string& folder) { simulate(scenario("davis346", 4.0), folder, {}); });
+  return QString::fromStdString(evical::test::simulatedRecording("davis346", 4.0).string());
 }
 
 QString simulatedHdSession() {
-  return simulateOnce("hd", [](const std::string& folder) { simulate(scenario("hd", 3.5), folder, {}); });
+  return QString::fromStdString(evical::test::simulatedRecording("hd", 3.5).string());
 }
 
 QString simulatedTwoCameraSession() {
-  return simulateOnce("two_cameras", simulateTwoCameras);
+  return QString::fromStdString(evical::test::simulatedOnce("two_cameras", simulateTwoCameras).string());
 }
 
 QString simulatedFurtherSession(int number, double turned_deg) {
   constexpr std::int64_t kHour_ns = 3'600'000'000'000;
-  const QString name = QString("further_%1_%2").arg(number).arg(turned_deg);
-  return simulateOnce(name, [number, turned_deg](const std::string& folder) {
+  const std::string name = QString("further_%1_%2").arg(number).arg(turned_deg).toStdString();
+  const auto make = [number, turned_deg](const std::filesystem::path& folder) {
     Scenario rig = scenario("davis346", 6.0);
     rig.seed += static_cast<std::uint64_t>(number);
     rig.start_ns += number * kHour_ns;
     RigidTransform& pose = rig.cameras.front().imu_from_camera;
     pose.rotation = pose.rotation * Eigen::AngleAxisd(kRadPerDeg * turned_deg, Eigen::Vector3d::UnitY());
     simulate(rig, folder, {});
-  });
+  };
+  return QString::fromStdString(evical::test::simulatedOnce(name, make).string());
 }
 
 QString copyOfSimulatedSession(const QString& folder) {

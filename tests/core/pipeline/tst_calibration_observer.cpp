@@ -1,12 +1,8 @@
 #include "core/data/calibration_observer.h"
 
 #include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/simulation.h"
-#include "core/synthetic/scenario_yaml.h"
-#include "tests/support/test_folders.h"
+#include "tests/support/simulated_recording.h"
 #include "tests/support/test_program.h"
-
-#include <QTemporaryDir>
 
 using namespace evical;
 
@@ -50,16 +46,11 @@ class Notebook final : public CalibrationObserver {
 class TestCalibrationObserver : public QObject {
   Q_OBJECT
 
-  QTemporaryDir scratch_;
-
  private slots:
   void observer_hearsOfEveryStageInOrder() {
-    Scenario scenario = readScenario(test::scenarioPath("davis346"));
-    scenario.duration_s = 4.0;
-    const SimulationSummary simulated =
-        simulate(scenario, scratch_.filePath("short").toStdString(), RunContext{});
+    const Session session = readSession(test::simulatedRecording("davis346", 4.0));
     Notebook notebook;
-    const CalibrationRun run = calibrate(readSession(simulated.session), {silentProgress(), {}, &notebook});
+    const CalibrationRun run = calibrate(session, {silentProgress(), {}, &notebook});
 
     QVERIFY(notebook.window_calls > 5);
     QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones come with the end

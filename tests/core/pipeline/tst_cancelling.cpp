@@ -2,14 +2,12 @@
 // process's own computing time, which other programs on the machine do not change.
 #include "core/base/progress.h"
 #include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/processor_time.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/simulated_recording.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
-
-#include <QTemporaryDir>
 
 #include <algorithm>
 #include <atomic>
@@ -149,9 +147,7 @@ class TestCancelling : public QObject {
   }
 
   void detecting_stopsSoon() {
-    const QTemporaryDir folder;
-    const SimulationSummary made = simulate(everyday(3.0), folder.path().toStdString(), RunContext{});
-    const Session session = readSession(made.session);
+    const Session session = readSession(test::simulatedRecording("davis346", 4.0));
     const QStringList stages =
         stopEverywhere([&](const RunContext& context) { readAndDetect(session, context); });
     QVERIFY(!stages.contains("LATE"));

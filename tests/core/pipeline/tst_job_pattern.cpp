@@ -5,9 +5,7 @@
 #include "core/data/calibration_observer.h"
 #include "core/frontend/board_tracker.h"
 #include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/simulation.h"
-#include "core/synthetic/scenario_yaml.h"
-#include "tests/support/test_folders.h"
+#include "tests/support/simulated_recording.h"
 
 #include <atomic>
 #include <chrono>
@@ -19,7 +17,6 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <random>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -30,7 +27,6 @@ using namespace evical;
 
 namespace {
 
-constexpr double kRecording_s = 4.0;
 constexpr auto kTick = std::chrono::milliseconds(5);
 
 // Everything that core says while it works, the newest of each kind; written by its
@@ -197,12 +193,8 @@ void fail(Session session) {
 }  // namespace
 
 int main() {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
-                                       ("evical_job_pattern_" + std::to_string(std::random_device{}()));
   try {
-    Scenario scenario = readScenario(test::scenarioPath("davis346"));
-    scenario.duration_s = kRecording_s;
-    const Session session = readSession(simulate(scenario, folder, RunContext{}).session);
+    const Session session = readSession(test::simulatedRecording("davis346", 4.0));
     runToTheEnd(session);
     stopAt(session, "stopped while it detects", [](const auto& seen) { return seen.detections != nullptr; });
     stopAt(session, "stopped while it initialises", [](const auto& seen) { return !seen.steps.empty(); });
@@ -211,7 +203,5 @@ int main() {
   } catch (const std::exception& error) {
     check(false, error.what());
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

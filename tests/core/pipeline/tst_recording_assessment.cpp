@@ -5,14 +5,12 @@
 #include "core/base/error.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/simulated_recording.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
-
-#include <QTemporaryDir>
 
 #include <algorithm>
 #include <cmath>
@@ -174,10 +172,7 @@ class TestRecordingAssessment : public QObject {
   }
 
   void recording_isCheckedWithTheLensFoundFirst_andCalibratedFromThat() {
-    QTemporaryDir folder;
-    const SimulationSummary simulated =
-        simulate(scenario("davis346", 6.0), folder.filePath("checked").toStdString(), {});
-    Session session = readSession(simulated.session);
+    Session session = readSession(test::simulatedRecording("davis346", 4.0));
     session.cameras.front().intrinsics.reset();
     const CheckedRecording checked = checkRecording(session, {});
     QVERIFY(checked.detected && checked.assessment.can_be_calibrated);
