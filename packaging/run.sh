@@ -11,7 +11,7 @@ step() { printf '\n[%d:%02d] %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$1"; }
 if [ -x "$evical" ]; then
   echo "Evical: updates the build and calibrates a simulated recording."
 else
-  echo "Evical: builds everything and calibrates a simulated recording. On two cores this takes about 10 minutes the first time."
+  echo "Evical: builds everything and calibrates a simulated recording. On two cores this takes 10 to 15 minutes the first time."
 fi
 step "1/4 Installing packages"
 packaging/install-dependencies.sh run
