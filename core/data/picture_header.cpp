@@ -150,7 +150,6 @@ std::optional<Resolution> claimedPictureSize(std::string_view text) {
 }
 
 Resolution pictureSize(std::string_view bytes) {
-  constexpr int kLargestSide_px = 65536;
   const Resolution size_px = claimedPictureSize(bytes).value_or(Resolution{});
   const bool can_be =
       size_px.known() && size_px.width_px <= kLargestSide_px && size_px.height_px <= kLargestSide_px;
