@@ -1,4 +1,4 @@
-// Commands, their arguments and options. command_line.cpp alone compiles the command line library, whose templates take long.
+// Commands, their arguments and options, without the command line library, whose templates take long to compile.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ class Option;
 
 namespace evical {
 
-// What the user has typed is not understood. what() is one sentence without a full stop.
+// The user has typed a command line that is not valid. what() is one sentence without a full stop.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// Work of known size for a compiler: packaging/test.sh measures by it how fast the machine compiles. Not part of any program.
+// A source that is only compiled, to measure how fast a machine compiles (packaging/test.sh). Not part of any program.
 #include <Eigen/Dense>
 
 #include <map>

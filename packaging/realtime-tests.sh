@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the tests that need the machine for themselves, one after the other: the window must answer, draw and cancel fast enough, and
-# no stage of a calibration may have become slower. All other tests can run beside each other. The argument is a test preset,
+# no stage of a calibration may have become slower. All other tests can run in parallel. The argument is a test preset,
 # ci by default.
 set -euo pipefail
 cd "$(dirname "$0")/.."

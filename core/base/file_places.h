@@ -13,7 +13,7 @@ CalibrationError writeError(const std::filesystem::path& path, int error);
 // Why nothing may be put there, as errno has it; 0 if it may. A rename would replace a device or a pipe.
 int whyNoPlace(const std::filesystem::path& path);
 
-// Whether something is at the path; false where that cannot be told.
+// True if the path exists, false if it does not or cannot be examined.
 inline bool isThere(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);

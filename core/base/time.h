@@ -25,4 +25,10 @@ inline std::int64_t nanosecondsFrom(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * kNanosecondsPerSecond));
 }
 
+// In us; halves go up.
+constexpr std::int64_t nearestMicrosecond(std::int64_t time_ns) {
+  const std::int64_t floor_us = time_ns / kMicrosecond_ns - (time_ns % kMicrosecond_ns < 0 ? 1 : 0);
+  return floor_us + (time_ns - floor_us * kMicrosecond_ns >= kMicrosecond_ns / 2 ? 1 : 0);
+}
+
 }  // namespace evical

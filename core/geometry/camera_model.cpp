@@ -182,4 +182,10 @@ void validate(const CameraIntrinsics& camera, const std::string& place) {
   }
 }
 
+const CameraIntrinsics& normalisedCamera() {
+  static const CameraIntrinsics camera{
+      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
+  return camera;
+}
+
 }  // namespace evical

@@ -51,4 +51,7 @@ Eigen::Matrix2d idealPixelScale(const CameraIntrinsics& camera, const Eigen::Vec
 // Throws CalibrationError (BadInput) when the numbers make no camera; `place` goes into the message.
 void validate(const CameraIntrinsics& camera, const std::string& place);
 
+// A pinhole of focal length 1: its image coordinates are those of rays on the plane z = 1.
+const CameraIntrinsics& normalisedCamera();
+
 }  // namespace evical

@@ -113,10 +113,4 @@ std::optional<RigidTransform> boardPose(const SensorView& view, const Board& boa
   return best;
 }
 
-const CameraIntrinsics& normalisedCamera() {
-  static const CameraIntrinsics camera{
-      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
-  return camera;
-}
-
 }  // namespace evical

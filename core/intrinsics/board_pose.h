@@ -14,7 +14,4 @@ namespace evical {
 std::optional<RigidTransform> boardPose(const SensorView& view, const Board& board,
                                         const CameraIntrinsics& camera);
 
-// A pinhole of focal length 1: its image coordinates are those of rays on the plane z = 1.
-const CameraIntrinsics& normalisedCamera();
-
 }  // namespace evical

@@ -1,8 +1,8 @@
 #include "core/intrinsics/circle_centre_cost.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
-#include "core/intrinsics/board_pose.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>

@@ -2,6 +2,7 @@
 
 #include "core/data/calibration_state.h"
 #include "core/data/intrinsics_result.h"
+#include "core/geometry/camera_model.h"
 #include "core/optimisation/lens_prior.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/prior_cost.h"
@@ -14,17 +15,6 @@
 #include <vector>
 
 namespace evical {
-namespace {
-
-// Ideal pixels of this camera are x/z, y/z.
-const CameraIntrinsics& normalisedCamera() {
-  static const CameraIntrinsics camera{
-      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
-  return camera;
-}
-
-}  // namespace
-
 SeenCentre seenCentre(const CameraIntrinsics& seen_with, const Eigen::Vector2d& ideal_px) {
   return {ideal_px, pixelFromIdeal(seen_with, ideal_px), idealPixelScale(seen_with, ideal_px)};
 }

@@ -110,7 +110,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
                         const SessionRemarks& remarks = {});
 void writeSession(const Session& session, const std::filesystem::path& file);
 
-// Whether a camera or an IMU of the session has this name.
+// True if a camera or an IMU of the session has this name.
 bool isSensorName(const Session& session, const std::string& name);
 
 }  // namespace evical

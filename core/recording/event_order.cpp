@@ -5,8 +5,6 @@
 #include <algorithm>
 
 namespace evical {
-namespace {}  // namespace
-
 std::size_t EventOrder::arrange(std::span<Event> events) {
   const std::uint64_t before = disordered_;
   std::size_t end = events.empty() ? 0 : 1;

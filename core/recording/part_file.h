@@ -4,9 +4,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace evical {
+
+// A number's bytes in the machine's order, which is that of the files: little endian.
+template <class Number>
+std::string numberBytes(Number value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
 
 // Writes beside `path`, under a name of its own that begins with `path`'s; finish() brings it to the disk and
 // renames it, the destructor removes it if finish() was not reached. Of several that write to one path the

@@ -1,4 +1,4 @@
-// What the speed guard scales by. Fits of planes to the times of neighbouring pixels, as the front end does, and solutions of
+// The work that the speed guard scales by: fits of planes to the times of neighbouring pixels, as the front end does, and solutions of
 // dense equations, as the optimiser does. It uses nothing of the project, so that it costs the same when a stage becomes slower.
 #include "tests/benchmarks/benchmark_program.h"
 

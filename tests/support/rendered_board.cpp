@@ -121,6 +121,15 @@ std::vector<Eigen::Vector2d> planeBehind(const CameraIntrinsics& camera,
 
 }  // namespace
 
+CameraIntrinsics distortingCamera() {
+  CameraIntrinsics camera;
+  camera.resolution_px = {752, 480};
+  camera.focal_length_px = {460.0, 458.0};
+  camera.principal_point_px = {367.0, 248.0};
+  camera.distortion = {-0.28, 0.074, 0.0002, 0.0, 0.0};
+  return camera;
+}
+
 Pattern patternOf(const PrintedBoard& printed) {
   switch (printed.board.type) {
     case BoardType::Checkerboard:

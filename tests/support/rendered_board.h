@@ -28,6 +28,9 @@ struct Exposure {
   unsigned seed = 1;
 };
 
+// 752 x 480 pixels, and a lens that bends lines.
+CameraIntrinsics distortingCamera();
+
 // Brightness of the board's plane, 0 to 1.
 std::function<double(const Eigen::Vector2d&)> patternOf(const PrintedBoard& printed);
 

@@ -1,40 +1,23 @@
 #include "tests/support/simulated_recording.h"
 
+#include "core/base/file_lock.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
+#include <chrono>
+#include <thread>
 
 namespace evical::test {
-namespace {
-
-// Other processes wait while it lives.
-class LockedFolder {
- public:
-  explicit LockedFolder(const std::filesystem::path& folder)
-      : file_(::open((folder / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
-    ::flock(file_, LOCK_EX);
-  }
-  ~LockedFolder() { ::close(file_); }
-  LockedFolder(const LockedFolder&) = delete;
-  LockedFolder& operator=(const LockedFolder&) = delete;
-
- private:
-  int file_;
-};
-
-}  // namespace
 
 std::filesystem::path simulatedOnce(const std::string& name,
                                     const std::function<void(const std::filesystem::path& folder)>& make) {
   const std::filesystem::path folder = buildPath("tests/simulated/" + name);
   std::filesystem::create_directories(folder);
-  const LockedFolder locked(folder);
+  FileLock lock(folder / "lock");
+  while (!lock.tryAgain()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   const std::filesystem::path session = folder / "recording" / "session.yaml";
   if (!std::filesystem::exists(session)) {
     std::filesystem::create_directories(session.parent_path());

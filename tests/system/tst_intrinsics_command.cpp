@@ -13,8 +13,6 @@
 using namespace evical;
 using namespace evical::test;
 
-namespace {}  // namespace
-
 class TestIntrinsicsCommand : public QObject {
   Q_OBJECT
 

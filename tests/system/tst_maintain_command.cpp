@@ -16,8 +16,6 @@
 
 using namespace evical::test;
 
-namespace {}  // namespace
-
 class TestMaintainCommand : public QObject {
   Q_OBJECT
 

@@ -13,8 +13,6 @@
 
 using namespace evical::test;
 
-namespace {}  // namespace
-
 class TestRepeatCommand : public QObject {
   Q_OBJECT
 

@@ -38,7 +38,7 @@ class ComputedTime {
   double begin_s_ = evical::test::processCpu_s();
 };
 
-// A job that is cancelled ends after half a second at most. Computing counts, so that tests can run beside each other;
+// A job that is cancelled ends after half a second at most. Computing counts, so that tests can run in parallel;
 // tst_main_window measures the same by the clock.
 inline double mostAfterCancel_ms() {
   return 500.0 * slowness();

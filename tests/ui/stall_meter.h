@@ -4,13 +4,14 @@
 // waiting for locks and files is.
 #pragma once
 
+#include "tests/support/processor_time.h"
+
 #include <QElapsedTimer>
 #include <QFile>
 #include <QObject>
 #include <QTimer>
 
 #include <algorithm>
-#include <ctime>
 
 namespace evical::ui::test {
 
@@ -44,11 +45,9 @@ class StallMeter : public QObject {
   };
 
   Clocks now() const {
-    timespec work{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &work);
     Clocks clocks;
     clocks.wall_ms = 1e-6 * static_cast<double>(wall_.nsecsElapsed());
-    clocks.work_ms = 1e3 * static_cast<double>(work.tv_sec) + 1e-6 * static_cast<double>(work.tv_nsec);
+    clocks.work_ms = 1e3 * evical::test::threadCpu_s();
     QFile file("/proc/thread-self/schedstat");  // ns on a processor, ns ready for one, times
     if (file.open(QIODevice::ReadOnly))
       clocks.queued_ms = 1e-6 * file.readAll().split(' ').value(1).toDouble();

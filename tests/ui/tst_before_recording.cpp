@@ -35,13 +35,6 @@ std::string contentOfBeforeRecording(const QString& path) {
   return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : std::string();
 }
 
-void type(QLineEdit* field, const QString& text) {
-  field->setFocus();
-  field->selectAll();
-  QTest::keyClicks(field, text);
-  QTest::keyClick(field, Qt::Key_Return);
-}
-
 QString saidBy(const QWidget& dialog) {
   QString all;
   for (const QLabel* const label : dialog.findChildren<QLabel*>())

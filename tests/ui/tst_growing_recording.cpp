@@ -3,6 +3,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/file_content.h"
 #include "tests/support/packed_events.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
@@ -25,11 +26,6 @@ using namespace evical::ui;
 using namespace evical::ui::test;
 
 namespace {
-
-QByteArray contentOfGrowingRecording(const std::filesystem::path& path) {
-  QFile file(QString::fromStdString(path.string()));
-  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
 
 // As a recorder does: more and more of the bytes, in pieces that end anywhere.
 class Recorder : public QObject {
@@ -140,7 +136,7 @@ class TestGrowingRecording : public QObject {
   void card_goesAlongWithTheFile_toItsEnd() {
     QFETCH(const QString, suffix);
     Session session = sessionOf(suffix);
-    const QByteArray whole = contentOfGrowingRecording(session.recording);
+    const QByteArray whole = evical::test::fileContent(session.recording);
     QVERIFY(whole.size() > 100000);
     const QString path = scratch_.filePath("growing." + suffix);
     Recorder recorder(path, whole);

@@ -2,6 +2,7 @@
 // What a person takes out of the window: rows, poses, drawings, charts and tables.
 #include "core/numerics/angles.h"
 #include "core/report/pose_text.h"
+#include "tests/support/file_content.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_hands.h"
@@ -105,11 +106,6 @@ QString clipboard() {
   return QGuiApplication::clipboard()->text();
 }
 
-QByteArray contentOfHandOn(const QString& path) {
-  QFile file(path);
-  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
 const SavedForm& formOf(const std::vector<SavedForm>& forms, const QString& suffix) {
   return *std::find_if(forms.begin(), forms.end(),
                        [&](const SavedForm& form) { return form.suffix == suffix; });
@@ -122,7 +118,7 @@ QByteArray saved(const std::vector<SavedForm>& forms, const QString& suffix) {
   QSignalSpy done(&saver, &FileSaver::saved);
   const QString path = folder.filePath("file." + suffix);
   saver.save(path, formOf(forms, suffix));
-  return done.wait(20000) ? contentOfHandOn(path) : QByteArray();
+  return done.wait(20000) ? evical::test::fileContent(path) : QByteArray();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/recording/conversion.h"
+#include "tests/support/file_content.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/full_disk.h"
 #include "tests/ui/opengl.h"
@@ -38,11 +39,6 @@ void writeFile(const QString& path, const QByteArray& content) {
   QFile file(path);
   QVERIFY(file.open(QIODevice::WriteOnly));
   file.write(content);
-}
-
-QByteArray contentOfMainWindowBadInput(const QString& path) {
-  QFile file(path);
-  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
 
 }  // namespace
@@ -250,7 +246,7 @@ class TestMainWindowBadInput : public QObject {
     test.window.files().open(simulatedSession());
     const QString good = test.document().file();
     const QString bad = scratch_.filePath("unknown.yaml");
-    writeFile(bad, contentOfMainWindowBadInput(simulatedSession()) + "\nrecordings: a.bag\n");
+    writeFile(bad, evical::test::fileContent(simulatedSession()) + "\nrecordings: a.bag\n");
     test.window.files().open(bad);
     auto* const panel = test.child<ErrorPanel>();
     QVERIFY(panel->isVisible());

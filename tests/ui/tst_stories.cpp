@@ -34,13 +34,6 @@ using namespace evical::ui::test;
 
 namespace {
 
-void type(QLineEdit* field, const QString& text) {
-  field->setFocus();
-  field->selectAll();
-  QTest::keyClicks(field, text);
-  QTest::keyClick(field, Qt::Key_Return);
-}
-
 void press(QPushButton* button) {
   QVERIFY(button && button->isVisible() && button->isEnabled());
   QTest::mouseClick(button, Qt::LeftButton);

@@ -45,6 +45,14 @@ inline void spin(int duration_ms) {
   loop.exec();
 }
 
+// In place of what the field holds; ended by Return.
+inline void type(QLineEdit* field, const QString& text) {
+  field->setFocus();
+  field->selectAll();
+  QTest::keyClicks(field, text);
+  QTest::keyClick(field, Qt::Key_Return);
+}
+
 // Answers the next modal dialog: types a path into a file dialog, presses a button of a question.
 inline void answerFileDialog(const QString& path) {
   QTimer::singleShot(200, qApp, [path] {

@@ -3,6 +3,7 @@
 
 #include "ui/screens/check_words.h"
 #include "ui/screens/light_mark.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>
@@ -21,13 +22,6 @@
 namespace evical::ui {
 namespace {
 
-QLabel* cardLabel(const QString& text, const char* role, QWidget* parent) {
-  auto* const made = new QLabel(text, parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  return made;
-}
-
 // Of a rig with one camera and one IMU nobody needs the names.
 bool hasSeveralSensors(const RecordingAssessment& assessment) {
   const auto count = [&](AssessedThing thing) {
@@ -42,9 +36,9 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
 CheckCard::CheckCard(QWidget* parent)
     : QFrame(parent),
       mark_(new LightMark(this)),
-      summary_(cardLabel({}, "heading", this)),
-      advice_(cardLabel({}, "hint", this)),
-      board_(cardLabel({}, "hint", this)),
+      summary_(wrappedLabel({}, "heading", this)),
+      advice_(wrappedLabel({}, "hint", this)),
+      board_(wrappedLabel({}, "hint", this)),
       progress_(new QProgressBar(this)),
       more_(new QToolButton(this)),
       details_(new QScrollArea(this)),
@@ -121,7 +115,7 @@ QWidget* CheckCard::makeFollowLine() {
   connect(follow_, &QCheckBox::toggled, this, &CheckCard::followingWanted);
   auto* const layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(cardLabel(tr("The recording is growing."), "hint", line));
+  layout->addWidget(wrappedLabel(tr("The recording is growing."), "hint", line));
   layout->addWidget(follow_);
   layout->addStretch(1);
   line->hide();
@@ -227,10 +221,11 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
     mark->setLight(one.light);
     const QString sensor = QString::fromStdString(one.sensor);
     const QString title = titleOf(one.thing);
-    auto* const name = cardLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "",
-                                 details_->widget());
-    auto* const measured = cardLabel(QString::fromStdString(one.measured), "", details_->widget());
-    auto* const advice = cardLabel(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
+    auto* const name = wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "",
+                                    details_->widget());
+    auto* const measured = wrappedLabel(QString::fromStdString(one.measured), "", details_->widget());
+    auto* const advice =
+        wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
     name->setWordWrap(false);
     measured->setWordWrap(one.thing == AssessedThing::Obstacle);
     measured->setAccessibleName(tr("%1: %2, %3").arg(title, measured->text(), lightWord(one.light)));

@@ -12,12 +12,8 @@
 namespace evical::ui {
 namespace {
 
-QString text(const std::string& of_core) {
-  return QString::fromStdString(of_core);
-}
-
 QString size(double value, const std::string& unit) {
-  return QString("%1 %2").arg(text(html::significant(value, 2)), text(unit)).trimmed();
+  return QString("%1 %2").arg(fromCore(html::significant(value, 2)), fromCore(unit)).trimmed();
 }
 
 QString verdictOf(const CheckedQuantity& quantity) {
@@ -40,8 +36,8 @@ QString wordsOf(const CheckedQuantity& quantity) {
 }
 
 QTreeWidgetItem* itemOf(const CheckedNumber& number) {
-  auto* const item = new QTreeWidgetItem({text(number.name)});
-  const QString unit = number.unit.empty() ? QString() : " " + text(number.unit);
+  auto* const item = new QTreeWidgetItem({fromCore(number.name)});
+  const QString unit = number.unit.empty() ? QString() : " " + fromCore(number.unit);
   item->setText(CheckTable::kBefore, withSigma(number.before, number.before_sigma) + unit);
   item->setText(CheckTable::kNow, withSigma(number.now, number.now_sigma) + unit);
   item->setToolTip(CheckTable::kNow, QObject::tr("With the old result as prior: %1%2")
@@ -51,11 +47,11 @@ QTreeWidgetItem* itemOf(const CheckedNumber& number) {
 
 QTreeWidgetItem* itemOf(const CheckedQuantity& quantity) {
   auto* const item =
-      new QTreeWidgetItem({QString("%1: %2").arg(text(quantity.sensor), text(quantity.title))});
+      new QTreeWidgetItem({QString("%1: %2").arg(fromCore(quantity.sensor), fromCore(quantity.title))});
   item->setIcon(CheckTable::kVerdict, iconOf(quantity));
   item->setText(CheckTable::kVerdict, verdictOf(quantity));
   item->setText(CheckTable::kChange, QString("%1 %2 %3")
-                                         .arg(text(html::significant(quantity.change, 2)), QChar(0xb1),
+                                         .arg(fromCore(html::significant(quantity.change, 2)), QChar(0xb1),
                                               size(quantity.change_sigma, quantity.unit)));
   item->setText(CheckTable::kSigmas, QString::number(quantity.sigmas, 'f', 1));
   if (quantity.edge_px > 0.0) item->setText(CheckTable::kEdge, size(quantity.edge_px, "px"));

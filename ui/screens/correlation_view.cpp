@@ -22,11 +22,6 @@ namespace {
 
 constexpr int kColourScale_px = 34;  // the colour scale and its numbers, below
 
-QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
-  const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
-  return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
-}
-
 QColor colourOf(double correlation) {
   const QColor& end = correlation < 0.0 ? theme().axes[2] : theme().axes[0];
   return mixed(theme().panel, end, std::min(1.0, std::abs(correlation)));

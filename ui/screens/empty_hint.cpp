@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/empty_hint.h"
 
-#include "ui/screens/selectable_label.h"
+#include "ui/screens/wrapped_label.h"
 
 #include <QVBoxLayout>
 

@@ -16,11 +16,6 @@ namespace {
 
 constexpr double kMapScale_px = 40.0, kBar_px = 10.0, kMapMargin_px = 4.0;
 
-QColor mixedColour(const QColor& a, const QColor& b, double share_of_b) {
-  const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
-  return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
-}
-
 }  // namespace
 
 ImageMapView::ImageMapView(QWidget* parent) : QWidget(parent) {
@@ -48,7 +43,7 @@ QRectF ImageMapView::imageRect() const {
 // From the panel's colour to one that everybody tells from it, in lightness too.
 QColor ImageMapView::colourOf(double value) const {
   const QColor& end = cells_.more_is_better ? theme().accent : theme().warning;
-  return mixedColour(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
+  return mixed(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
 }
 
 QString ImageMapView::textOf(double value) const {

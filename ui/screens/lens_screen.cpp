@@ -2,12 +2,13 @@
 #include "ui/screens/lens_screen.h"
 
 #include "core/base/error.h"
+#include "ui/screens/check_words.h"
 #include "ui/screens/image_map_view.h"
 #include "ui/screens/lens_file.h"
 #include "ui/screens/lens_parameters.h"
-#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_icon.h"
 #include "ui/screens/views_chart.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -32,11 +33,6 @@ namespace evical::ui {
 namespace {
 
 enum LensColumn { kName, kValue, kSigma, kUnit, kDifference, kSigmas, kColumns };
-
-QString lensSentence(QString text) {
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
-  return text.isEmpty() || text.endsWith('.') ? text : text + '.';
-}
 
 QString lensVerdictWords(CalibrationStatus status) {
   switch (status) {
@@ -300,7 +296,7 @@ void LensScreen::compare() {
             tr("Their models differ, so that single numbers mean different things: compare where rays are "
                "seen, under Difference.");
     } catch (const CalibrationError& error) {
-      remark = tr("These cannot be compared. %1").arg(lensSentence(QString::fromStdString(error.what())));
+      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
     }
   }
   remark_->setText(remark);
@@ -315,15 +311,14 @@ void LensScreen::showVerdict() {
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(lensVerdictWords(result.status));
   reason_->setText(ok ? tr("The views determine the lens as well as needed.")
-                      : lensSentence(QString::fromStdString(result.reason)));
+                      : sentence(QString::fromStdString(result.reason)));
   fit_->setText(
       tr("%1: pixels of rays known to %2 px RMS; points fit to %3 px RMS in %4 views; took %5 s.")
           .arg(QString::fromStdString(lens_->camera), px(result.image.rms_px), px(result.reprojection_rms_px))
           .arg(result.views_used)
           .arg(result.elapsed_s, 0, 'f', 1));
   notes_->clear();
-  for (const std::string& advice : result.advice)
-    notes_->addItem(lensSentence(QString::fromStdString(advice)));
+  for (const std::string& advice : result.advice) notes_->addItem(sentence(QString::fromStdString(advice)));
   if (result.advice.empty()) notes_->addItem(tr("Nothing to improve: the views cover image and tilts."));
 }
 

@@ -8,9 +8,9 @@
 #include "ui/screens/file_list.h"
 #include "ui/screens/maintain_table.h"
 #include "ui/screens/old_result_row.h"
-#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_line.h"
 #include "ui/screens/work_bar.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>

@@ -15,28 +15,24 @@
 namespace evical::ui {
 namespace {
 
-QString maintainText(const std::string& of_core) {
-  return QString::fromStdString(of_core);
-}
-
 QString unitSuffix(const std::string& unit) {
-  return unit.empty() || unit == "1" ? QString() : " " + maintainText(unit);
+  return unit.empty() || unit == "1" ? QString() : " " + fromCore(unit);
 }
 
 QString maintainSize(double value, const std::string& unit) {
   if (!std::isfinite(value)) return QChar(0x2013);
-  return maintainText(html::significant(value, 2)) + unitSuffix(unit);
+  return fromCore(html::significant(value, 2)) + unitSuffix(unit);
 }
 
 QString sizeWithSigma(double value, double sigma, const std::string& unit) {
   if (!std::isfinite(sigma)) return QChar(0x2013);
   return QString("%1 %2 %3")
-      .arg(maintainText(html::significant(value, 2)), QChar(0xb1), maintainSize(sigma, unit));
+      .arg(fromCore(html::significant(value, 2)), QChar(0xb1), maintainSize(sigma, unit));
 }
 
 QString sensorText(const std::string& sensor, const std::string& against) {
-  return against.empty() ? maintainText(sensor)
-                         : QObject::tr("%1 against %2").arg(maintainText(sensor), maintainText(against));
+  return against.empty() ? fromCore(sensor)
+                         : QObject::tr("%1 against %2").arg(fromCore(sensor), fromCore(against));
 }
 
 QString maintainVerdictOf(const MaintainedQuantity& quantity) {
@@ -74,7 +70,7 @@ QString maintainWordsOf(const MaintainedQuantity& quantity) {
 QTreeWidgetItem* maintainItemOf(const MaintainedNumber& number) {
   const QString unit = unitSuffix(number.unit).trimmed();
   auto* const item = new QTreeWidgetItem(
-      {unit.isEmpty() ? maintainText(number.name) : QString("%1 [%2]").arg(maintainText(number.name), unit)});
+      {unit.isEmpty() ? fromCore(number.name) : QString("%1 [%2]").arg(fromCore(number.name), unit)});
   item->setText(MaintainTable::kBefore, withSigma(number.before, number.before_sigma));
   item->setText(MaintainTable::kNow, withSigma(number.now, number.now_sigma));
   return item;
@@ -83,13 +79,13 @@ QTreeWidgetItem* maintainItemOf(const MaintainedNumber& number) {
 QString noticeText(const MaintainedQuantity& quantity) {
   if (!std::isfinite(quantity.would_notice)) return QChar(0x2013);
   return QString("%1 (%2)%3")
-      .arg(maintainText(html::significant(quantity.would_notice, 2)),
-           maintainText(html::significant(quantity.matters, 2)), unitSuffix(quantity.unit));
+      .arg(fromCore(html::significant(quantity.would_notice, 2)),
+           fromCore(html::significant(quantity.matters, 2)), unitSuffix(quantity.unit));
 }
 
 QTreeWidgetItem* maintainItemOf(const MaintainedQuantity& quantity) {
   auto* const item = new QTreeWidgetItem(
-      {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), maintainText(quantity.title))});
+      {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), fromCore(quantity.title))});
   item->setIcon(MaintainTable::kVerdict, maintainIconOf(quantity));
   item->setText(MaintainTable::kVerdict, maintainVerdictOf(quantity));
   item->setText(MaintainTable::kSource, sourceOf(quantity.source));
@@ -161,15 +157,15 @@ void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
   clear();
   for (const MaintenanceStep& step : steps) {
     QStringList others;
-    for (const std::string& other : step.or_else) others << maintainText(other);
+    for (const std::string& other : step.or_else) others << fromCore(other);
     auto* const item = new QTreeWidgetItem(
-        {QString("%1: %2").arg(sensorText(step.sensor, step.against), maintainText(step.title)),
+        {QString("%1: %2").arg(sensorText(step.sensor, step.against), fromCore(step.title)),
          QString("%1 s").arg(step.at_s, 0, 'f', 1), QString("%1 s").arg(step.noticed_s, 0, 'f', 1),
          sizeWithSigma(step.size, step.size_sigma, step.unit), others.join(", ")});
     alignNumbers(*item, kAt, kOrElse);
     for (const MaintainedNumber& number : step.numbers)
       item->setToolTip(kBy, QString("%1\n%2: %3")
-                                .arg(item->toolTip(kBy), maintainText(number.name),
+                                .arg(item->toolTip(kBy), fromCore(number.name),
                                      withSigma(number.now, number.now_sigma) + unitSuffix(number.unit))
                                 .trimmed());
     addTopLevelItem(item);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers as tables show them.
+// Numbers and words as tables show them.
 #pragma once
 
 #include "ui/screens/result_parameters.h"
 
 namespace evical::ui {
+
+inline QString fromCore(const std::string& utf8) {
+  return QString::fromStdString(utf8);
+}
 
 // "12.345 +- 0.012": to the sigma's second digit; the value alone where it has none.
 inline QString withSigma(double value, double sigma) {

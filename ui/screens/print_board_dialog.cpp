@@ -9,6 +9,7 @@
 #include "ui/screens/board_form.h"
 #include "ui/screens/measured_form.h"
 #include "ui/screens/sheet_preview.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -49,13 +50,6 @@ QString textOf(const CalibrationError& error) {
   return text;
 }
 
-QLabel* wrapped(const QString& text, const char* role, QWidget* parent) {
-  auto* const label = new QLabel(text, parent);
-  label->setProperty("role", role);
-  label->setWordWrap(true);
-  return label;
-}
-
 QPushButton* sheetButton(const QString& icon_name, const QString& text, const QString& tip, QWidget* parent) {
   auto* const made = new QPushButton(icon(icon_name), text, parent);
   made->setToolTip(tip);
@@ -86,10 +80,11 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
       margin_mm_(new NumberField(0.0, 500.0, this)),
       resolution_dpi_(new QSpinBox(this)),
       preview_(new SheetPreview(this)),
-      message_(wrapped({}, "hint", this)),
-      half_turn_(wrapped(tr("This board looks the same when it is turned upside down: it does for a camera's "
-                            "lens alone, not with an IMU. Take an odd number of rows."),
-                         "problem", this)),
+      message_(wrappedLabel({}, "hint", this)),
+      half_turn_(
+          wrappedLabel(tr("This board looks the same when it is turned upside down: it does for a camera's "
+                          "lens alone, not with an IMU. Take an odd number of rows."),
+                       "problem", this)),
       measured_(new MeasuredForm(this)) {
   setWindowTitle(tr("Print a board"));
   setObjectName("print_board");
@@ -180,9 +175,9 @@ QWidget* PrintBoardDialog::makeMeasure() {
   auto* const group = new QGroupBox(tr("3. After printing"), this);
   auto* const layout = new QVBoxLayout(group);
   layout->addWidget(
-      wrapped(tr("The line below the board must be 100 mm long. Glue the print to something flat, "
-                 "and measure it: the board's size is the result's."),
-              "hint", group));
+      wrappedLabel(tr("The line below the board must be 100 mm long. Glue the print to something flat, "
+                      "and measure it: the board's size is the result's."),
+                   "hint", group));
   layout->addWidget(measured_);
   layout->addWidget(take_);
   return group;

@@ -10,6 +10,7 @@
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
 #include "ui/screens/time_range_form.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -35,13 +36,6 @@ bool isOfUnfinishedFile(FaultKind kind) {
   return kind == FaultKind::Truncated || kind == FaultKind::NoIndex;
 }
 
-QLabel* recordingLabel(const QString& text, const char* role, QWidget* parent) {
-  auto* const made = new QLabel(text, parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  return made;
-}
-
 // `beside`: on the heading's line.
 QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget* beside = nullptr) {
   auto* const frame = new QFrame(parent);
@@ -49,7 +43,7 @@ QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget*
   auto* const layout = new QVBoxLayout(frame);
   layout->setContentsMargins(14, 10, 14, 12);
   auto* const line = new QHBoxLayout;
-  line->addWidget(recordingLabel(heading, "heading", frame), beside == nullptr ? 1 : 0);
+  line->addWidget(wrappedLabel(heading, "heading", frame), beside == nullptr ? 1 : 0);
   if (beside != nullptr) line->addWidget(beside, 1);
   layout->addLayout(line);
   layout->addWidget(content, 1);
@@ -90,12 +84,12 @@ void showOrHide(QLabel* shown, const QString& text) {
 RecordingScreen::RecordingScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
-      title_(recordingLabel({}, "title", this)),
-      path_(recordingLabel({}, "hint", this)),
-      verdict_(recordingLabel({}, "heading", this)),
-      looking_text_(recordingLabel({}, "hint", this)),
-      stream_problem_(recordingLabel({}, "problem", this)),
-      file_faults_(recordingLabel({}, "problem", this)),
+      title_(wrappedLabel({}, "title", this)),
+      path_(wrappedLabel({}, "hint", this)),
+      verdict_(wrappedLabel({}, "heading", this)),
+      looking_text_(wrappedLabel({}, "hint", this)),
+      stream_problem_(wrappedLabel({}, "problem", this)),
+      file_faults_(wrappedLabel({}, "problem", this)),
       looking_(new QProgressBar(this)),
       streams_(new StreamTable(this)),
       time_range_(new TimeRangeForm(this)),
@@ -129,7 +123,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
 QWidget* RecordingScreen::makeEmpty() {
   auto* const empty = new QWidget(this);
   auto* const layout = new QVBoxLayout(empty);
-  auto* const text = recordingLabel(tr("No recording yet."), "heading", empty);
+  auto* const text = wrappedLabel(tr("No recording yet."), "heading", empty);
   text->setAlignment(Qt::AlignCenter);
   auto* const open = new QPushButton(icon("recording"), tr("Open a recording..."), empty);
   connect(open, &QPushButton::clicked, this, &RecordingScreen::openRecordingRequested);

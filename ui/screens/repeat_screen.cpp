@@ -6,9 +6,9 @@
 #include "ui/screens/file_list.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_table.h"
-#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_line.h"
 #include "ui/screens/work_bar.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>

@@ -16,10 +16,6 @@ namespace {
 
 constexpr double kFar_sigmas = 3.0;
 
-QString repeatText(const std::string& of_core) {
-  return QString::fromStdString(of_core);
-}
-
 QString shownNumber(const std::optional<ComparedNumber>& number) {
   return number ? withSigma(number->value, number->sigma) : QString(QChar(0x2013));
 }
@@ -46,10 +42,10 @@ QString repeatWordsOf(const RepeatedRecording& recording) {
   QStringList parts;
   for (const CheckedQuantity& quantity : recording.differs)
     parts << QObject::tr("%1 of %2 differs by %3 %4 %5 %6")
-                 .arg(repeatText(quantity.title), repeatText(quantity.sensor),
-                      repeatText(html::significant(quantity.change, 2)), QChar(0xb1),
-                      repeatText(html::significant(quantity.change_sigma, 2)), repeatText(quantity.unit));
-  if (!recording.reason.empty()) parts << repeatText(recording.reason);
+                 .arg(fromCore(quantity.title), fromCore(quantity.sensor),
+                      fromCore(html::significant(quantity.change, 2)), QChar(0xb1),
+                      fromCore(html::significant(quantity.change_sigma, 2)), fromCore(quantity.unit));
+  if (!recording.reason.empty()) parts << fromCore(recording.reason);
   return parts.isEmpty() ? QObject::tr("nothing against it") : parts.join("; ");
 }
 
@@ -103,16 +99,16 @@ void RepeatTable::fillPair(const RepeatedNumber& number, QTreeWidgetItem& item) 
 }
 
 QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
-  const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(repeatText(number.unit));
-  auto* const item = new QTreeWidgetItem({repeatText(number.name) + unit});
+  const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(fromCore(number.unit));
+  auto* const item = new QTreeWidgetItem({fromCore(number.name) + unit});
   // As many decimals as its spread has.
   const double spread = number.deviation > 0.0 ? number.deviation : number.mean_sigma;
   item->setText(kMean, withSigma(number.mean, spread).section(' ', 0, 0));
   if (number.count > 1) {
-    item->setText(kDeviation, repeatText(html::significant(number.deviation, 2)));
+    item->setText(kDeviation, fromCore(html::significant(number.deviation, 2)));
     item->setText(kRatio, QString::number(number.ratio(), 'f', 2));
   }
-  item->setText(kMeanSigma, repeatText(html::significant(number.mean_sigma, 2)));
+  item->setText(kMeanSigma, fromCore(html::significant(number.mean_sigma, 2)));
   item->setText(kTogether, shownNumber(numberOf(number, kAllTogether)));
   if (pair_) fillPair(number, *item);
   alignNumbers(*item, kMean, kColumns);
@@ -124,7 +120,7 @@ void RepeatTable::fill() {
   for (const RepeatedQuantity& quantity : repeat_.quantities) {
     const QString own = quantity.common ? QString() : tr(" (each recording has its own)");
     auto* const heading = new QTreeWidgetItem(
-        {QString("%1: %2%3").arg(repeatText(quantity.sensor), repeatText(quantity.title), own)});
+        {QString("%1: %2%3").arg(fromCore(quantity.sensor), fromCore(quantity.title), own)});
     QFont bold = font();
     bold.setWeight(QFont::DemiBold);
     heading->setFont(kNumber, bold);
@@ -175,8 +171,8 @@ void RepeatedList::fill() {
         recording.freedom > 0
             ? tr("%1 of %2").arg(recording.chi_square, 0, 'f', 1).arg(recording.limit, 0, 'f', 1)
             : QString();
-    auto* const item = new QTreeWidgetItem({repeatText(recording.name), outcomeOf(recording), distance,
-                                            repeatWordsOf(recording), repeatText(recording.file)});
+    auto* const item = new QTreeWidgetItem({fromCore(recording.name), outcomeOf(recording), distance,
+                                            repeatWordsOf(recording), fromCore(recording.file)});
     item->setIcon(kOutcome, repeatIconOf(recording));
     alignNumbers(*item, kDistance, kDistance + 1);
     for (const int column : {kName, kWhat, kFile}) item->setToolTip(column, item->text(column));

@@ -5,9 +5,9 @@
 #include "ui/screens/check_words.h"
 #include "ui/screens/empty_hint.h"
 #include "ui/screens/old_result_row.h"
-#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_line.h"
 #include "ui/screens/work_bar.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>

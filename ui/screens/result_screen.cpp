@@ -3,13 +3,14 @@
 
 #include "core/base/error.h"
 #include "ui/forms/repair_button.h"
+#include "ui/screens/check_words.h"
 #include "ui/screens/correlation_view.h"
 #include "ui/screens/observability_view.h"
 #include "ui/screens/pose_panel.h"
 #include "ui/screens/quantity_table.h"
 #include "ui/screens/result_parameters.h"
-#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_icon.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -37,11 +38,6 @@ QString verdictWords(CalibrationStatus status) {
       return QObject::tr("Failed");
   }
   return {};
-}
-
-QString resultSentence(QString text) {
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
-  return text.isEmpty() || text.endsWith('.') ? text : text + '.';
 }
 
 QString fitText(const NamedResult& named) {
@@ -272,7 +268,7 @@ void ResultScreen::showVerdict() {
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
-                      : resultSentence(QString::fromStdString(result.reason)));
+                      : sentence(QString::fromStdString(result.reason)));
   repair_->setRepair(result.repair);
   fit_->setText(fitText(*result_));
 }
@@ -286,7 +282,7 @@ void ResultScreen::showParameters() {
     try {
       compare(groups, *result_, *other);
     } catch (const CalibrationError& error) {
-      remark = tr("These cannot be compared. %1").arg(resultSentence(QString::fromStdString(error.what())));
+      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
     }
   }
   comparison_->setText(remark);
@@ -310,7 +306,7 @@ void ResultScreen::showDetails() {
   pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
   notes_->clear();
   for (const std::string& note : result_->result->notes)
-    notes_->addItem(resultSentence(QString::fromStdString(note)));
+    notes_->addItem(sentence(QString::fromStdString(note)));
 }
 
 void ResultScreen::changeEvent(QEvent* event) {

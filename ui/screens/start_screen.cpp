@@ -2,6 +2,7 @@
 #include "ui/screens/start_screen.h"
 
 #include "ui/screens/aim_chooser.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QDir>
@@ -18,13 +19,6 @@ namespace {
 
 constexpr int kColumn_px = 400, kHeading_px = 30, kRecent_px = 296;
 
-QLabel* startLabel(const QString& text, const char* role, QWidget* parent) {
-  auto* const made = new QLabel(text, parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  return made;
-}
-
 QPushButton* choice(const QString& text, const QString& icon_name, QWidget* parent) {
   constexpr int kHeight_px = 44, kIcon_px = 22;
   auto* const button = new QPushButton(icon(icon_name), "  " + text, parent);
@@ -39,7 +33,7 @@ QPushButton* choice(const QString& text, const QString& icon_name, QWidget* pare
 StartScreen::StartScreen(QWidget* parent)
     : QWidget(parent),
       recent_(new QListWidget(this)),
-      no_recent_(startLabel(tr("Nothing yet. What you open is listed here."), "hint", this)),
+      no_recent_(wrappedLabel(tr("Nothing yet. What you open is listed here."), "hint", this)),
       demo_(choice(tr("Try the demo recording"), "demo", this)),
       demo_progress_(new QProgressBar(this)),
       aim_(new AimChooser(this)) {
@@ -62,11 +56,11 @@ QWidget* StartScreen::makeChoices() {
   column->setFixedWidth(kColumn_px);
   auto* const layout = new QVBoxLayout(column);
   layout->setSpacing(10);
-  layout->addWidget(startLabel(tr("Evical"), "title", column));
+  layout->addWidget(wrappedLabel(tr("Evical"), "title", column));
   layout->addWidget(
-      startLabel(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
-                    "with how sure it is, from one recording of a printed circle grid. Or a camera alone."),
-                 "hint", column));
+      wrappedLabel(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
+                      "with how sure it is, from one recording of a printed circle grid. Or a camera alone."),
+                   "hint", column));
   layout->addSpacing(6);
   layout->addWidget(aim_, 0, Qt::AlignLeft);
   layout->addSpacing(6);
@@ -90,7 +84,7 @@ QWidget* StartScreen::makeChoices() {
   demo_progress_->setTextVisible(false);
   layout->addWidget(demo_progress_);
   layout->addSpacing(8);
-  layout->addWidget(startLabel(tr("Or drop a file anywhere in this window."), "hint", column));
+  layout->addWidget(wrappedLabel(tr("Or drop a file anywhere in this window."), "hint", column));
   layout->addStretch();
   connect(recording, &QPushButton::clicked, this, &StartScreen::openRecordingRequested);
   connect(session, &QPushButton::clicked, this, &StartScreen::openSessionRequested);
@@ -104,7 +98,7 @@ QWidget* StartScreen::makeRecent() {
   auto* const column = new QWidget(this);
   column->setFixedWidth(kColumn_px);
   auto* const layout = new QVBoxLayout(column);
-  auto* const heading = startLabel(tr("Recent"), "heading", column);
+  auto* const heading = wrappedLabel(tr("Recent"), "heading", column);
   heading->setMinimumHeight(kHeading_px);
   layout->addWidget(heading);
   layout->addWidget(no_recent_);

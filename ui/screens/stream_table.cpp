@@ -2,6 +2,7 @@
 #include "ui/screens/stream_table.h"
 
 #include "core/base/time.h"
+#include "ui/screens/number_words.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -18,10 +19,6 @@ namespace {
 enum StreamColumn { kRole, kStream, kContent, kCount, kRate, kRange, kFaults, kStreamColumns };
 constexpr int kNameRole = Qt::UserRole, kRecordingRole = Qt::UserRole + 1;
 
-QString streamText(const std::string& utf8) {
-  return QString::fromStdString(utf8);
-}
-
 // 12022916 per second reads worse than 12.02 M/s.
 QString rateText(const StreamSummary& stream) {
   constexpr double kMillion = 1e6, kThousand = 1e3;
@@ -35,7 +32,7 @@ QString rateText(const StreamSummary& stream) {
 }
 
 QString streamUnitText(const std::string& unit) {
-  return streamText(unit).replace("^2", QChar(0xb2));
+  return fromCore(unit).replace("^2", QChar(0xb2));
 }
 
 QString contentText(const StreamSummary& stream) {
@@ -48,16 +45,16 @@ QString contentText(const StreamSummary& stream) {
       return QObject::tr("IMU, %1, %2")
           .arg(streamUnitText(stream.acceleration_unit), streamUnitText(stream.angular_rate_unit));
     case StreamType::Frames:
-      if (!stream.info.readable) return streamText(stream.info.message);
+      if (!stream.info.readable) return fromCore(stream.info.message);
       if (!stream.info.resolution_px.known())
-        return QObject::tr("frames (%1)").arg(streamText(stream.info.message));
+        return QObject::tr("frames (%1)").arg(fromCore(stream.info.message));
       return QObject::tr("frames, %1 x %2 px")
           .arg(stream.info.resolution_px.width_px)
           .arg(stream.info.resolution_px.height_px);
     case StreamType::Points:
       return QObject::tr("points of the board");
     default:
-      return streamText(stream.info.message);
+      return fromCore(stream.info.message);
   }
 }
 
@@ -132,7 +129,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   const int row = rowCount();
   insertRow(row);
   QComboBox* const box = roleBox(stream.info, this);
-  box->setAccessibleName(tr("Role of %1").arg(streamText(stream.info.name)));
+  box->setAccessibleName(tr("Role of %1").arg(fromCore(stream.info.name)));
   // In the row's middle, at its own height.
   auto* const cell = new QWidget(this);
   auto* const layout = new QHBoxLayout(cell);
@@ -142,18 +139,18 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   constexpr int kPadding_px = 24;
   setColumnWidth(kRole, std::max(columnWidth(kRole), box->sizeHint().width() + kPadding_px));
   connect(box, &QComboBox::activated, this, [this, row] { emit roleChosen(row, role(row)); });
-  const QString name = streamText(stream.info.name), file = streamText(own_recording.filename().string());
+  const QString name = fromCore(stream.info.name), file = fromCore(own_recording.filename().string());
   setItem(row, kStream, readOnlyItem(file.isEmpty() || file == name ? name : file + ": " + name));
   item(row, kStream)->setData(kNameRole, name);
-  item(row, kStream)->setData(kRecordingRole, streamText(own_recording.string()));
-  if (!own_recording.empty()) item(row, kStream)->setToolTip(streamText(own_recording.string()));
+  item(row, kStream)->setData(kRecordingRole, fromCore(own_recording.string()));
+  if (!own_recording.empty()) item(row, kStream)->setToolTip(fromCore(own_recording.string()));
   setItem(row, kContent, readOnlyItem(contentText(stream)));
   setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : QLocale().toString(stream.count)));
   setItem(row, kRate, readOnlyItem(rateText(stream)));
   setItem(row, kRange, readOnlyItem(rangeText(stream)));
   QStringList own;
   for (const RecordingFault& fault : faults)
-    if (fault.stream == stream.info.name) own << streamText(fault.text);
+    if (fault.stream == stream.info.name) own << fromCore(fault.text);
   setItem(row, kFaults,
           readOnlyItem(own.isEmpty()     ? (stream.count == 0 ? QString() : tr("none found"))
                        : own.size() == 1 ? own.front()

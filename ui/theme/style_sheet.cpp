@@ -58,11 +58,6 @@ QScrollBar::add-line, QScrollBar::sub-line { width: 0; height: 0; }
 QScrollBar::add-page, QScrollBar::sub-page { background: transparent; }
 )";
 
-QString mixed(const QColor& a, const QColor& b, double share_of_b) {
-  const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
-  return QColor(mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())).name();
-}
-
 }  // namespace
 
 QString styleSheetOf(const Theme& t) {
@@ -71,17 +66,17 @@ QString styleSheetOf(const Theme& t) {
   rules.replace("@text", t.text.name());
   rules.replace("@faint", t.faint_text.name());
   // In the dark, Fusion's fields have no visible outline: they are wells in a lighter ground.
-  rules.replace("@card", t.dark ? mixed(t.window, t.text, kRaised) : t.panel.name());
+  rules.replace("@card", t.dark ? mixed(t.window, t.text, kRaised).name() : t.panel.name());
   rules.replace("@panel", t.panel.name());
   rules.replace("@window", t.window.name());
   rules.replace("@line", t.grid_line.name());
   rules.replace("@on_accent", t.dark ? "#101317" : "#ffffff");
-  rules.replace("@accent_hover", mixed(t.accent, t.text, kHover));
+  rules.replace("@accent_hover", mixed(t.accent, t.text, kHover).name());
   rules.replace("@accent", t.accent.name());
   rules.replace("@bad", t.bad.name());
-  rules.replace("@hover", mixed(t.window, t.text, kHover));
-  rules.replace("@selected", mixed(t.window, t.accent, kSelected));
-  rules.replace("@border", mixed(t.window, t.faint_text, kBorder));
+  rules.replace("@hover", mixed(t.window, t.text, kHover).name());
+  rules.replace("@selected", mixed(t.window, t.accent, kSelected).name());
+  rules.replace("@border", mixed(t.window, t.faint_text, kBorder).name());
   return rules;
 }
 

@@ -25,6 +25,12 @@ struct Theme {
   std::array<QColor, 8> series;  // curves, in order
 };
 
+// Between two colours; `share_of_b` from 0 to 1.
+inline QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
+  const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
+  return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
+}
+
 const Theme& theme();  // of the palette that is set; GUI thread only
 
 // Fusion style, palette, style sheet and font. May be called again to switch.

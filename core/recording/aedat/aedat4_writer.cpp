@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/aedat/device_names.h"
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
@@ -16,11 +17,6 @@ namespace {
 constexpr std::int64_t kAedat4PacketSpan_ns = 10'000'000;  // as DV's cameras
 constexpr std::size_t kAedat4PacketEvents = 65'536;
 constexpr std::size_t kAedat4PacketSamples = 1'000;
-
-template <class Number>
-std::string fieldBytes(Number value) {
-  return std::string(reinterpret_cast<const char*>(&value), sizeof(Number));
-}
 
 class Aedat4Writer : public RecordingWriter {
  public:
@@ -61,7 +57,7 @@ class Aedat4Writer : public RecordingWriter {
     const auto table_position = static_cast<std::int64_t>(file_.size());
     aedat::pack(compression_, aedat::encodeTable(table_), packed_);
     file_.append(packed_);
-    file_.overwrite(table_position_at_, fieldBytes(table_position));
+    file_.overwrite(table_position_at_, numberBytes(table_position));
     file_.finish();
   }
 
@@ -128,10 +124,10 @@ class Aedat4Writer : public RecordingWriter {
     entry.stream = static_cast<std::int32_t>(stream);
     entry.size = static_cast<std::int32_t>(packed_.size());
     entry.count = static_cast<std::int64_t>(count);
-    entry.first_us = aedat::nearestMicrosecond(first_ns);
-    entry.last_us = aedat::nearestMicrosecond(last_ns);
+    entry.first_us = nearestMicrosecond(first_ns);
+    entry.last_us = nearestMicrosecond(last_ns);
     table_.push_back(entry);
-    file_.append(fieldBytes(entry.stream) + fieldBytes(entry.size));
+    file_.append(numberBytes(entry.stream) + numberBytes(entry.size));
     file_.append(packed_);
   }
 

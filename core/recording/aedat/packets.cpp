@@ -188,9 +188,4 @@ std::string_view packetType(std::string_view bytes) {
   return FlatBuffer(bytes).identifier();
 }
 
-std::int64_t nearestMicrosecond(std::int64_t time_ns) {
-  const std::int64_t floor_us = time_ns / kMicrosecond_ns - (time_ns % kMicrosecond_ns < 0 ? 1 : 0);
-  return floor_us + (time_ns - floor_us * kMicrosecond_ns >= kMicrosecond_ns / 2 ? 1 : 0);
-}
-
 }  // namespace evical::aedat

@@ -50,6 +50,4 @@ std::string encodeTable(std::span<const TableEntry> entries);
 std::string encodeEvents(EventSpan events);
 std::string encodeImu(std::span<const RawImuSample> samples);  // given in g and deg/s
 
-std::int64_t nearestMicrosecond(std::int64_t time_ns);
-
 }  // namespace evical::aedat

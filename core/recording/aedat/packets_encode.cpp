@@ -1,4 +1,5 @@
 // The flatbuffers are laid out with fixed offsets: what stands before an element is the same in every packet.
+#include "core/base/time.h"
 #include "core/recording/aedat/packets.h"
 
 #include <array>

@@ -19,11 +19,6 @@ namespace {
 
 constexpr hsize_t kEventChunk = 65'536, kImuChunk = 1'024;
 
-std::int64_t nearestMicrosecond(std::int64_t time_ns) {
-  const std::int64_t floor_us = time_ns / kMicrosecond_ns - (time_ns % kMicrosecond_ns < 0 ? 1 : 0);
-  return floor_us + (time_ns - floor_us * kMicrosecond_ns >= kMicrosecond_ns / 2 ? 1 : 0);
-}
-
 // A dataset that grows at its end, chunk by chunk.
 template <class Number>
 class GrowingDataset {

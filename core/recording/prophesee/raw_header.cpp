@@ -1,6 +1,7 @@
 #include "core/recording/prophesee/raw_header.h"
 
 #include "core/base/error.h"
+#include "core/base/trimmed.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fmt/format.h>
@@ -41,15 +42,9 @@ constexpr KnownSystem kSystems[] = {
 constexpr int kSystemMask = 0x7F;
 constexpr int kFirstPlainSystem = 55;  // from which EVT 2.1 has its halves in order
 
-std::string_view trimmedValue(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
-  const std::size_t end = text.find_last_not_of(" \t\r");
-  return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
-}
-
 std::optional<int> headerNumber(std::string_view text) {
   int number = 0;
-  text = trimmedValue(text);
+  text = trimmed(text);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
@@ -75,11 +70,10 @@ std::vector<Field> takeHeaderFields(const std::filesystem::path& path, std::stri
                      "Copy the file again");
     }
     offset = end + 1;
-    const std::string_view content = trimmedValue(line.substr(2));
+    const std::string_view content = trimmed(line.substr(2));
     if (content == "end") break;
     const std::size_t blank = std::min(content.find(' '), content.size());
-    fields.push_back(
-        {std::string(content.substr(0, blank)), std::string(trimmedValue(content.substr(blank)))});
+    fields.push_back({std::string(content.substr(0, blank)), std::string(trimmed(content.substr(blank)))});
   }
   return fields;
 }

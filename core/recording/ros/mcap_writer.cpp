@@ -1,5 +1,6 @@
 #include "core/recording/ros/mcap_writer.h"
 
+#include "core/recording/part_file.h"
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/mcap_records.h"
 #include "core/recording/ros/message_bytes.h"
@@ -12,13 +13,13 @@
 namespace evical {
 namespace {
 
-using ros::bytesOf, ros::sized;
+using ros::sized;
 
 constexpr std::size_t kChunk_bytes = 1 << 20;
 constexpr std::int64_t kMcapSecondsEnd = std::int64_t{1} << 31;  // int32 sec
 
 std::string record(mcap::Op op, std::string_view content) {
-  std::string bytes = bytesOf(op) + bytesOf(std::uint64_t{content.size()});
+  std::string bytes = numberBytes(op) + numberBytes(std::uint64_t{content.size()});
   return bytes.append(content);
 }
 
@@ -45,7 +46,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const std::vector<Stre
 void McapWriter::finish() {
   flushEvents();
   flushChunk();
-  file_.append(record(mcap::Op::DataEnd, bytesOf(std::uint32_t{0})));  // no checksum
+  file_.append(record(mcap::Op::DataEnd, numberBytes(std::uint32_t{0})));  // no checksum
   appendSummary();
   file_.append(mcap::kMagic);
   file_.finish();
@@ -60,8 +61,8 @@ void McapWriter::appendMessage(std::size_t stream, std::uint32_t sequence, std::
   const auto time = static_cast<std::uint64_t>(time_ns);
   channel.index.emplace_back(time, chunk_.size());
   constexpr std::uint64_t kHead_bytes = 2 + 4 + 8 + 8;
-  chunk_ += bytesOf(mcap::Op::Message) + bytesOf(kHead_bytes + message.size()) + bytesOf(idOf(stream)) +
-            bytesOf(sequence) + bytesOf(time) + bytesOf(time);
+  chunk_ += numberBytes(mcap::Op::Message) + numberBytes(kHead_bytes + message.size()) +
+            numberBytes(idOf(stream)) + numberBytes(sequence) + numberBytes(time) + numberBytes(time);
   chunk_ += message;
   if (chunk_.size() >= kChunk_bytes) flushChunk();
 }
@@ -82,9 +83,10 @@ void McapWriter::flushChunk() {
   const std::string& data = compression_ == McapCompression::None ? chunk_ : packed_;
   info.plain_bytes = chunk_.size();
   info.packed_bytes = data.size();
-  const std::string head = bytesOf(info.first_ns) + bytesOf(info.last_ns) + bytesOf(info.plain_bytes) +
-                           bytesOf(crcOf(0, chunk_)) + sized(compressionName()) + bytesOf(info.packed_bytes);
-  file_.append(bytesOf(mcap::Op::Chunk) + bytesOf(std::uint64_t{head.size() + data.size()}) + head);
+  const std::string head = numberBytes(info.first_ns) + numberBytes(info.last_ns) +
+                           numberBytes(info.plain_bytes) + numberBytes(crcOf(0, chunk_)) +
+                           sized(compressionName()) + numberBytes(info.packed_bytes);
+  file_.append(numberBytes(mcap::Op::Chunk) + numberBytes(std::uint64_t{head.size() + data.size()}) + head);
   file_.append(data);
   info.size = file_.size() - info.position;
   appendIndexes(info);
@@ -99,9 +101,9 @@ void McapWriter::appendIndexes(ChunkInfo& chunk) {
     if (index.empty()) continue;
     std::sort(index.begin(), index.end());
     std::string entries;
-    for (const auto& [time, offset] : index) entries += bytesOf(time) + bytesOf(offset);
-    chunk.index_offsets += bytesOf(idOf(i)) + bytesOf(file_.size());
-    file_.append(record(mcap::Op::MessageIndex, bytesOf(idOf(i)) + sized(entries)));
+    for (const auto& [time, offset] : index) entries += numberBytes(time) + numberBytes(offset);
+    chunk.index_offsets += numberBytes(idOf(i)) + numberBytes(file_.size());
+    file_.append(record(mcap::Op::MessageIndex, numberBytes(idOf(i)) + sized(entries)));
     index.clear();
   }
   chunk.index_bytes = file_.size() - begin;
@@ -113,8 +115,8 @@ void McapWriter::appendSummary() {
   std::string summary, offsets;
   const auto group = [&](mcap::Op op, const std::string& records) {
     if (records.empty()) return;
-    offsets += record(mcap::Op::SummaryOffset,
-                      bytesOf(op) + bytesOf(start + summary.size()) + bytesOf(std::uint64_t{records.size()}));
+    offsets += record(mcap::Op::SummaryOffset, numberBytes(op) + numberBytes(start + summary.size()) +
+                                                   numberBytes(std::uint64_t{records.size()}));
     summary += records;
   };
   std::string schemas, channels, indexes;
@@ -127,10 +129,10 @@ void McapWriter::appendSummary() {
   group(mcap::Op::Channel, channels);
   group(mcap::Op::Statistics, statisticsRecord());
   group(mcap::Op::ChunkIndex, indexes);
-  std::string footer = bytesOf(mcap::Op::Footer) + bytesOf(std::uint64_t{20}) + bytesOf(start) +
-                       bytesOf(start + summary.size());
+  std::string footer = numberBytes(mcap::Op::Footer) + numberBytes(std::uint64_t{20}) + numberBytes(start) +
+                       numberBytes(start + summary.size());
   summary += offsets;
-  footer += bytesOf(crcOf(crcOf(0, summary), footer));
+  footer += numberBytes(crcOf(crcOf(0, summary), footer));
   file_.append(summary);
   file_.append(footer);
 }
@@ -143,19 +145,20 @@ const char* McapWriter::compressionName() const {
 std::string McapWriter::schemaRecord(std::size_t stream) const {
   const ros::MessageType& type = messageType(stream);
   return record(mcap::Op::Schema,
-                bytesOf(idOf(stream)) + sized(type.name) + sized("ros2msg") + sized(type.definition));
+                numberBytes(idOf(stream)) + sized(type.name) + sized("ros2msg") + sized(type.definition));
 }
 
 std::string McapWriter::channelRecord(std::size_t stream) const {
-  return record(mcap::Op::Channel, bytesOf(idOf(stream)) + bytesOf(idOf(stream)) + sized(info(stream).name) +
-                                       sized("cdr") + sized(""));
+  return record(mcap::Op::Channel, numberBytes(idOf(stream)) + numberBytes(idOf(stream)) +
+                                       sized(info(stream).name) + sized("cdr") + sized(""));
 }
 
 std::string McapWriter::chunkIndexRecord(const ChunkInfo& chunk) const {
-  return record(mcap::Op::ChunkIndex,
-                bytesOf(chunk.first_ns) + bytesOf(chunk.last_ns) + bytesOf(chunk.position) +
-                    bytesOf(chunk.size) + sized(chunk.index_offsets) + bytesOf(chunk.index_bytes) +
-                    sized(compressionName()) + bytesOf(chunk.packed_bytes) + bytesOf(chunk.plain_bytes));
+  return record(mcap::Op::ChunkIndex, numberBytes(chunk.first_ns) + numberBytes(chunk.last_ns) +
+                                          numberBytes(chunk.position) + numberBytes(chunk.size) +
+                                          sized(chunk.index_offsets) + numberBytes(chunk.index_bytes) +
+                                          sized(compressionName()) + numberBytes(chunk.packed_bytes) +
+                                          numberBytes(chunk.plain_bytes));
 }
 
 std::string McapWriter::statisticsRecord() const {
@@ -163,17 +166,17 @@ std::string McapWriter::statisticsRecord() const {
   std::string counts;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     messages += channels_[i].messages;
-    counts += bytesOf(idOf(i)) + bytesOf(channels_[i].messages);
+    counts += numberBytes(idOf(i)) + numberBytes(channels_[i].messages);
   }
   for (const ChunkInfo& chunk : chunks_) {
     first_ns = first_ns == 0 ? chunk.first_ns : std::min(first_ns, chunk.first_ns);
     last_ns = std::max(last_ns, chunk.last_ns);
   }
-  const auto count = [](std::size_t number) { return bytesOf(static_cast<std::uint32_t>(number)); };
+  const auto count = [](std::size_t number) { return numberBytes(static_cast<std::uint32_t>(number)); };
   return record(mcap::Op::Statistics,
-                bytesOf(messages) + bytesOf(static_cast<std::uint16_t>(channels_.size())) +
+                numberBytes(messages) + numberBytes(static_cast<std::uint16_t>(channels_.size())) +
                     count(channels_.size()) + count(0) + count(0) + count(chunks_.size()) +
-                    bytesOf(first_ns) + bytesOf(last_ns) + sized(counts));
+                    numberBytes(first_ns) + numberBytes(last_ns) + sized(counts));
 }
 
 std::unique_ptr<RecordingWriter> createMcap(const std::filesystem::path& path,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/time.h"
+#include "core/recording/part_file.h"
 #include "core/recording/ros/message_cursor.h"
 
 #include <cstdint>
@@ -11,15 +12,9 @@
 
 namespace evical::ros {
 
-// A number's bytes in the machine's order, which is that of the files: little endian.
-template <class Number>
-std::string bytesOf(Number value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
 // Bytes with their length in front, as records of both kinds of bags hold them.
 inline std::string sized(std::string_view bytes) {
-  return bytesOf(static_cast<std::uint32_t>(bytes.size())).append(bytes);
+  return numberBytes(static_cast<std::uint32_t>(bytes.size())).append(bytes);
 }
 
 // Appends to `bytes`. Times must be what a ROS time can hold.

@@ -1,5 +1,7 @@
 #include "core/recording/ros/message_layout.h"
 
+#include "core/base/trimmed.h"
+
 #include <array>
 #include <map>
 #include <vector>
@@ -9,12 +11,6 @@ namespace {
 
 constexpr int kDeepestNesting = 8;            // of types; a definition that names itself stops here
 constexpr std::size_t kLongestLayout = 8192;  // characters; nesting may make it explode
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
 
 struct FieldLine {
   std::string_view type, array, name;  // array: "", "[]" or "[9]"

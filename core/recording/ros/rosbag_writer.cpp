@@ -1,6 +1,7 @@
 #include "core/recording/ros/rosbag_writer.h"
 
 #include "core/base/time.h"
+#include "core/recording/part_file.h"
 #include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/message_bytes.h"
 #include "core/recording/ros/message_types.h"
@@ -11,7 +12,7 @@
 namespace evical {
 namespace {
 
-using ros::bytesOf, ros::sized;
+using ros::sized;
 
 constexpr std::size_t kChunkBytes = 768 * 1024;  // what rosbag record uses
 constexpr std::size_t kBagHeaderBytes = 4096;    // of the whole record, by the format
@@ -20,8 +21,8 @@ constexpr std::int64_t kBagSecondsEnd = std::int64_t{1} << 32;
 std::string bytesOfTime(std::int64_t time_ns) {
   // rosbag takes a record time of zero for "not set".
   const std::int64_t time = std::max<std::int64_t>(1, time_ns);
-  return bytesOf(static_cast<std::uint32_t>(time / kSecond_ns)) +
-         bytesOf(static_cast<std::uint32_t>(time % kSecond_ns));
+  return numberBytes(static_cast<std::uint32_t>(time / kSecond_ns)) +
+         numberBytes(static_cast<std::uint32_t>(time % kSecond_ns));
 }
 
 std::string field(std::string_view name, std::string_view value) {
@@ -29,7 +30,7 @@ std::string field(std::string_view name, std::string_view value) {
 }
 
 std::string opField(rosbag::Op op) {
-  return field("op", bytesOf(op));
+  return field("op", numberBytes(op));
 }
 
 }  // namespace
@@ -50,10 +51,10 @@ void RosbagWriter::finish() {
   const std::uint64_t index_position = file_.size();
   for (std::size_t i = 0; i < streamCount(); ++i) file_.append(connectionRecord(i));
   for (const ChunkInfo& chunk : chunks_) {
-    file_.append(
-        sized(opField(rosbag::Op::ChunkInfo) + field("ver", bytesOf(std::uint32_t{1})) +
-              field("chunk_pos", bytesOf(chunk.position)) + field("start_time", bytesOfTime(chunk.first_ns)) +
-              field("end_time", bytesOfTime(chunk.last_ns)) + field("count", bytesOf(chunk.connections))));
+    file_.append(sized(
+        opField(rosbag::Op::ChunkInfo) + field("ver", numberBytes(std::uint32_t{1})) +
+        field("chunk_pos", numberBytes(chunk.position)) + field("start_time", bytesOfTime(chunk.first_ns)) +
+        field("end_time", bytesOfTime(chunk.last_ns)) + field("count", numberBytes(chunk.connections))));
     file_.append(sized(chunk.counts));
   }
   file_.overwrite(rosbag::kMagic.size(), bagHeader(index_position));
@@ -66,9 +67,10 @@ void RosbagWriter::appendMessage(std::size_t stream, std::uint32_t /*sequence*/,
   if (!connection.announced) chunk_ += connectionRecord(stream);
   connection.announced = true;
   connection.index.push_back({time_ns, static_cast<std::uint32_t>(chunk_.size())});
-  chunk_ += sized(opField(rosbag::Op::Message) + field("conn", bytesOf(static_cast<std::uint32_t>(stream))) +
-                  field("time", bytesOfTime(time_ns)));
-  chunk_ += bytesOf(static_cast<std::uint32_t>(message.size()));
+  chunk_ +=
+      sized(opField(rosbag::Op::Message) + field("conn", numberBytes(static_cast<std::uint32_t>(stream))) +
+            field("time", bytesOfTime(time_ns)));
+  chunk_ += numberBytes(static_cast<std::uint32_t>(message.size()));
   chunk_ += message;
   if (chunk_.size() >= kChunkBytes) flushChunk();
 }
@@ -79,8 +81,8 @@ void RosbagWriter::flushChunk() {
   if (lz4_) ros::packLz4(chunk_, compressed_);
   const std::string& data = lz4_ ? compressed_ : chunk_;
   file_.append(sized(opField(rosbag::Op::Chunk) + field("compression", lz4_ ? "lz4" : "none") +
-                     field("size", bytesOf(static_cast<std::uint32_t>(chunk_.size())))));
-  file_.append(bytesOf(static_cast<std::uint32_t>(data.size())));
+                     field("size", numberBytes(static_cast<std::uint32_t>(chunk_.size())))));
+  file_.append(numberBytes(static_cast<std::uint32_t>(data.size())));
   file_.append(data);
   appendIndex(chunk);
   chunks_.push_back(std::move(chunk));
@@ -91,15 +93,15 @@ void RosbagWriter::appendIndex(ChunkInfo& chunk) {
   for (std::size_t i = 0; i < streamCount(); ++i) {
     std::vector<IndexEntry>& index = connections_[i].index;
     if (index.empty()) continue;
-    const std::string connection = bytesOf(static_cast<std::uint32_t>(i));
-    const std::string count = bytesOf(static_cast<std::uint32_t>(index.size()));
+    const std::string connection = numberBytes(static_cast<std::uint32_t>(i));
+    const std::string count = numberBytes(static_cast<std::uint32_t>(index.size()));
     std::string entries;
     for (const IndexEntry& entry : index) {
       chunk.first_ns = std::min(chunk.first_ns, entry.time_ns);
       chunk.last_ns = std::max(chunk.last_ns, entry.time_ns);
-      entries += bytesOfTime(entry.time_ns) + bytesOf(entry.offset);
+      entries += bytesOfTime(entry.time_ns) + numberBytes(entry.offset);
     }
-    file_.append(sized(opField(rosbag::Op::IndexData) + field("ver", bytesOf(std::uint32_t{1})) +
+    file_.append(sized(opField(rosbag::Op::IndexData) + field("ver", numberBytes(std::uint32_t{1})) +
                        field("conn", connection) + field("count", count)));
     file_.append(sized(entries));
     chunk.counts += connection + count;
@@ -109,15 +111,17 @@ void RosbagWriter::appendIndex(ChunkInfo& chunk) {
 }
 
 std::string RosbagWriter::bagHeader(std::uint64_t index_position) const {
-  std::string record = sized(opField(rosbag::Op::BagHeader) + field("index_pos", bytesOf(index_position)) +
-                             field("conn_count", bytesOf(static_cast<std::uint32_t>(streamCount()))) +
-                             field("chunk_count", bytesOf(static_cast<std::uint32_t>(chunks_.size()))));
+  std::string record =
+      sized(opField(rosbag::Op::BagHeader) + field("index_pos", numberBytes(index_position)) +
+            field("conn_count", numberBytes(static_cast<std::uint32_t>(streamCount()))) +
+            field("chunk_count", numberBytes(static_cast<std::uint32_t>(chunks_.size()))));
   return record + sized(std::string(kBagHeaderBytes - record.size() - 4, ' '));
 }
 
 std::string RosbagWriter::connectionRecord(std::size_t stream) const {
   const ros::MessageType& type = messageType(stream);
-  return sized(opField(rosbag::Op::Connection) + field("conn", bytesOf(static_cast<std::uint32_t>(stream))) +
+  return sized(opField(rosbag::Op::Connection) +
+               field("conn", numberBytes(static_cast<std::uint32_t>(stream))) +
                field("topic", info(stream).name)) +
          sized(field("topic", info(stream).name) + field("type", type.name) + field("md5sum", type.md5) +
                field("message_definition", type.definition));

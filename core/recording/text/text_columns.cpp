@@ -1,5 +1,6 @@
 #include "core/recording/text/text_columns.h"
 
+#include "core/base/trimmed.h"
 #include "core/numerics/robust.h"
 #include "core/recording/column_guess.h"
 #include "core/recording/text/text_lines.h"
@@ -16,15 +17,10 @@
 namespace evical {
 namespace {
 
+constexpr std::string_view kAroundCell = " \t\r\"'";
+
 constexpr std::size_t kMostRows = 2000;
 constexpr std::size_t kImuColumns = 7;
-
-std::string_view trimmedCell(std::string_view text) {
-  constexpr std::string_view kAround = " \t\r\"'";
-  const std::size_t begin = std::min(text.find_first_not_of(kAround), text.size());
-  const std::size_t end = text.find_last_not_of(kAround);
-  return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
-}
 
 struct Rows {
   std::vector<ColumnNumbers> columns;
@@ -122,12 +118,12 @@ struct HeaderColumns {
 HeaderColumns readHeaderLine(std::string_view line) {
   std::string lower(line);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  std::string_view names = trimmedCell(lower);
-  while (names.starts_with('#') || names.starts_with('%')) names = trimmedCell(names.substr(1));
+  std::string_view names = trimmed(lower, kAroundCell);
+  while (names.starts_with('#') || names.starts_with('%')) names = trimmed(names.substr(1), kAroundCell);
   std::vector<std::string_view> columns;
   splitColumns(names, columns);
   HeaderColumns header;
-  for (std::size_t i = 0; i < columns.size(); ++i) header.add(trimmedCell(columns[i]), i);
+  for (std::size_t i = 0; i < columns.size(); ++i) header.add(trimmed(columns[i], kAroundCell), i);
   header.takeKalibrs();
   return header;
 }
@@ -220,7 +216,7 @@ void splitColumns(std::string_view line, std::vector<std::string_view>& columns)
   }
   for (std::size_t end = 0; end != std::string_view::npos;) {
     end = line.find_first_of(",;\t");
-    columns.push_back(trimmedCell(line.substr(0, end)));
+    columns.push_back(trimmed(line.substr(0, end), kAroundCell));
     if (end != std::string_view::npos) line.remove_prefix(end + 1);
   }
   while (!columns.empty() && columns.back().empty()) columns.pop_back();  // behind a last comma
@@ -235,7 +231,7 @@ TextColumns findColumns(std::string_view first_bytes, bool cut) {
   for (std::uint64_t number = 1; !first_bytes.empty() && rows.count < kMostRows; ++number) {
     const std::size_t end = first_bytes.find(line_end);
     if (end == std::string_view::npos && cut && number > 1) break;
-    const std::string_view line = trimmedCell(first_bytes.substr(0, end));
+    const std::string_view line = trimmed(first_bytes.substr(0, end), kAroundCell);
     first_bytes.remove_prefix(end == std::string_view::npos ? first_bytes.size() : end + 1);
     if (line.empty()) continue;
     if (readGeometry(line, columns.resolution_px)) {

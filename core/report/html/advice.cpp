@@ -13,8 +13,6 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, 3> kAdvisedAxes = {"x", "y", "z"};
-
 std::string percent(double share) {
   return number(100.0 * share, 0) + " %";
 }
@@ -114,7 +112,7 @@ void adviseAxis(const std::string& name, const Eigen::Vector3d& motion, double e
   const double least = motion.minCoeff(&axis);
   if (least >= enough) return;
   all.push_back(
-      {fmt::format("{} the {} axis of {} more.", verb, kAdvisedAxes.at(static_cast<std::size_t>(axis)), name),
+      {fmt::format("{} the {} axis of {} more.", verb, kAxes.at(static_cast<std::size_t>(axis)), name),
        fmt::format("RMS {}, {}, {} {} on x, y, z; {} and more are good.", significant(motion.x(), 2),
                    significant(motion.y(), 2), significant(motion.z(), 2), unit, significant(enough, 2))});
 }

@@ -1,11 +1,14 @@
 // Text and numbers as they may stand in HTML, SVG and CSV: escaped, and never "nan" or "inf".
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace evical::html {
+
+inline constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 // For text and for attributes in double quotes; control characters that XML does not know become '?'.
 std::string escaped(std::string_view text);

@@ -20,8 +20,6 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-
 std::string tile(const std::string& label, const std::string& value, const std::string& detail) {
   return fmt::format("<div class=\"tile\"><span>{}</span><b>{}</b><small>{}</small></div>\n", label, value,
                      detail);

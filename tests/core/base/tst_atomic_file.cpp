@@ -1,5 +1,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "tests/support/file_content.h"
 #include "tests/support/test_program.h"
 
 #include <sys/stat.h>
@@ -20,11 +21,6 @@ using namespace evical;
 
 namespace {
 
-std::string contentOfAtomicFile(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 std::ptrdiff_t entriesIn(const std::filesystem::path& folder) {
   const std::filesystem::directory_iterator entries(folder);
   return std::distance(begin(entries), end(entries));
@@ -43,9 +39,9 @@ class TestAtomicFile : public QObject {
     const auto path = folder() / "a.yaml";
     const std::string large(3'000'000, 'x');
     writeFileWhole(path, large);
-    QCOMPARE(contentOfAtomicFile(path), large);
+    QCOMPARE(evical::test::fileContent(path), QByteArray::fromStdString(large));
     writeFileWhole(path, "short");
-    QCOMPARE(contentOfAtomicFile(path), std::string("short"));
+    QCOMPARE(evical::test::fileContent(path), QByteArray("short"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(path);
   }
@@ -76,7 +72,7 @@ class TestAtomicFile : public QObject {
   void write_belowAFile_throws() {
     writeFileWhole(folder() / "file", "x");
     QVERIFY_EXCEPTION_THROWN(writeFileWhole(folder() / "file" / "a.yaml", "y"), CalibrationError);
-    QCOMPARE(contentOfAtomicFile(folder() / "file"), std::string("x"));
+    QCOMPARE(evical::test::fileContent(folder() / "file"), QByteArray("x"));
     std::filesystem::remove(folder() / "file");
   }
 
@@ -91,7 +87,7 @@ class TestAtomicFile : public QObject {
     writeFileWhole(folder() / "old", "before");
     const std::vector<FileContent> files{{folder() / "old", "after"}, {folder() / "missing" / "b", "x"}};
     QVERIFY_EXCEPTION_THROWN(writeFilesWhole(files), CalibrationError);
-    QCOMPARE(contentOfAtomicFile(folder() / "old"), std::string("before"));
+    QCOMPARE(evical::test::fileContent(folder() / "old"), QByteArray("before"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(folder() / "old");
   }
@@ -115,14 +111,14 @@ class TestAtomicFile : public QObject {
     for (const std::string name : {"old", "mark"}) writeFileWhole(folder() / name, "before");
     std::filesystem::create_directory(folder() / "barred");
     QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);
-    QCOMPARE(contentOfAtomicFile(folder() / "old"), std::string("before"));
-    QCOMPARE(contentOfAtomicFile(folder() / "mark"), std::string("before"));
+    QCOMPARE(evical::test::fileContent(folder() / "old"), QByteArray("before"));
+    QCOMPARE(evical::test::fileContent(folder() / "mark"), QByteArray("before"));
     QVERIFY(!std::filesystem::exists(folder() / "new"));
     QCOMPARE(entriesIn(folder() / "from"), std::ptrdiff_t(4));
-    QCOMPARE(contentOfAtomicFile(folder() / "from" / "old"), std::string("after"));
+    QCOMPARE(evical::test::fileContent(folder() / "from" / "old"), QByteArray("after"));
     std::filesystem::remove(folder() / "barred");
     moveFilesWhole(moves);
-    for (const FileMove& move : moves) QCOMPARE(contentOfAtomicFile(move.to), std::string("after"));
+    for (const FileMove& move : moves) QCOMPARE(evical::test::fileContent(move.to), QByteArray("after"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(5));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
       std::filesystem::remove_all(entry.path());
@@ -136,11 +132,11 @@ class TestAtomicFile : public QObject {
     writeFileWhole(to / "frames" / "2.png", "before");
     const std::vector<FileMove> moves = {{from / "frames", to / "frames"}, {from / "mark", to / "mark"}};
     QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);  // there is no mark
-    QCOMPARE(contentOfAtomicFile(to / "frames" / "1.png"), std::string("before"));
+    QCOMPARE(evical::test::fileContent(to / "frames" / "1.png"), QByteArray("before"));
     QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(2));
     writeFileWhole(from / "mark", "after");
     moveFilesWhole(moves);
-    QCOMPARE(contentOfAtomicFile(to / "frames" / "1.png"), std::string("after"));
+    QCOMPARE(evical::test::fileContent(to / "frames" / "1.png"), QByteArray("after"));
     QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(1));
     QCOMPARE(entriesIn(from), std::ptrdiff_t(0));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
@@ -171,7 +167,7 @@ class TestAtomicFile : public QObject {
       if (!std::filesystem::exists(folder() / "mark")) continue;
       ++marked;
       for (int file = 0; file < kFiles; ++file)
-        QCOMPARE(contentOfAtomicFile(nameOf(file)), contentOfAtomicFile(folder() / "mark"));
+        QCOMPARE(evical::test::fileContent(nameOf(file)), evical::test::fileContent(folder() / "mark"));
     }
     QVERIFY(marked > 0);
     for (const auto& entry : std::filesystem::directory_iterator(folder()))

@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/base/files_together.h"
+#include "tests/support/file_content.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -10,15 +11,6 @@
 #include <string>
 
 using namespace evical;
-
-namespace {
-
-std::string contentOfFilesTogether(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-}  // namespace
 
 class TestFilesTogether : public QObject {
   Q_OBJECT
@@ -36,8 +28,8 @@ class TestFilesTogether : public QObject {
     QVERIFY(!std::filesystem::exists(place / "plots" / "a.csv"));
     QVERIFY(!std::filesystem::exists(place / "result.yaml"));
     files.place();
-    QCOMPARE(contentOfFilesTogether(place / "plots" / "a.csv"), std::string("1"));
-    QCOMPARE(contentOfFilesTogether(place / "result.yaml"), std::string("2"));
+    QCOMPARE(evical::test::fileContent(place / "plots" / "a.csv"), QByteArray("1"));
+    QCOMPARE(evical::test::fileContent(place / "result.yaml"), QByteArray("2"));
   }
 
   void files_thatWereNotPlaced_leaveNeitherThemselvesNorFolders() {
@@ -63,7 +55,7 @@ class TestFilesTogether : public QObject {
       std::filesystem::create_directories(place / "folder");
       QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write({place / "folder", "x"}));
     }
-    QCOMPARE(contentOfFilesTogether(place / "kept.yaml"), std::string("old"));
+    QCOMPARE(evical::test::fileContent(place / "kept.yaml"), QByteArray("old"));
     const std::filesystem::directory_iterator entries(place);
     QCOMPARE(std::distance(begin(entries), end(entries)), std::ptrdiff_t(2));
   }

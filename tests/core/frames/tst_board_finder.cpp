@@ -20,15 +20,6 @@ namespace {
 
 using namespace evical;
 
-CameraIntrinsics aCameraForBoardFinder() {
-  CameraIntrinsics camera;
-  camera.resolution_px = {752, 480};
-  camera.focal_length_px = {460.0, 458.0};
-  camera.principal_point_px = {367.0, 248.0};
-  camera.distortion = {-0.28, 0.074, 0.0002, 0.0, 0.0};
-  return camera;
-}
-
 Board boardOfBoardFinder(BoardType type, int rows, int cols, double spacing_m, double radius_m,
                          double tag_size_m) {
   Board board;
@@ -150,7 +141,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated_data() {
 void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
   QFETCH(const PrintedBoard, printed);
   const Board& board = printed.board;
-  const CameraIntrinsics camera = aCameraForBoardFinder();
+  const CameraIntrinsics camera = distortingCamera();
   FrameOptions options;
   options.smallest_sigma_px = 0.005;
   BoardFinder finder(board, options);
@@ -190,8 +181,8 @@ void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld() {
     BoardFinder finder(printed.board, FrameOptions{});
     const RigidTransform pose = lookAt(printed.board, 1.6 * distanceFor(printed.board), {0.1, 0.1, turn});
     BoardFinderErrors errors;
-    compareForBoardFinder(finder.find(renderBoard(printed, aCameraForBoardFinder(), pose, {})), printed.board,
-                          aCameraForBoardFinder(), pose, errors);
+    compareForBoardFinder(finder.find(renderBoard(printed, distortingCamera(), pose, {})), printed.board,
+                          distortingCamera(), pose, errors);
     QCOMPARE(errors.wrong, 0);
     QCOMPARE(errors.found, printed.board.pointCount());
   }
@@ -211,7 +202,7 @@ void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs() {
   QFETCH(const PrintedBoard, printed);
   QFETCH(const bool, says);
   const Board& board = printed.board;
-  CameraIntrinsics camera = aCameraForBoardFinder();
+  CameraIntrinsics camera = distortingCamera();
   camera.distortion = {};
   const double beside = 0.6 * board.extent_m().x();
   const RigidTransform pose =
@@ -238,13 +229,12 @@ void TestBoardFinder::pictureWithoutBoard_showsNothing() {
   QFETCH(const PrintedBoard, printed);
   BoardFinder finder(printed.board, FrameOptions{});
   const PrintedBoard other = printed.board.hasCircles() ? checkerboardForBoardFinder() : asymmetricCircles();
-  QVERIFY(
-      finder.find(renderBoard(other, aCameraForBoardFinder(), wholeBoard(other.board, {0.1, 0.1, 0.1}), {}))
-          .empty());
-  QVERIFY(finder
-              .find(renderBoard(other, aCameraForBoardFinder(), wholeBoard(other.board, {}),
-                                {128, 128, 0.7, 20.0, 1}))
+  QVERIFY(finder.find(renderBoard(other, distortingCamera(), wholeBoard(other.board, {0.1, 0.1, 0.1}), {}))
               .empty());
+  QVERIFY(
+      finder
+          .find(renderBoard(other, distortingCamera(), wholeBoard(other.board, {}), {128, 128, 0.7, 20.0, 1}))
+          .empty());
   QVERIFY(finder.find({{640, 480}, std::vector<std::uint8_t>(640 * 480, 90)}).empty());
   QVERIFY(finder.find({{1, 1}, {0}}).empty());
   QVERIFY(finder.find({{20, 16}, std::vector<std::uint8_t>(320, 90)}).empty());
@@ -276,8 +266,7 @@ void TestBoardFinder::wrongNumbers_areDoubted() {
   options.tag_border = border;
   BoardFinder finder(said, options);
   for (const double turn : {0.0, 0.1, 0.2})
-    finder.find(
-        renderBoard(printed, aCameraForBoardFinder(), wholeBoard(printed.board, {0.1, 0.1, turn}), {}));
+    finder.find(renderBoard(printed, distortingCamera(), wholeBoard(printed.board, {0.1, 0.1, turn}), {}));
   QCOMPARE(QString::fromStdString(finder.doubt()), doubt);
 }
 
@@ -304,7 +293,7 @@ void TestBoardFinder::drawingOfOpenCv_isFound() {
 
 // A sensor of few pixels: the checkerboard is searched in an enlarged picture.
 void TestBoardFinder::coarsePicture_isFound() {
-  CameraIntrinsics camera = aCameraForBoardFinder();
+  CameraIntrinsics camera = distortingCamera();
   camera.resolution_px = {128, 128};
   camera.focal_length_px = {90.0, 90.0};
   camera.principal_point_px = {64.0, 64.0};

@@ -11,15 +11,6 @@ namespace {
 
 using namespace evical;
 
-CameraIntrinsics aCameraForFrameTracker() {
-  CameraIntrinsics camera;
-  camera.resolution_px = {752, 480};
-  camera.focal_length_px = {460.0, 458.0};
-  camera.principal_point_px = {367.0, 248.0};
-  camera.distortion = {-0.28, 0.074, 0.0002, 0.0, 0.0};
-  return camera;
-}
-
 PrintedBoard printedOf(BoardType type) {
   PrintedBoard printed;
   printed.board.type = type;
@@ -80,7 +71,7 @@ void TestFrameTracker::movingBoard_isFollowed() {
   constexpr int kFrames = 12;
   double seconds = 0.0;
   for (int k = 0; k < kFrames; ++k) {
-    const GrayImage image = renderBoard(printed, aCameraForFrameTracker(), poseAt(board, k * kPeriod_s),
+    const GrayImage image = renderBoard(printed, distortingCamera(), poseAt(board, k * kPeriod_s),
                                         {40, 200, 0.8, 4.0, static_cast<unsigned>(k)});
     const std::clock_t begin = std::clock();
     tracker.track(image, {k * kPeriod_s, 0.005});
@@ -97,14 +88,13 @@ void TestFrameTracker::movingBoard_isFollowed() {
     QVERIFY(static_cast<int>(seen.views[k].circles.size()) > 0.9 * board.pointCount());
     QCOMPARE(seen.views[k].kind == ViewKind::Complete, seen.windows[k].outcome == WindowOutcome::Complete);
     for (const CircleObservation& point : seen.views[k].circles) {
-      const auto truth =
-          truePoint(board, point.circle, aCameraForFrameTracker(), poseAt(board, point.time_s));
+      const auto truth = truePoint(board, point.circle, distortingCamera(), poseAt(board, point.time_s));
       QVERIFY(truth && (point.centre_px - *truth).norm() < 0.5);
       if (k == 0 || k + 1 == seen.views.size()) continue;
       const auto before =
-          truePoint(board, point.circle, aCameraForFrameTracker(), poseAt(board, point.time_s - 0.001));
+          truePoint(board, point.circle, distortingCamera(), poseAt(board, point.time_s - 0.001));
       const auto after =
-          truePoint(board, point.circle, aCameraForFrameTracker(), poseAt(board, point.time_s + 0.001));
+          truePoint(board, point.circle, distortingCamera(), poseAt(board, point.time_s + 0.001));
       QVERIFY((point.velocity_px_s - (*after - *before) / 0.002).norm() < 25.0);
     }
   }
@@ -114,7 +104,7 @@ void TestFrameTracker::lostBoard_isSearchedAgain() {
   const PrintedBoard printed = printedOf(BoardType::AsymmetricCircles);
   FrameTracker tracker("left", printed.board, FrameOptions{});
   const auto picture = [&](double time_s) {
-    return renderBoard(printed, aCameraForFrameTracker(), poseAt(printed.board, time_s), {});
+    return renderBoard(printed, distortingCamera(), poseAt(printed.board, time_s), {});
   };
   tracker.track(picture(0.0), {0.0, 0.0});
   tracker.track(grey(), {0.1, 0.0});
@@ -133,7 +123,7 @@ void TestFrameTracker::fastBoard_isBlurred() {
   const PrintedBoard printed = printedOf(BoardType::AsymmetricCircles);
   FrameTracker tracker("left", printed.board, FrameOptions{});
   for (int k = 0; k < 3; ++k)  // 20 px a frame and 30 ms of exposure: 6 px
-    tracker.track(renderBoard(printed, aCameraForFrameTracker(),
+    tracker.track(renderBoard(printed, distortingCamera(),
                               lookAt(printed.board, 0.75, Eigen::Vector3d::Zero(), {0.0326 * k, 0.0}), {}),
                   {0.1 * k, 0.03});
   const BoardObservations seen = tracker.finish();

@@ -22,10 +22,6 @@ namespace {
 
 using namespace evical;
 
-QByteArray textForBlinkingBoard(double number) {
-  return QByteArray::number(number);
-}
-
 // The scenario's camera in a quarter of its pixels, and faster: what takes minutes at its size.
 Scenario smallScenario() {
   Scenario scenario = readScenario(test::scenarioPath("blinking"));
@@ -76,11 +72,11 @@ class TestBlinkingBoard : public QObject {
     constexpr double kSigmas = 4.0;
     for (int k = 0; k < 4; ++k)
       QVERIFY2(std::abs(errors[k]) < kSigmas * sigma[k],
-               textForBlinkingBoard(errors[k]) + " against " + textForBlinkingBoard(sigma[k]));
-    QVERIFY2(sigma[0] < 0.01 * truth.focal_length_px.x(), textForBlinkingBoard(sigma[0]));
+               QByteArray::number(errors[k]) + " against " + QByteArray::number(sigma[k]));
+    QVERIFY2(sigma[0] < 0.01 * truth.focal_length_px.x(), QByteArray::number(sigma[0]));
     QVERIFY2(projectionDifference(truth, found).rms_px < 0.5,
-             textForBlinkingBoard(projectionDifference(truth, found).rms_px));
-    QVERIFY2(run.result.reprojection_rms_px < 0.3, textForBlinkingBoard(run.result.reprojection_rms_px));
+             QByteArray::number(projectionDifference(truth, found).rms_px));
+    QVERIFY2(run.result.reprojection_rms_px < 0.3, QByteArray::number(run.result.reprojection_rms_px));
     QCOMPARE(run.result.passes, 1);
   }
 
@@ -151,13 +147,13 @@ class TestBlinkingBoard : public QObject {
       const RecordingPass pass = readAndDetect(one, {CameraLens{}}, RunContext{});
       found += !pass.cameras.front().views.empty();
     }
-    QVERIFY2(found >= 8, textForBlinkingBoard(found));
+    QVERIFY2(found >= 8, QByteArray::number(found));
     const IntrinsicsRun run = calibrateIntrinsics(all, 0, RunContext{});
     const double f = run.result.intrinsics.focal_length_px.mean(), sigma = run.result.standardDeviations()[0];
     qInfo("%d of 9 found, f %.2f +- %.2f, %.3f px RMS", found, f, sigma, run.result.reprojection_rms_px);
-    QVERIFY2(run.result.reprojection_rms_px < 0.2, textForBlinkingBoard(run.result.reprojection_rms_px));
-    QVERIFY2(sigma < 2.0, textForBlinkingBoard(sigma));
-    QVERIFY2(std::abs(f - 89.8) < 2.0 * std::hypot(sigma, 0.5), textForBlinkingBoard(f));
+    QVERIFY2(run.result.reprojection_rms_px < 0.2, QByteArray::number(run.result.reprojection_rms_px));
+    QVERIFY2(sigma < 2.0, QByteArray::number(sigma));
+    QVERIFY2(std::abs(f - 89.8) < 2.0 * std::hypot(sigma, 0.5), QByteArray::number(f));
   }
 
  private:

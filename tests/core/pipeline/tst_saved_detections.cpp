@@ -7,6 +7,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/file_content.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
@@ -35,13 +36,8 @@ Scenario eventsAndFrames() {
   return scenario;
 }
 
-QByteArray fileText(const std::filesystem::path& path) {
-  QFile file(QString::fromStdString(path.string()));
-  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
 void replaceIn(const std::filesystem::path& path, const QByteArray& what, const QByteArray& by) {
-  QByteArray text = fileText(path);
+  QByteArray text = evical::test::fileContent(path);
   QVERIFY2(text.contains(what), text.constData());
   text.replace(what, by);
   QFile file(QString::fromStdString(path.string()));
@@ -114,7 +110,7 @@ class TestSavedDetections : public QObject {
     // And what it leaves is the same again.
     const std::vector<FileContent> files = detectionFiles(session_, pass, again.intrinsics);
     for (const FileContent& file : files)
-      QVERIFY2(fileText(result() / file.path) == QByteArray::fromStdString(contentOf(file)),
+      QVERIFY2(evical::test::fileContent(result() / file.path) == QByteArray::fromStdString(contentOf(file)),
                file.path.c_str());
   }
 

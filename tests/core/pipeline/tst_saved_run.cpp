@@ -6,6 +6,7 @@
 #include "core/pipeline/saved_run.h"
 #include "core/pipeline/view_rejection.h"
 #include "core/report/result_yaml.h"
+#include "tests/support/file_content.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 
@@ -19,11 +20,6 @@ using namespace evical;
 using namespace evical::test;
 
 namespace {
-
-QByteArray readFileForSavedRun(const std::filesystem::path& path) {
-  QFile file(QString::fromStdString(path.string()));
-  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
 
 void writeForSavedRun(const std::filesystem::path& path, const QByteArray& content) {
   QFile file(QString::fromStdString(path.string()));
@@ -97,7 +93,7 @@ class TestSavedRun : public QObject {
 
     QMap<QString, int> outcomes;
     QStringList times;
-    for (const QByteArray& line : readFileForSavedRun(result() / "windows.csv").split('\n')) {
+    for (const QByteArray& line : evical::test::fileContent(result() / "windows.csv").split('\n')) {
       const QStringList words = QString::fromUtf8(line).split(',');
       if (words.size() < 4) continue;
       ++outcomes[words[3]];
@@ -119,7 +115,7 @@ class TestSavedRun : public QObject {
       return QString::fromStdString(note).contains("a person rejected 5 windows with the board, at");
     };
     QVERIFY(std::any_of(read.result->notes.begin(), read.result->notes.end(), says));
-    const QByteArray report = readFileForSavedRun(result() / "report.html");
+    const QByteArray report = evical::test::fileContent(result() / "report.html");
     QVERIFY(report.contains("rejected by hand") && report.contains("a person rejected 5 windows"));
   }
 
@@ -151,7 +147,7 @@ class TestSavedRun : public QObject {
     QFETCH(const bool, has_trajectory);
     QFETCH(const bool, has_samples);
     const std::filesystem::path folder = copy(QTest::currentDataTag());
-    QByteArray data = readFileForSavedRun(folder / "run.data");
+    QByteArray data = evical::test::fileContent(folder / "run.data");
     const qsizetype at = data.size() * at_percent / 100;
     if (cut)
       data.truncate(at);

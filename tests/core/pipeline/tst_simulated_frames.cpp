@@ -35,10 +35,6 @@ Scenario rollingShutter() {
   return scenario;
 }
 
-QByteArray textForSimulatedFrames(double number) {
-  return QByteArray::number(number);
-}
-
 }  // namespace
 
 class TestSimulatedFrames : public QObject {
@@ -69,7 +65,7 @@ class TestSimulatedFrames : public QObject {
     const Session charuco = readSession(made.session);
     const RecordingPass pass = readAndDetect(charuco, givenLenses(charuco), RunContext{});
     const BoardObservations& seen = pass.cameras.front();
-    QVERIFY2(seen.views.size() >= 18, textForSimulatedFrames(static_cast<double>(seen.views.size())));
+    QVERIFY2(seen.views.size() >= 18, QByteArray::number(static_cast<double>(seen.views.size())));
     const SinusoidMotion motion(scenario);
     double squares_px2 = 0.0;
     int corners = 0;
@@ -83,9 +79,9 @@ class TestSimulatedFrames : public QObject {
         ++corners;
       }
     }
-    QVERIFY2(corners > 600, textForSimulatedFrames(corners));
+    QVERIFY2(corners > 600, QByteArray::number(corners));
     const double rms_px = std::sqrt(squares_px2 / corners);
-    QVERIFY2(rms_px < 0.15, textForSimulatedFrames(rms_px));
+    QVERIFY2(rms_px < 0.15, QByteArray::number(rms_px));
   }
 
   void rollingShutter_isCalibratedWithinItsSigmas() {
@@ -100,19 +96,19 @@ class TestSimulatedFrames : public QObject {
     QVERIFY((turn.cwiseAbs().array() < kSimulatedFramesSigmas * sigma.rotation_std_rad.array()).all());
     QVERIFY((shift.cwiseAbs().array() < kSimulatedFramesSigmas * sigma.translation_std_m.array()).all());
     QVERIFY2(sigma.rotation_std_rad.maxCoeff() < 0.03 * kRadPerDeg,
-             textForSimulatedFrames(sigma.rotation_std_rad.maxCoeff() / kRadPerDeg));
+             QByteArray::number(sigma.rotation_std_rad.maxCoeff() / kRadPerDeg));
     QVERIFY(sigma.translation_std_m.maxCoeff() < 3e-3);
     QVERIFY(std::abs(camera.time_offset_s - truth.time_offset_s) <
             kSimulatedFramesSigmas * sigma.time_offset_std_s);
     QVERIFY(std::abs(camera.line_delay_us - truth.frames->line_delay_us) <
             kSimulatedFramesSigmas * sigma.line_delay_std_us);
-    QVERIFY2(std::abs(camera.line_delay_us - 30.0) < 0.3, textForSimulatedFrames(camera.line_delay_us));
+    QVERIFY2(std::abs(camera.line_delay_us - 30.0) < 0.3, QByteArray::number(camera.line_delay_us));
     // Of 8 s a translation may be known less well than is needed, which is all there may be to say.
     QVERIFY2(run.result.status == CalibrationStatus::Ok || run.result.reason.find("translation along") == 0,
              run.result.reason.c_str());
     const double seen = static_cast<double>(run.pass.cameras[0].views.size()) /
                         static_cast<double>(run.pass.cameras[0].windows.size());
-    QVERIFY2(seen > 0.95, textForSimulatedFrames(seen));
+    QVERIFY2(seen > 0.95, QByteArray::number(seen));
   }
 
   void shutterCalledGlobal_isDoubtful_andSaysWhy() {
@@ -128,7 +124,7 @@ class TestSimulatedFrames : public QObject {
     const IntrinsicsRun run = calibrateIntrinsics(session(), 0, RunContext{});
     const double off_px =
         projectionDifference(scenario_.cameras.front().intrinsics, run.result.intrinsics).rms_px;
-    QVERIFY2(off_px < 3.0, textForSimulatedFrames(off_px));
+    QVERIFY2(off_px < 3.0, QByteArray::number(off_px));
     QCOMPARE(run.result.edge_lead_px, 0.0);
   }
 

@@ -10,8 +10,6 @@
 using namespace evical;
 using namespace evical::test;
 
-namespace {}  // namespace
-
 class TestExportRefusals : public QObject {
   Q_OBJECT
 

@@ -1,4 +1,4 @@
-// A wrapped text in one of the theme's roles, whose words can be selected and copied.
+// Wrapped texts in one of the theme's roles.
 #pragma once
 
 #include <QLabel>
@@ -6,10 +6,16 @@
 
 namespace evical::ui {
 
-inline QLabel* selectableLabel(const char* role, const QString& text, QWidget* parent) {
+inline QLabel* wrappedLabel(const QString& text, const char* role, QWidget* parent) {
   auto* const label = new QLabel(text, parent);
   label->setProperty("role", role);
   label->setWordWrap(true);
+  return label;
+}
+
+// Its words can be selected and copied.
+inline QLabel* selectableLabel(const char* role, const QString& text, QWidget* parent) {
+  QLabel* const label = wrappedLabel(text, role, parent);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
 }
