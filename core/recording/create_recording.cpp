@@ -50,11 +50,12 @@ std::span<const RecordingFormat> recordingFormats() {
   return kFormats;
 }
 
-const RecordingFormat& recordingFormat(const std::string& name) {
+const RecordingFormat& recordingFormat(std::string_view name) {
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                   [&](const RecordingFormat& format) { return name == format.name; });
   if (found == std::end(kFormats)) {
-    throw badInput(name, "this is no format that can be written", fmt::format("There are: {}", names()));
+    throw badInput(std::string(name), "this is no format that can be written",
+                   fmt::format("There are: {}", names()));
   }
   return *found;
 }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical {
@@ -77,7 +78,7 @@ struct RecordingFormat {
 std::span<const RecordingFormat> recordingFormats();
 
 // Throws CalibrationError (BadInput) that lists those there are.
-const RecordingFormat& recordingFormat(const std::string& name);
+const RecordingFormat& recordingFormat(std::string_view name);
 
 // The format by the path's extension; throws CalibrationError (BadInput) where it is not that of one.
 const RecordingFormat& recordingFormatOf(const std::filesystem::path& path);

@@ -1,5 +1,6 @@
 #include "tests/support/rendered_board.h"
 
+#include "core/geometry/aruco_library.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/charuco_layout.h"
 #include "core/geometry/circle_conic.h"
@@ -7,7 +8,6 @@
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <array>
@@ -80,12 +80,12 @@ Pattern tagGrid(const PrintedBoard& printed) {
 
 Pattern charuco(const PrintedBoard& printed) {
   const Board board = printed.board;
-  const auto dictionary = cv::aruco::getPredefinedDictionary(printed.dictionary);
+  const auto dictionary = aruco::dictionary(printed.dictionary);
   const int cells = dictionary->markerSize + 2;
   std::map<std::pair<int, int>, cv::Mat> markers;
   int id = 0;
   for (const BoardSquare& square : charucoMarkers(board, printed.first_is_bright))
-    cv::aruco::drawMarker(dictionary, id++, cells, markers[{square.row, square.col}]);
+    aruco::drawMarker(*dictionary, id++, cells, markers[{square.row, square.col}]);
   return [board, markers, cells](const Eigen::Vector2d& at) {
     const int col = floorOf(at.x() / board.spacing_m) + 1, row = floorOf(at.y() / board.spacing_m) + 1;
     if (col < 0 || row < 0 || col >= board.cols || row >= board.rows) return 1.0;

@@ -41,7 +41,14 @@ bool describe(hid_t file, const char* path, DatasetInfo& info) {
   return true;
 }
 
-herr_t visit(hid_t, const char* path, const H5O_info_t* object, void* data) {
+// H5Ovisit2's: HDF5 1.12 gave its name to another.
+#if H5_VERSION_GE(1, 12, 0)
+using ObjectInfo = H5O_info1_t;
+#else
+using ObjectInfo = H5O_info_t;
+#endif
+
+herr_t visit(hid_t, const char* path, const ObjectInfo* object, void* data) {
   Walk& walk = *static_cast<Walk*>(data);
   const bool is_dataset = object->type == H5O_TYPE_DATASET, is_unknown = object->type == H5O_TYPE_UNKNOWN;
   if (!is_dataset && !is_unknown) return 0;

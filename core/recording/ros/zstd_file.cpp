@@ -19,13 +19,16 @@
 namespace evical::ros {
 namespace {
 
-using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
+struct ClosingFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, ClosingFile>;
 
 File temporaryFile(std::filesystem::path& path) {
   std::string name = (std::filesystem::temp_directory_path() / "evical_XXXXXX").string() + kUnpackedEnding;
   const int descriptor = mkstemps(name.data(), static_cast<int>(std::string_view(kUnpackedEnding).size()));
   path = name;
-  return File(descriptor >= 0 ? fdopen(descriptor, "wb") : nullptr, &std::fclose);
+  return File(descriptor >= 0 ? fdopen(descriptor, "wb") : nullptr);
 }
 
 [[noreturn]] void failWriting(const std::filesystem::path& path) {

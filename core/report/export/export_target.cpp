@@ -81,12 +81,13 @@ std::span<const ExportTarget> exportTargets() {
   return kTargets;
 }
 
-const ExportTarget& exportTarget(std::string_view name, const std::string& place) {
+const ExportTarget& exportTarget(std::string_view name, std::string_view place) {
   for (const ExportTarget& target : kTargets)
     if (name == target.name) return target;
   std::vector<std::string> names;
   for (const ExportTarget& target : kTargets) names.emplace_back(target.name);
-  throw badInput(place, fmt::format("nothing can be exported to '{}'", name), nameAdvice(name, names));
+  throw badInput(std::string(place), fmt::format("nothing can be exported to '{}'", name),
+                 nameAdvice(name, names));
 }
 
 namespace {

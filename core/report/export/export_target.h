@@ -37,7 +37,7 @@ struct ExportTarget {
 std::span<const ExportTarget> exportTargets();
 
 // Throws CalibrationError (BadInput) for a name that nobody knows, with the nearest one; `place` precedes it.
-const ExportTarget& exportTarget(std::string_view name, const std::string& place);
+const ExportTarget& exportTarget(std::string_view name, std::string_view place);
 
 // Files of several targets, each below its name; a target that cannot hold the result stops none of the others. Throws
 // CalibrationError (BadInput) for the result of a failed calibration, for names that nobody knows, and where no

@@ -4,13 +4,12 @@
 #include "core/frames/board_finder.h"
 #include "core/frames/ideal_views.h"
 #include "core/frames/views_from_frames.h"
+#include "core/geometry/aruco_library.h"
 #include "core/geometry/camera_model.h"
 #include "tests/support/rendered_board.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/LU>
-#include <opencv2/aruco.hpp>
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/core.hpp>
 
 #include <cmath>
@@ -273,10 +272,9 @@ void TestBoardFinder::wrongNumbers_areDoubted() {
 // A board as OpenCV itself draws it.
 void TestBoardFinder::drawingOfOpenCv_isFound() {
   for (const int rows : {5, 6}) {
-    const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250);
-    const auto drawn = cv::aruco::CharucoBoard::create(8, rows, 0.04F, 0.03F, dictionary);
     cv::Mat picture;
-    drawn->draw({640, 80 * rows}, picture, 0);
+    aruco::drawCharucoBoard(aruco::dictionary(cv::aruco::DICT_6X6_250), {8, rows}, 0.04F, 0.03F,
+                            {640, 80 * rows}, picture);
     cv::copyMakeBorder(picture, picture, 40, 40, 40, 40, cv::BORDER_CONSTANT, 255);
     GrayImage image{{picture.cols, picture.rows}, {}};
     image.pixels.assign(picture.datastart, picture.dataend);
