@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace evical {
@@ -26,16 +27,35 @@ std::string svoCameraText(const RigCamera& camera, const std::string& label, std
       dataMatrix(matrixOf(camera.reference_from_camera), 4));
 }
 
-// `first_label`: what the program calls the first camera; empty: as the session does.
-std::string rigText(const Rig& rig, const char* program, const std::string& first_label, ExportNotes& notes) {
+// `dvs`: the camera that the program is to know by this label; nullptr: none.
+std::string rigText(const Rig& rig, const char* program, const RigCamera* dvs, ExportNotes& notes) {
   const KnownModels models{program, true, false, true};
   std::string text = "label: \"rig\"\ncameras:\n";
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
-    const bool named = i == 0 && !first_label.empty();
-    text += svoCameraText(rig.cameras[i], named ? first_label : rig.cameras[i].file_name, i,
-                          cameraFor(rig.cameras[i], models, notes));
+    const RigCamera& camera = rig.cameras[i];
+    text +=
+        svoCameraText(camera, &camera == dvs ? "dvs" : camera.file_name, i, cameraFor(camera, models, notes));
   }
   return text;
+}
+
+// The first camera of this kind; nullptr: there is none.
+const RigCamera* firstOf(const Rig& rig, CameraKind kind) {
+  const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(),
+                                  [kind](const RigCamera& camera) { return camera.kind == kind; });
+  return found == rig.cameras.end() ? nullptr : &*found;
+}
+
+// The program adds its one time shift to images, and takes events as they are stamped
+// (camera_imu_synchronizer_base.cpp, addImageData and addEventsData).
+void noteUltimateSlamTimes(const RigCamera& dvs, const RigCamera* images, ExportNotes& notes) {
+  if (dvs.time_offset_s != 0.0)
+    notes.push_back(fmt::format(
+        "Ultimate SLAM does not shift events: add {} s to the time stamps of {} before you run it",
+        real(dvs.time_offset_s), dvs.name));
+  if (images)
+    notes.push_back(fmt::format(
+        "timeshift_cam_imu is of the images of {}, the only ones that the program shifts", images->name));
 }
 
 std::string svoImu(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
@@ -60,7 +80,8 @@ std::string ultimateSlamFlags(const Rig& rig, const RigImu& imu, ExportNotes& no
   const auto flag = [](const char* name, double value) {
     return fmt::format("--{}={}\n", name, real(value));
   };
-  std::string text = flag("timeshift_cam_imu", rig.cameras[0].time_offset_s) +
+  const RigCamera* const images = firstOf(rig, CameraKind::Frames);
+  std::string text = flag("timeshift_cam_imu", images ? images->time_offset_s : 0.0) +
                      flag("swe_imu_rate", statedRate_hz(imu, notes)) +
                      flag("gyro_noise_density", noise.gyroscope_density) +
                      flag("acc_noise_density", noise.accelerometer_density) +
@@ -79,7 +100,6 @@ std::string ultimateSlamFlags(const Rig& rig, const RigImu& imu, ExportNotes& no
 const RigImu& checkedImu(const Rig& rig, const char* program, ExportNotes& notes) {
   const RigImu& imu = neededImu(rig, program);
   noteLostImus(rig, program, notes);
-  noteLostOffsets(rig, program, notes);
   noteLostMapping(imu, program, notes);
   return imu;
 }
@@ -90,6 +110,7 @@ ExportedFiles exportSvo(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
   const RigImu& imu = checkedImu(rig, "SVO", exported.notes);
+  noteLostOffsets(rig, "SVO", exported.notes);
   exported.files.push_back(
       {"calib.yaml",
        headerComment(
@@ -98,7 +119,7 @@ ExportedFiles exportSvo(const NamedResult& result) {
             "IMU.",
             "t_imu = t_cam - delay_imu_cam: the sign is the opposite of Kalibr's.",
             "acc_max and omega_max are the sensor's limits: check them against its data sheet."}) +
-           rigText(rig, "SVO", {}, exported.notes) + svoImu(rig, imu, exported.notes)});
+           rigText(rig, "SVO", nullptr, exported.notes) + svoImu(rig, imu, exported.notes)});
   return exported;
 }
 
@@ -106,21 +127,23 @@ ExportedFiles exportUltimateSlam(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
   const RigImu& imu = checkedImu(rig, "Ultimate SLAM", exported.notes);
+  const RigCamera* const events = firstOf(rig, CameraKind::Events);
+  const RigCamera& dvs = events ? *events : rig.cameras.front();
+  noteUltimateSlamTimes(dvs, firstOf(rig, CameraKind::Frames), exported.notes);
   exported.notes.push_back(
-      fmt::format("the first camera, {}, is called dvs in calib.yaml: it must be the event camera",
-                  rig.cameras[0].file_name));
+      fmt::format("the camera {} is called dvs in calib.yaml: it must be the event camera", dvs.file_name));
   exported.files.push_back(
       {"calib.yaml",
        headerComment(
            rig,
            {"Camera rig of Ultimate SLAM. T_B_C takes points of the camera to the IMU; what belongs to the "
             "IMU is in imu.flags.",
-            fmt::format("The event camera is called dvs there: here it is {}.", rig.cameras[0].file_name)}) +
-           rigText(rig, "Ultimate SLAM", "dvs", exported.notes)});
+            fmt::format("The event camera is called dvs there: here it is {}.", dvs.file_name)}) +
+           rigText(rig, "Ultimate SLAM", &dvs, exported.notes)});
   exported.files.push_back(
-      {"imu.flags",
-       headerComment(rig, {"For --flagfile: t_imu = t_cam + timeshift_cam_imu; noise in Kalibr's units."}) +
-           ultimateSlamFlags(rig, imu, exported.notes)});
+      {"imu.flags", headerComment(rig, {"For --flagfile: t_imu = t_image + timeshift_cam_imu, of images "
+                                        "only; noise in Kalibr's units."}) +
+                        ultimateSlamFlags(rig, imu, exported.notes)});
   return exported;
 }
 

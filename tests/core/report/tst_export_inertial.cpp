@@ -361,6 +361,22 @@ class TestExportInertial : public QObject {
     QVERIFY(readme.contains("left: Basalt has no place for radial-tangential distortion: refitted"));
   }
 
+  // The program shifts images, and takes events as they are.
+  void ultimateSlam_shiftsImagesOnly() {
+    NamedResult result = rig({});
+    result.cameras[1].kind = CameraKind::Frames;
+    const ExportedFiles exported = exportTo(result, "ultimate-slam");
+    const std::string flags = contentOf(exported, "ultimate-slam/imu.flags");
+    QVERIFY2(flags.find(fmt::format("--timeshift_cam_imu={}\n",
+                                    result.result->state.cameras[1].time_offset_s)) != std::string::npos,
+             flags.c_str());
+    result.cameras[0].kind = CameraKind::Frames;
+    result.cameras[1].kind = CameraKind::Events;
+    const YAML::Node calib = yamlOf(exportTo(result, "ultimate-slam"), "ultimate-slam/calib.yaml");
+    QVERIFY(calib["cameras"][0]["camera"]["label"].as<std::string>() != "dvs");
+    QCOMPARE(calib["cameras"][1]["camera"]["label"].as<std::string>(), std::string("dvs"));
+  }
+
   void svoAndUltimateSlam_reproject() {
     const NamedResult result = rig({});
     for (const std::string target : {"svo", "ultimate-slam"}) {
@@ -377,7 +393,12 @@ class TestExportInertial : public QObject {
           const std::size_t at = flags.find("\n--" + name + "=");
           return at == std::string::npos ? 0.0 : std::stod(flags.substr(at + name.size() + 4));
         };
-        offset_s = flag("timeshift_cam_imu");
+        QCOMPARE(flag("timeshift_cam_imu"), 0.0);  // of images, and there are none
+        offset_s = result.result->state.cameras[0].time_offset_s;
+        const std::string notes = fmt::format("{}", fmt::join(exported.notes, "\n"));
+        QVERIFY2(
+            notes.find(fmt::format("add {} s to the time stamps of left", offset_s)) != std::string::npos,
+            notes.c_str());
         QCOMPARE(flag("swe_imu_rate"), 997.5);
         QCOMPARE(flag("acc_noise_density"), 1.75e-3);
         QVERIFY(flag("vio_ceres_sigma_gyro_drift") > 0.0 && flag("vio_ceres_sigma_gyro_drift") < 1e-3);

@@ -109,12 +109,22 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
   const YamlNode root = YamlNode::load(path);
   ReadFile rig = readRig(path, root);
   // frontend_api.cpp: "Missing DVS camera, but events were requested."
-  const YamlNode label = root["cameras"].items().front()["camera"]["label"];
-  if (label.text() != "dvs") throw label.error("must be dvs");
+  const std::vector<YamlNode> cameras = root["cameras"].items();
+  const auto isDvs = [](const YamlNode& camera) { return camera["camera"]["label"].text() == "dvs"; };
+  if (std::none_of(cameras.begin(), cameras.end(), isDvs))
+    throw cameras.front()["camera"]["label"].error("must be dvs, or that of another camera must be");
   ReadFile file{folder / "imu.flags"};
   std::map<std::string, double> flags = flagsOf(file.path);
-  ReadCamera first;
-  first.time_offset_s = flags["timeshift_cam_imu"];
+  // camera_imu_synchronizer_base.cpp shifts images only.
+  const auto images =
+      static_cast<std::size_t>(std::find_if_not(cameras.begin(), cameras.end(), isDvs) - cameras.begin());
+  if (images < cameras.size()) {
+    file.cameras.resize(images + 1);
+    file.cameras.back().time_offset_s = flags["timeshift_cam_imu"];
+  } else if (flags["timeshift_cam_imu"] != 0.0) {
+    throw badInput(file.path.string(),
+                   "timeshift_cam_imu moves images, and calib.yaml has no camera of images");
+  }
   ReadImu imu;
   imu.noise = {flags["gyro_noise_density"], flags["acc_noise_density"], flags["vio_ceres_sigma_gyro_drift"],
                flags["vio_ceres_sigma_accel_drift"]};
@@ -123,7 +133,6 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
                                                 flags["vio_acc_bias_init_z"]);
   imu.gyroscope_bias_rad_s = Eigen::Vector3d(flags["vio_gyr_bias_init_x"], flags["vio_gyr_bias_init_y"],
                                              flags["vio_gyr_bias_init_z"]);
-  file.cameras = {first};
   file.imus = {imu};
   file.gravity_m_s2 = flags["vio_ceres_gravity"];
   ReadBack read;
