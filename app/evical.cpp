@@ -87,6 +87,8 @@ int main(int argc, char** argv) {
   holdStandardStreams();
   // A file size limit is a full disk like any other: let write() say so.
   std::signal(SIGXFSZ, SIG_IGN);
+  // Whoever started us may ignore it: then nobody could tell how a job ended.
+  std::signal(SIGCHLD, SIG_DFL);
   const int exit_code = runOrFail(argc, argv);
   const std::string lost = lostOutput();
   return lost.empty() || exit_code != kDone ? exit_code : fail(kFailed, lost);

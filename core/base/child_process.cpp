@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <utility>
@@ -29,11 +30,15 @@ class SpawnSettings {
     posix_spawn_file_actions_adddup2(&files_, STDOUT_FILENO, STDERR_FILENO);
     if (start.kept_descriptor >= 0)  // onto itself: it is not closed then
       posix_spawn_file_actions_adddup2(&files_, start.kept_descriptor, start.kept_descriptor);
-    sigset_t none;
+    sigset_t none, children;
     sigemptyset(&none);
+    sigemptyset(&children);
+    sigaddset(&children, SIGCHLD);
     posix_spawnattr_setsigmask(&attributes_, &none);
+    posix_spawnattr_setsigdefault(&attributes_, &children);
     posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setflags(&attributes_,
+                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   }
   ~SpawnSettings() {
     posix_spawn_file_actions_destroy(&files_);
@@ -89,6 +94,10 @@ std::optional<ProcessEnd> ChildProcess::collected(int wait_options) {
   rusage usage{};
   const pid_t found = ::wait4(process_, &status, wait_options, &usage);
   if (found == 0 || (found < 0 && errno == EINTR)) return std::nullopt;
+  if (found < 0) {  // nobody kept how it ended, as where SIGCHLD is ignored
+    end_ = ProcessEnd{-1, 0, since_start_.elapsed_s(), 0.0};
+    return end_;
+  }
   constexpr double kKilobytesPerMegabyte = 1e3;
   end_ = ProcessEnd{WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
                     since_start_.elapsed_s(), static_cast<double>(usage.ru_maxrss) / kKilobytesPerMegabyte};

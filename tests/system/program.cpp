@@ -41,6 +41,13 @@ Outcome runProgram(const QStringList& arguments, int patience_s) {
   return finished(process, patience_s);
 }
 
+Outcome runProgramWithoutChildSignals(const QStringList& arguments, int patience_s) {
+  QProcess process;
+  process.setChildProcessModifier([] { std::signal(SIGCHLD, SIG_IGN); });
+  process.start(kProgram, arguments);
+  return finished(process, patience_s);
+}
+
 Outcome runProgramRedirected(const QString& redirection, const QStringList& arguments, int patience_s) {
   QProcess process;
   const QStringList shell = {"-c", QStringLiteral("exec \"$@\" %1").arg(redirection), "bash", kProgram};

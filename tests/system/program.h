@@ -20,6 +20,9 @@ struct Outcome {
 
 Outcome runProgram(const QStringList& arguments, int patience_s = 120);
 
+// The same where whoever starts it ignores SIGCHLD, as some init systems and job runners do.
+Outcome runProgramWithoutChildSignals(const QStringList& arguments, int patience_s = 120);
+
 // The same with standard streams as a shell redirects them: "2>&-".
 Outcome runProgramRedirected(const QString& redirection, const QStringList& arguments, int patience_s = 30);
 

@@ -40,6 +40,15 @@ class TestBatchCommand : public QObject {
   }
 
  private slots:
+  void ignoredChildSignals_hideNoFailure() {
+    const QString jobs = writeJobs(
+        "ignored.yaml",
+        QString("jobs:\n  - {name: gone, session: %1, recording: nowhere.bag}\n").arg(session("short_bag")));
+    const Outcome outcome = runProgramWithoutChildSignals({"batch", jobs, "-o", path("ignored")});
+    VERIFY_OUTCOME(outcome, 1);
+    QCOMPARE(endOf("ignored", "gone"), "bad_input");
+  }
+
   void failures_takeNoOtherWithThem_andAreTold() {
     const QString jobs = writeJobs(
         "mixed.yaml", QString("set: %1\nat_once: 2\njobs:\n  - {name: good, session: %2}\n"
