@@ -17,6 +17,8 @@
 #endif
 
 #include <algorithm>
+#include <clocale>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 
@@ -125,7 +127,9 @@ int main(int argc, char** argv) {
   mallopt(M_ARENA_MAX, 2);  // else each thread's freed memory stays its own
 #endif
   const bool without_display = doWithoutDisplay(argc, argv);
+  std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: jobs' ends are to be seen
   QApplication application(argc, argv);
+  std::setlocale(LC_NUMERIC, "C");  // files have decimal points, wherever the desktop is
   QApplication::setApplicationName("evical");
   QApplication::setOrganizationName("evical");
   QApplication::setApplicationVersion(evical::kVersion);

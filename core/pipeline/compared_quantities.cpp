@@ -1,5 +1,6 @@
 #include "core/pipeline/compared_quantities.h"
 
+#include "core/base/number.h"
 #include "core/data/pixel_delay.h"
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
@@ -73,7 +74,7 @@ double covarianceOf(const UncertaintyReport& report, const Uncertain& a, const U
 double pixelDelay_s(const NamedResult& named) {
   double delay_ms = CalibrationOptions().optimisation.pixel_delay_ms;
   for (const OptionRow& row : named.options)
-    if (row.name == "optimisation.verdict.pixel_delay_ms") delay_ms = std::strtod(row.value.c_str(), nullptr);
+    if (row.name == "optimisation.verdict.pixel_delay_ms") delay_ms = realFrom(row.value).value_or(delay_ms);
   return 1e-3 * delay_ms;
 }
 

@@ -1,6 +1,7 @@
 #include "core/pipeline/trajectory_file.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 
 #include <fmt/format.h>
@@ -8,8 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
 
 namespace evical {
@@ -31,12 +33,13 @@ std::array<double, kNumbersInRow> numbersOf(const std::string& line, const std::
   const char* at = line.c_str();
   for (double& number : numbers) {
     while (*at == ' ' || *at == '\t' || *at == ',' || *at == ';') ++at;
-    char* end = nullptr;
-    number = std::strtod(at, &end);
-    if (end == at || !std::isfinite(number))
+    const std::size_t length = std::strcspn(at, " \t,;\r");
+    const std::optional<double> read = realFrom({at, length});
+    if (!read)
       throw badInput(place, "has no eight numbers",
                      "Give trajectory.csv of a calibration, or lines 'time x y z qx qy qz qw'");
-    at = end;
+    number = *read;
+    at += length;
   }
   return numbers;
 }

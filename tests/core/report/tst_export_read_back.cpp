@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/report/export/read_back.h"
 #include "tests/core/report/exported_rig.h"
+#include "tests/support/german_locale.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
@@ -66,6 +67,18 @@ class TestExportReadBack : public QObject {
   Q_OBJECT
 
  private slots:
+  void everyTarget_readsBack_whereNumbersHaveCommas() {
+    const NamedResult result = rig({});
+    const GermanLocale german;
+    if (!german.isThere()) QSKIP("localedef made no locale de_DE: the package locales is missing");
+    for (const ExportTarget& target : exportTargets()) {
+      const QTemporaryDir folder;
+      if (!exportInto(folder, result, target.name)) continue;
+      const ExportCheck check = checkExport(result, target, folder.path().toStdString());
+      QVERIFY2(check.same, check.text.c_str());
+    }
+  }
+
   void everyTarget_readsBack_data() {
     QTest::addColumn<QString>("target");
     QTest::addColumn<bool>("fisheye");

@@ -1,6 +1,7 @@
 #include "core/report/export/read_back/json_node.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/report/export/read_back/read_numbers.h"
 
 #include <fmt/format.h>
@@ -79,11 +80,9 @@ std::string JsonNode::treeText() const {
 
 double JsonNode::treeNumber() const {
   const std::string value = treeText();
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc{} || end != value.data() + value.size() || !std::isfinite(number))
-    fail(fmt::format("'{}' is no number", value));
-  return number;
+  const std::optional<double> number = realFrom(value);
+  if (!number) fail(fmt::format("'{}' is no number", value));
+  return *number;
 }
 
 std::int64_t JsonNode::treeInteger() const {

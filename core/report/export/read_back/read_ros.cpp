@@ -3,6 +3,7 @@
 // ROS 2 start, too; ros/geometry2's program of that name, to which ROS 1 hands nine words; and ros/urdfdom,
 // urdf_parser/src/model.cpp and joint.cpp (at 02a883b: parseURDF, parseJoint).
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/report/export/read_back/read_numbers.h"
 #include "core/report/export/read_back/readers.h"
 #include "core/report/export/read_back/xml_element.h"
@@ -85,11 +86,9 @@ ReadFile filePlacing(const std::filesystem::path& path, const std::vector<Placed
 }
 
 double numberOf(const std::string& text, const std::string& place) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw badInput(place, fmt::format("'{}' is no number", text));
-  return value;
+  const std::optional<double> value = realFrom(text);
+  if (!value) throw badInput(place, fmt::format("'{}' is no number", text));
+  return *value;
 }
 
 // One call of static_transform_publisher; words before it are ros2 run's.
