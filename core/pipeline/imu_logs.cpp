@@ -38,8 +38,8 @@ std::int64_t ImuLogs::Source::time_ns() const {
 }
 
 ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResult& before,
-                 const ImuLogSettings& settings, std::stop_token stop)
-    : before_(before), settings_(settings), stop_(std::move(stop)) {
+                 const ImuLogSettings& settings, const ImuReadings& readings, std::stop_token stop)
+    : before_(before), settings_(settings), readings_(readings), stop_(std::move(stop)) {
   const std::vector<std::string> names = namesOf(before);
   for (const auto& [name, stream] : settings.streams)
     if (std::find(names.begin(), names.end(), name) == names.end())
@@ -49,7 +49,7 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   for (const std::filesystem::path& log : logs) {
     Source& source = sources_.emplace_back();
     source.path = log;
-    source.reader = openRecording(log);
+    source.reader = openLog(log);
     streams += imuStreams(*source.reader);
   }
   match(streams == 1);
@@ -65,6 +65,17 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   if (first_ns == std::numeric_limits<std::int64_t>::max())
     throw badInput(logs.front().string(), "there are no IMU samples in it", "Record again, or copy it again");
   start_ns_ = first_ns;
+}
+
+// A table whose own header does not tell its columns may be like the calibration's.
+std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& log) const {
+  try {
+    return openRecording(log);
+  } catch (const CalibrationError&) {
+    for (const auto& [name, reading] : readings_)
+      if (!reading.columns.empty()) return openRecording(log, {{log.filename().string(), reading.columns}});
+    throw;
+  }
 }
 
 // What is said of a stream, then its name in the calibration, then that of the IMU, then that there is no other.
@@ -183,8 +194,7 @@ void ImuLogs::advance(Source& source) {
     const StreamInfo& info = source.reader->streams()[*found];
     source.next.imu = source.imus[place];
     source.next.samples.clear();
-    toSi(source.raw.imu_samples, settings_.acceleration_unit.value_or(info.acceleration_unit),
-         settings_.angular_rate_unit.value_or(info.angular_rate_unit), source.next.samples);
+    toSamples(info, source.raw.imu_samples, source.next);
     immeasurable_ +=
         std::erase_if(source.next.samples, [](const ImuSample& sample) { return !isMeasurable(sample); });
     source.filters[place].filter(source.next.samples);
@@ -197,6 +207,20 @@ void ImuLogs::advance(Source& source) {
     if (!source.next.samples.empty()) return;
   }
   source.finished = true;
+}
+
+// Units as the caller says, else as the calibration read them, else as the log does; axes as the calibration read them.
+void ImuLogs::toSamples(const StreamInfo& info, const std::vector<RawImuSample>& raw,
+                        ImuLogPacket& packet) const {
+  const auto found = readings_.find(before_.imus[packet.imu].name);
+  const ImuReading reading = found == readings_.end() ? ImuReading{} : found->second;
+  toSi(raw, settings_.acceleration_unit.value_or(reading.acceleration_unit.value_or(info.acceleration_unit)),
+       settings_.angular_rate_unit.value_or(reading.angular_rate_unit.value_or(info.angular_rate_unit)),
+       packet.samples);
+  for (ImuSample& sample : packet.samples) {
+    sample.angular_rate_rad_s = readAs(reading.gyroscope_axes, sample.angular_rate_rad_s);
+    sample.specific_force_m_s2 = readAs(reading.accelerometer_axes, sample.specific_force_m_s2);
+  }
 }
 
 // Two logs of one IMU at once are of two IMUs, or the same one twice.

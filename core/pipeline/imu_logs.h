@@ -26,6 +26,15 @@ struct ImuLogSettings {
   std::optional<AngularRateUnit> angular_rate_unit;
 };
 
+// How the calibration read an IMU's samples.
+struct ImuReading {
+  std::optional<AccelerationUnit> acceleration_unit = {};
+  std::optional<AngularRateUnit> angular_rate_unit = {};
+  AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
+  std::string columns = {};  // of a text table
+};
+using ImuReadings = std::map<std::string, ImuReading>;  // by the IMU's name
+
 struct ImuLogPacket {
   std::size_t imu = 0;  // of the old result
   std::vector<ImuSample> samples;
@@ -36,7 +45,7 @@ class ImuLogs {
   // Throws CalibrationError (BadInput) for logs that cannot be read, that hold no IMU of the result, or whose clocks
   // have nothing to do with each other.
   ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResult& before,
-          const ImuLogSettings& settings, std::stop_token stop = {});
+          const ImuLogSettings& settings, const ImuReadings& readings = {}, std::stop_token stop = {});
 
   const std::vector<std::size_t>& imus() const { return imus_; }  // of the result, ascending, that are there
   const StreamInfo& stream(std::size_t imu) const;                // of one of these
@@ -60,15 +69,18 @@ class ImuLogs {
     std::int64_t time_ns() const;
   };
 
+  std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
   std::optional<std::size_t> imuOf(const Source& source, const StreamInfo& stream, bool only_one) const;
   void match(bool only_one);
   void advance(Source& source);
+  void toSamples(const StreamInfo& info, const std::vector<RawImuSample>& raw, ImuLogPacket& packet) const;
   void checkClocks() const;
   void checkOrder(const Source& source);
   [[noreturn]] void refuseUnknown() const;
 
   const NamedResult& before_;
   ImuLogSettings settings_;
+  ImuReadings readings_;
   std::stop_token stop_;
   std::vector<Source> sources_;
   std::vector<std::size_t> imus_;

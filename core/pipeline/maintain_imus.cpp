@@ -12,6 +12,8 @@
 #include "core/pipeline/imu_unit_check.h"
 #include "core/pipeline/maintained_quantities.h"
 #include "core/pipeline/maintained_trajectory.h"
+#include "core/pipeline/saved_run.h"
+#include "core/pipeline/session_keys.h"
 
 #include <fmt/format.h>
 
@@ -132,7 +134,7 @@ PairNominal Maintainer::nominalOf(std::size_t imu) const {
 void Maintainer::look() {
   constexpr double kLook_s = 90.0;
   context_.progress.stageStarted("look");
-  ImuLogs logs(input_.logs, before(), input_.settings, context_.stop);
+  ImuLogs logs(input_.logs, before(), input_.settings, input_.readings, context_.stop);
   imus_ = logs.imus();
   const auto reference = std::find_if(imus_.begin(), imus_.end(),
                                       [&](std::size_t imu) { return name(imu) == before().reference; });
@@ -191,7 +193,7 @@ void Maintainer::agreeClocks(const std::vector<Looked>& seen) {
 
 void Maintainer::readAll() {
   context_.progress.stageStarted("read");
-  ImuLogs logs(input_.logs, before(), input_.settings, context_.stop);
+  ImuLogs logs(input_.logs, before(), input_.settings, input_.readings, context_.stop);
   passes_.assign(imus_.size(), {});
   std::vector<ImuState> states;
   for (const std::size_t imu : imus_) states.push_back(state(imu));
@@ -399,6 +401,11 @@ MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
                    "Calibrate first: there is nothing to be maintained");
   if (input.before.imus.empty())
     throw badInput(file.string(), "has no IMUs", "Give the result of a calibration with IMUs");
+  const std::filesystem::path kept = file.parent_path() / kSessionFile;
+  if (std::filesystem::exists(kept, ignored))
+    for (const SessionImu& imu : readSessionOfRun(kept).imus)
+      input.readings[imu.name] = {imu.acceleration_unit, imu.angular_rate_unit, imu.gyroscope_axes,
+                                  imu.accelerometer_axes, imu.columns};
   return input;
 }
 

@@ -20,6 +20,7 @@ struct MaintainInput {
   NamedResult before;
   std::string before_name;  // as people know it
   ImuLogSettings settings;
+  ImuReadings readings;  // of the calibration
   MaintenanceOptions options;
   std::filesystem::path trajectory;  // of the reference IMU; empty: none
 };

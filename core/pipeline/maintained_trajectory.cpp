@@ -192,7 +192,7 @@ class TrajectoryCheck {
 // Calls use(time, sample) of the IMU's samples until it says that it has enough.
 void forSamples(const MaintainInput& input, std::size_t imu, const RunContext& context,
                 const std::function<bool(double, const ImuSample&)>& use) {
-  ImuLogs logs(input.logs, input.before, input.settings, context.stop);
+  ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);
   ImuLogPacket packet;
   while (logs.read(packet)) {
     context.throwIfStopped();
@@ -212,7 +212,7 @@ TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double 
   const ImuState& before = input.before.result->state.imus[imu];
   std::int64_t start_ns = 0;
   {
-    const ImuLogs logs(input.logs, input.before, input.settings, context.stop);
+    const ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);
     start_ns = logs.start_ns();
   }
   std::vector<TimedPose> poses = readTrajectory(input.trajectory, start_ns);

@@ -93,6 +93,37 @@ class TestMaintainCommand : public QObject {
     QVERIFY(QString::fromUtf8(readFile(path("out/report.html"))).contains("<svg"));
   }
 
+  // A calibration that read the IMU's axes otherwise than the log has them: stops say the same.
+  void axesOfTheCalibration_areThoseOfTheLog() {
+    const QString log = changedLog("turned", [](QList<double>& values) {
+      const QList<double> as = values;
+      values = {as[1], as[0], -as[2], as[4], as[3], -as[5]};  // its own inverse
+    });
+    QDir().mkpath(path("turned/calibration"));
+    QFile::copy(path("stops_csv/calibration/result.yaml"), path("turned/calibration/result.yaml"));
+    const auto statusOf = [&](const QString& result, const QString& out) {
+      const Outcome outcome =
+          runProgram({"maintain", log, "--result", result, "-o", path(out), "--json", "--quiet"});
+      return QJsonDocument::fromJson(outcome.output.toUtf8()).object();
+    };
+    const QJsonObject as_it_was =
+        QJsonDocument::fromJson(
+            runProgram({"maintain", path("stops_csv"), "--result", path("stops_csv/calibration"), "-o",
+                        path("out_straight"), "--json", "--quiet"})
+                .output.toUtf8())
+            .object();
+    writeFile(path("turned/calibration/run_session.yaml"),
+              "evical_session: 1\nrecording: gone.csv\n"
+              "board: {type: asymmetric_circles, rows: 11, cols: 4, spacing_m: 0.05, radius_m: 0.02}\n"
+              "cameras: {left: {stream: events, resolution_px: [346, 260]}}\n"
+              "imus: {imu: {stream: imu, accelerometer_noise_density: 0.01, gyroscope_noise_density: 0.001, "
+              "gyroscope_axes: \"y,x,-z\", accelerometer_axes: \"y,x,-z\"}}\n");
+    const QJsonObject turned = statusOf(path("turned/calibration"), "out_turned");
+    QVERIFY(!as_it_was["status"].toString().isEmpty());
+    QCOMPARE(turned["status"], as_it_was["status"]);
+    QCOMPARE(turned["reason"], as_it_was["reason"]);
+  }
+
   void step_isNamedWithItsTime_inJson() {
     QStringList arguments = maintain("step_rotation", {}, "out_step");
     arguments.push_back("--json");
