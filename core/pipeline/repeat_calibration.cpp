@@ -98,12 +98,30 @@ class Repeat {
         return failOne(fmt::format("is the same recording as {} once more: it says nothing new",
                                    input_.names[before.recording]),
                        recording);
+    if (const std::string other = otherLens(run->result); !other.empty()) return failOne(other, recording);
     recording.status = run->result.status;
     recording.reason = run->result.reason;
     if (done) done(k, session, run);
     NamedResult named = namedRun(session, run, {});
     named.result = withoutCurves(run->result);
     ones_.push_back({k, session, std::move(named), run->as_weighed});
+  }
+
+  // Where lens models were found from each recording they may differ: then their numbers mean different things.
+  std::string otherLens(const CalibrationResult& result) const {
+    if (ones_.empty()) return {};
+    const CalibrationState& first = ones_.front().named.result->state;
+    for (std::size_t k = 0; k < first.cameras.size() && k < result.state.cameras.size(); ++k) {
+      const std::optional<CameraIntrinsics>&own = result.state.cameras[k].lens.inUse(),
+            &other = first.cameras[k].lens.inUse();
+      if (!own || !other || own->model == other->model) continue;
+      return fmt::format(
+          "its lens of camera {} came out as {}, that of {} as {}, so the two cannot be combined: set "
+          "intrinsics.model in all sessions",
+          ones_.front().session.cameras[k].name, cameraModelTitle(own->model),
+          input_.names[ones_.front().recording], cameraModelTitle(other->model));
+    }
+    return {};
   }
 
   void failOne(const std::string& reason, RepeatedRecording& recording) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -78,6 +79,33 @@ void checkPriors(const Session& first, const Session& session) {
     throwOther(session, first, "its prior", "is not", "is: give all the same");
 }
 
+// Options after detection decide what a result and its sigmas mean, so that all must have been computed with the same.
+void checkOptions(const Session& first, const Session& session) {
+  const auto rowsOf = [](const Session& of) {
+    std::map<std::string, std::string> rows;
+    for (const OptionRow& row : differingOptions(of.options))
+      for (const char* const group : {"intrinsics.", "initialisation.", "optimisation.model.",
+                                      "optimisation.priors.", "optimisation.verdict."})
+        if (row.name.starts_with(group)) rows[row.name] = row.value;
+    return rows;
+  };
+  const std::map<std::string, std::string> own = rowsOf(session), other = rowsOf(first);
+  std::set<std::string> names;
+  for (const auto& rows : {own, other})
+    for (const auto& [name, value] : rows) names.insert(name);
+  const auto valueIn = [](const auto& rows, const std::string& name) {
+    const auto found = rows.find(name);
+    return found == rows.end() ? std::string("its default") : found->second;
+  };
+  for (const std::string& name : names)
+    if (valueIn(own, name) != valueIn(other, name))
+      throw badInput(
+          session.source.string(),
+          fmt::format("{} is {}, in {} it is {}: results computed with different options cannot be combined",
+                      name, valueIn(own, name), first.source.string(), valueIn(other, name)),
+          "Give all sessions the same options");
+}
+
 void checkBoards(const Session& first, const Session& session) {
   if (session.board != first.board)
     throwOther(session, first, "its board", "is " + boardText(session.board), "is " + boardText(first.board));
@@ -100,6 +128,7 @@ void makeLike(const Session& first, Session& session) {
   checkBoards(first, session);
   checkCameras(first, session);
   checkPriors(first, session);
+  checkOptions(first, session);
 }
 
 std::set<std::filesystem::path> filesOf(const Session& session) {

@@ -100,6 +100,37 @@ class TestRepeatCalibration : public QObject {
  private slots:
   void initTestCase() { good_ = repeatOf(3); }
 
+  void otherOptions_areRefused() {
+    verifyRejected([](Session& session) { session.options.optimisation.pixel_delay_ms *= 2.0; },
+                   "results computed with different options cannot be combined");
+  }
+
+  // Found from each recording, models may differ; then numbers of the same name mean different things.
+  void otherLensModel_isNotCombined() {
+    const SimulatedPass simulated = simulatePass(2.0);
+    std::vector<Session> sessions;
+    for (const char* name : {"a", "b", "c"}) {
+      Session session = sessionNamed(std::string(name) + ".bag");
+      sessions.push_back(session);
+    }
+    const RepeatInput input = evical::repeatOf(std::move(sessions));
+    const auto calibrate = [&](std::size_t k, const Session& session, const RunContext& one) {
+      CalibrationOutcome outcome = runCalibration(
+          session, simulatePass(kRepeatCalibrationDuration_s, briskForRepeatCalibration(k + 1)).pass, one);
+      if (k == 1 && outcome.run) {
+        CameraLens& lens = outcome.run->result.state.cameras[0].lens;
+        lens.solved = lens.inUse();
+        lens.solved->model = CameraModel::PinholeEquidistant;
+      }
+      return outcome;
+    };
+    const Repeatability repeat = repeatCalibration(input, calibrate, {}, {}).repeatability;
+    QVERIFY(repeat.recordings[1].outcome == RepeatOutcome::Failed);
+    QVERIFY2(repeat.recordings[1].reason.find("set intrinsics.model in all sessions") != std::string::npos,
+             repeat.recordings[1].reason.c_str());
+    QCOMPARE(repeat.columns.size(), std::size_t{2});
+  }
+
   void unchangedRig_agrees() {
     const Repeatability& repeat = good_.repeatability;
     QVERIFY2(repeat.verdict == RepeatVerdict::Agree, repeat.reason.c_str());
