@@ -3,6 +3,8 @@
 #include "core/base/time.h"
 #include "core/numerics/robust.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -136,6 +138,33 @@ std::vector<bool> joinedSamples(std::span<const ImuSample> samples) {
   return joined;
 }
 
+// Where a driver holds each sample of a slow sensor until the next, all three axes repeat for about the same number of samples.
+// A sensor that rests or is coarse repeats, too, but not so regularly.
+std::vector<std::size_t> repeatsOf(std::span<const ImuSample> samples, bool rate) {
+  constexpr std::size_t kFewestRuns = 20;
+  constexpr double kRegular = 0.95;  // of the runs, that are as long as the median one, give or take a sample
+  const auto values = [rate](const ImuSample& sample) -> const Eigen::Vector3d& {
+    return rate ? sample.angular_rate_rad_s : sample.specific_force_m_s2;
+  };
+  std::vector<std::size_t> repeats;
+  std::vector<double> runs;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i > 0 && values(samples[i]) == values(samples[i - 1])) {
+      repeats.push_back(i);
+      runs.back() += 1.0;
+    } else {
+      runs.push_back(1.0);
+    }
+  }
+  if (runs.size() < kFewestRuns) return {};
+  const double usual = medianOf(runs);
+  const auto regular = std::count_if(runs.begin() + 1, runs.end() - 1,
+                                     [usual](double run) { return std::abs(run - usual) <= 1.0; });
+  const bool held =
+      usual >= 2.0 && static_cast<double>(regular) >= kRegular * static_cast<double>(runs.size() - 2);
+  return held ? repeats : std::vector<std::size_t>{};
+}
+
 std::vector<std::size_t> spikes(std::span<const ImuSample> samples, bool rate) {
   std::vector<std::size_t> found;
   const std::vector<bool> joined = joinedSamples(samples);
@@ -149,6 +178,22 @@ std::vector<std::size_t> spikes(std::span<const ImuSample> samples, bool rate) {
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
+}
+
+void findUnfitOf(std::span<const ImuSample> samples, bool rate, UnfitSamples& unfit) {
+  std::vector<std::size_t> clipped;
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+    if (kImuAxes[axis].rate != rate) continue;
+    unfit.saturated[axis] = saturatedAlong(samples, kImuAxes[axis]);
+    clipped.insert(clipped.end(), unfit.saturated[axis].begin(), unfit.saturated[axis].end());
+  }
+  std::vector<std::size_t>& found = rate ? unfit.gyroscope_spikes : unfit.accelerometer_spikes;
+  found = spikes(samples, rate);
+  // The kink where a clip begins is no spike.
+  std::erase_if(found, [&](std::size_t i) {
+    return std::any_of(clipped.begin(), clipped.end(),
+                       [i](std::size_t k) { return k <= i + 1 && i <= k + 1; });
+  });
 }
 
 std::vector<ImuSample> those(std::span<const ImuSample> samples, const std::vector<std::uint8_t>& fit) {
@@ -171,21 +216,53 @@ bool isMeasurable(const ImuSample& sample) {
 UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
   UnfitSamples unfit;
   if (samples.empty()) return unfit;
-  std::array<std::vector<std::size_t>, 2> clipped;
-  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
-    unfit.saturated[axis] = saturatedAlong(samples, kImuAxes[axis]);
-    std::vector<std::size_t>& all = clipped[kImuAxes[axis].rate ? 0 : 1];
-    all.insert(all.end(), unfit.saturated[axis].begin(), unfit.saturated[axis].end());
+  for (const bool rate : {true, false}) {
+    std::vector<std::size_t>& repeats = rate ? unfit.gyroscope_repeats : unfit.accelerometer_repeats;
+    repeats = repeatsOf(samples, rate);
+    if (repeats.empty()) {
+      findUnfitOf(samples, rate, unfit);
+      continue;
+    }
+    // A held sample looks like a limit that is reached: only the first of each counts.
+    std::vector<std::size_t> firsts;
+    std::vector<ImuSample> thinned;
+    for (std::size_t i = 0, next = 0; i < samples.size(); ++i) {
+      if (next < repeats.size() && repeats[next] == i) {
+        ++next;
+        continue;
+      }
+      firsts.push_back(i);
+      thinned.push_back(samples[i]);
+    }
+    findUnfitOf(thinned, rate, unfit);
+    const auto bringBack = [&](std::vector<std::size_t>& found) {
+      for (std::size_t& i : found) i = firsts[i];
+    };
+    for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis)
+      if (kImuAxes[axis].rate == rate) bringBack(unfit.saturated[axis]);
+    bringBack(rate ? unfit.gyroscope_spikes : unfit.accelerometer_spikes);
   }
-  unfit.gyroscope_spikes = spikes(samples, true);
-  unfit.accelerometer_spikes = spikes(samples, false);
-  // The kink where a clip begins is no spike.
-  const auto isClipped = [](const std::vector<std::size_t>& at, std::size_t i) {
-    return std::any_of(at.begin(), at.end(), [i](std::size_t k) { return k <= i + 1 && i <= k + 1; });
-  };
-  std::erase_if(unfit.gyroscope_spikes, [&](std::size_t i) { return isClipped(clipped[0], i); });
-  std::erase_if(unfit.accelerometer_spikes, [&](std::size_t i) { return isClipped(clipped[1], i); });
   return unfit;
+}
+
+std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<const ImuSample> samples,
+                                       const UnfitSamples& unfit) {
+  std::vector<RecordingFault> faults;
+  if (samples.size() < 2) return faults;
+  const double rate_Hz =
+      static_cast<double>(samples.size() - 1) / secondsSince(samples.front().time_ns, samples.back().time_ns);
+  for (const auto& [repeats, sensor] : {std::pair{&unfit.gyroscope_repeats, "gyroscope"},
+                                        std::pair{&unfit.accelerometer_repeats, "accelerometer"}}) {
+    if (repeats->empty()) continue;
+    const double own_Hz =
+        rate_Hz * (1.0 - static_cast<double>(repeats->size()) / static_cast<double>(samples.size()));
+    faults.push_back(
+        {stream, FaultKind::Held, 0.0,
+         fmt::format("The {} measures at {:.1f} Hz, and its samples are repeated at {:.1f} Hz: calibrations "
+                     "take each once.",
+                     sensor, own_Hz, rate_Hz)});
+  }
+  return faults;
 }
 
 SampleSelection fitSamples(std::span<const ImuSample> samples) {
@@ -200,6 +277,8 @@ SampleSelection fitSamples(std::span<const ImuSample> samples) {
   }
   for (const std::size_t i : unfit.gyroscope_spikes) fit.gyroscope[i] = 0;
   for (const std::size_t i : unfit.accelerometer_spikes) fit.accelerometer[i] = 0;
+  for (const std::size_t i : unfit.gyroscope_repeats) fit.gyroscope[i] = 0;
+  for (const std::size_t i : unfit.accelerometer_repeats) fit.accelerometer[i] = 0;
   return fit;
 }
 

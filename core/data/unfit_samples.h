@@ -3,11 +3,13 @@
 #pragma once
 
 #include "core/data/imu_sample.h"
+#include "core/data/recording_fault.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -36,10 +38,16 @@ bool isMeasurable(const ImuSample& sample);
 struct UnfitSamples {
   std::array<std::vector<std::size_t>, kImuAxes.size()> saturated;
   std::vector<std::size_t> gyroscope_spikes, accelerometer_spikes;
+  // Repeats of the sample before, where a sensor is slower than its stream and each of its samples is held.
+  std::vector<std::size_t> gyroscope_repeats, accelerometer_repeats;
 };
 
 // Of samples that are measurable.
 UnfitSamples findUnfitSamples(std::span<const ImuSample> samples);
+
+// What is said of sensors whose samples are held.
+std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<const ImuSample> samples,
+                                       const UnfitSamples& unfit);
 
 // Which samples of the two sensors take part, in their order: 1 if one does.
 struct SampleSelection {

@@ -1,4 +1,5 @@
 #include "core/base/time.h"
+#include "core/data/second_clock.h"
 #include "core/data/unfit_samples.h"
 #include "core/recording/imu_statistics.h"
 #include "core/recording/inspection.h"
@@ -11,6 +12,9 @@
 
 namespace evical {
 namespace {
+
+constexpr std::size_t kMostFirstSamples = 10;  // that drivers stamp before their clock is set
+constexpr double kUnset_s = 3600.0;
 
 using Faults = std::vector<RecordingFault>;
 using Samples = std::vector<ImuSample>;
@@ -28,14 +32,28 @@ void appendFaults(Faults& faults, Faults alike, const char* many) {
 
 void checkTimes(const std::string& name, const Samples& samples, const InspectionOptions& options,
                 Faults& faults) {
+  const std::vector<SecondClock> clocks = findSecondClocks(samples);
+  for (const SecondClock& clock : clocks) faults.push_back(faultOf(name, samples, clock));
+  const auto isOfSecondClock = [&](std::size_t i) {
+    return std::any_of(clocks.begin(), clocks.end(),
+                       [i](const SecondClock& clock) { return i >= clock.begin && i <= clock.end; });
+  };
   const double period_s = medianInterval_s(samples);
   Faults gaps, backward;
   double square_sum_s2 = 0.0;
   std::size_t regular = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (isOfSecondClock(i)) continue;
     const double at_s = secondsSince(samples.front().time_ns, samples[i - 1].time_ns);
     const double interval_s = secondsSince(samples[i - 1].time_ns, samples[i].time_ns);
-    if (interval_s < 0.0) {
+    if (i <= kMostFirstSamples && interval_s > kUnset_s) {
+      faults.push_back(
+          {name, FaultKind::Corrupt, 0.0,
+           fmt::format(
+               "The first {} samples are stamped {:.3f} s before those that follow, as if the clock was "
+               "not set yet: calibrations leave them out.",
+               i, interval_s)});
+    } else if (interval_s < 0.0) {
       const char* reset =
           samples[i - 1].time_ns - samples[i].time_ns > kClockReset_ns ? "; the clock was reset" : "";
       backward.push_back(
@@ -148,6 +166,8 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
     checkStuck(name, good, kImuAxes[axis], unfit.saturated[axis], options, faults);
     checkSaturated(name, good, kImuAxes[axis], unfit.saturated[axis], faults);
   }
+  const Faults held = heldFaults(name, good, unfit);
+  faults.insert(faults.end(), held.begin(), held.end());
   checkSpikes(name, good, "gyroscope", unfit.gyroscope_spikes, faults);
   checkSpikes(name, good, "accelerometer", unfit.accelerometer_spikes, faults);
   checkUnits(name, good, options, faults);

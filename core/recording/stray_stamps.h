@@ -21,6 +21,7 @@ inline constexpr StampTolerance kPointStamps = {1'000'000'000, 1'000'000'000, 10
 
 // Items of one sensor on their way, in the order in which they were recorded. Those that jump wait until
 // enough follow that agree with them, or until one agrees again with what was before: then they were strays.
+// The first ones are held back for a moment: drivers stamp them 0, or by a clock that is not set yet.
 // Item has a member time_ns.
 template <class Item>
 class StampFilter {
@@ -46,12 +47,13 @@ class StampFilter {
   }
   void take(const Item& item, std::vector<Item>& kept);
   void wait(const Item& item, std::vector<Item>& kept);
-  void dropWaiting(std::int64_t from_ns);
+  void dropWaiting(std::int64_t from_ns) { drop(waiting_, from_ns); }
+  void drop(std::vector<Item>& items, std::int64_t from_ns);
 
   StampTolerance tolerance_;
-  bool started_ = false;
+  bool started_ = false, proven_ = false;
   std::int64_t latest_ns_ = 0;
-  std::vector<Item> waiting_;
+  std::vector<Item> waiting_, held_;  // held: the first ones, until they are proven
   std::uint64_t strays_ = 0;
   std::int64_t stray_time_ns_ = 0, stray_from_ns_ = 0;
 };
@@ -59,7 +61,7 @@ class StampFilter {
 template <class Item>
 void StampFilter<Item>::filter(std::vector<Item>& items) {
   std::size_t good = 0;
-  if (started_ && waiting_.empty()) {
+  if (proven_ && waiting_.empty()) {
     for (; good < items.size() && near(items[good], latest_ns_); ++good) {
       if (items[good].time_ns > latest_ns_) latest_ns_ = items[good].time_ns;
     }
@@ -80,14 +82,22 @@ void StampFilter<Item>::filter(std::vector<Item>& items) {
 template <class Item>
 void StampFilter<Item>::finish(std::vector<Item>& items) {
   items.clear();
-  if (!started_) items.swap(waiting_);
+  items.swap(started_ ? held_ : waiting_);
   dropWaiting(latest_ns_);
 }
 
 template <class Item>
 void StampFilter<Item>::take(const Item& item, std::vector<Item>& kept) {
   if (item.time_ns > latest_ns_) latest_ns_ = item.time_ns;
-  kept.push_back(item);
+  if (proven_) {
+    kept.push_back(item);
+    return;
+  }
+  held_.push_back(item);
+  proven_ = latest_ns_ - held_.front().time_ns >= kEnough_ns || held_.size() >= kMostWaiting;
+  if (!proven_) return;
+  kept.insert(kept.end(), held_.begin(), held_.end());
+  held_.clear();
 }
 
 template <class Item>
@@ -99,6 +109,7 @@ void StampFilter<Item>::wait(const Item& item, std::vector<Item>& kept) {
       waiting_.size() >= tolerance_.enough &&
       (!started_ || length_ns >= kEnough_ns || length_ns <= -kEnough_ns || waiting_.size() >= kMostWaiting);
   if (!borne_out) return;
+  drop(held_, waiting_.front().time_ns);
   started_ = true;
   latest_ns_ = waiting_.back().time_ns;
   for (const Item& each : waiting_) take(each, kept);
@@ -106,14 +117,14 @@ void StampFilter<Item>::wait(const Item& item, std::vector<Item>& kept) {
 }
 
 template <class Item>
-void StampFilter<Item>::dropWaiting(std::int64_t from_ns) {
-  if (waiting_.empty()) return;
+void StampFilter<Item>::drop(std::vector<Item>& items, std::int64_t from_ns) {
+  if (items.empty()) return;
   if (strays_ == 0) {
-    stray_time_ns_ = waiting_.front().time_ns;
+    stray_time_ns_ = items.front().time_ns;
     stray_from_ns_ = from_ns;
   }
-  strays_ += waiting_.size();
-  waiting_.clear();
+  strays_ += items.size();
+  items.clear();
 }
 
 }  // namespace evical

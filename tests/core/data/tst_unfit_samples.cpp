@@ -1,7 +1,9 @@
+#include "core/data/second_clock.h"
 #include "core/data/unfit_samples.h"
 
 #include "tests/support/test_program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -52,7 +54,72 @@ class TestUnfitSamples : public QObject {
   void saturation_ofOnePeak_isFound();
   void extremesOfMotion_areNoLimit();
   void impossibleValues_areNotMeasurable();
+  void heldSamples_countOnce_data();
+  void heldSamples_countOnce();
+  void coarseSensorAtRest_isNotHeld();
+  void secondClock_isFound();
 };
+
+// A sensor of 62.5 Hz, say, in a stream of 200 Hz: its samples repeat three or four times.
+void TestUnfitSamples::heldSamples_countOnce_data() {
+  QTest::addColumn<double>("own_hz");
+  for (const double own_hz : {62.5, 100.0, 50.0}) QTest::addRow("%g Hz", own_hz) << own_hz;
+}
+
+void TestUnfitSamples::heldSamples_countOnce() {
+  QFETCH(double, own_hz);
+  const Samples fine = moved(200.0);
+  Samples held = fine;
+  std::size_t own_samples = 0, last = fine.size();
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const auto taken =
+        static_cast<std::size_t>(std::floor(static_cast<double>(i) * own_hz / 200.0) * 200.0 / own_hz);
+    if (taken != last) ++own_samples;
+    last = taken;
+    held[i].specific_force_m_s2 = fine[taken].specific_force_m_s2;
+  }
+  const UnfitSamples unfit = findUnfitSamples(held);
+  QCOMPARE(unfit.accelerometer_repeats.size(), held.size() - own_samples);
+  QVERIFY(unfit.gyroscope_repeats.empty());
+  QCOMPARE(leftOut(unfit), std::size_t{0});  // neither limits nor spikes
+  const SampleSelection fit = fitSamples(held);
+  QCOMPARE(static_cast<std::size_t>(std::count(fit.accelerometer.begin(), fit.accelerometer.end(), 1)),
+           own_samples);
+  const auto faults = heldFaults("imu", held, unfit);
+  QCOMPARE(faults.size(), std::size_t{1});
+  QVERIFY2(
+      faults[0].text.starts_with("The accelerometer measures at " + std::string(own_hz == 62.5    ? "62.5"
+                                                                                : own_hz == 100.0 ? "100.0"
+                                                                                                  : "50.0")),
+      faults[0].text.c_str());
+}
+
+void TestUnfitSamples::coarseSensorAtRest_isNotHeld() {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  Samples samples(4000);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].time_ns = static_cast<std::int64_t>(i) * 5'000'000;
+    for (int axis = 0; axis < 3; ++axis) samples[i].specific_force_m_s2[axis] = std::round(noise(random));
+  }
+  QVERIFY(findUnfitSamples(samples).accelerometer_repeats.empty());
+}
+
+void TestUnfitSamples::secondClock_isFound() {
+  Samples samples = moved(200.0, 2000);
+  QVERIFY(findSecondClocks(samples).empty());
+  for (std::size_t i = 800; i < 1200; ++i) samples[i].time_ns *= 2;
+  const std::vector<SecondClock> clocks = findSecondClocks(samples);
+  QCOMPARE(clocks.size(), std::size_t{1});
+  QVERIFY(clocks[0].begin == 800 && clocks[0].end == 1200 && std::abs(clocks[0].rate - 2.0) < 1e-9);
+  // A clock that was set back for good, and samples that were lost.
+  Samples reset = moved(200.0, 2000);
+  for (std::size_t i = 1000; i < 2000; ++i) reset[i].time_ns -= 3'000'000'000;
+  QVERIFY(findSecondClocks(reset).empty());
+  Samples gap = moved(200.0, 2000);
+  gap.erase(gap.begin() + 500, gap.begin() + 700);
+  QVERIFY(findSecondClocks(gap).empty());
+}
 
 void TestUnfitSamples::motion_isNoFault_data() {
   QTest::addColumn<double>("rate_hz");

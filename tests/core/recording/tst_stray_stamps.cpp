@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/data/event.h"
+#include "core/data/imu_sample.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -63,7 +64,33 @@ class TestStrayStamps : public QObject {
   void pause_isNoStray();
   void clockThatGoesBackForGood_isFollowed();
   void fewEvents_countAsTheyAre();
+  void firstSamplesOfAnotherClock_areDropped_data();
+  void firstSamplesOfAnotherClock_areDropped();
 };
+
+// Drivers stamp their first samples 0, or by a clock that is not set yet.
+void TestStrayStamps::firstSamplesOfAnotherClock_areDropped_data() {
+  QTest::addColumn<qlonglong>("step_ns");
+  QTest::newRow("all zero") << qlonglong(0);
+  QTest::newRow("counting from zero") << qlonglong(5'000'000);
+}
+
+void TestStrayStamps::firstSamplesOfAnotherClock_areDropped() {
+  QFETCH(qlonglong, step_ns);
+  std::vector<ImuSample> samples;
+  for (int i = 0; i < 500; ++i)
+    samples.push_back({i < 5 ? i * step_ns : kStrayStampsStart_ns + i * std::int64_t{5'000'000}, {}, {}});
+  StampFilter<ImuSample> filter(kSampleStamps);
+  std::vector<ImuSample> kept;
+  for (const ImuSample& sample : samples) {
+    std::vector<ImuSample> part{sample};
+    filter.filter(part);
+    kept.insert(kept.end(), part.begin(), part.end());
+  }
+  QCOMPARE(kept.size(), std::size_t{495});
+  QCOMPARE(kept.front().time_ns, samples[5].time_ns);
+  QCOMPARE(filter.strays(), std::uint64_t{5});
+}
 
 void TestStrayStamps::goodEvents_areAllKept_data() {
   QTest::addColumn<int>("packet");
