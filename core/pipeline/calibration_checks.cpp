@@ -51,21 +51,26 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   }
 }
 
+double durationOf(const BoardObservations& camera) {
+  return camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s;
+}
+double durationOf(const ImuData& imu) {
+  return imu.samples.empty() ? 0.0 : secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
+}
+
 void checkDuration(const Session& session, const RecordingPass& pass) {
   const double least_s = session.options.initialisation.least_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
     if (duration_s >= least_s) return;
-    throw calibrationFailed(
-        sensor,
-        fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
-                    least_s, session.time_range_s ? " in time_range_s" : ""),
-        "Record 20 s or more of varied motion");
+    throw withClockRate(
+        calibrationFailed(sensor,
+                          fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}",
+                                      duration_s, least_s, session.time_range_s ? " in time_range_s" : ""),
+                          "Record 20 s or more of varied motion"),
+        session, pass.cameras.front(), pass.imus);
   };
-  for (const BoardObservations& camera : pass.cameras)
-    check(camera.camera,
-          camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s);
-  for (const ImuData& imu : pass.imus)
-    check(imu.name, secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
+  for (const BoardObservations& camera : pass.cameras) check(camera.camera, durationOf(camera));
+  for (const ImuData& imu : pass.imus) check(imu.name, durationOf(imu));
 }
 
 void logDetections(const RecordingPass& pass, const RunContext& context) {
@@ -87,6 +92,38 @@ void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) 
 }
 
 }  // namespace
+
+CalibrationError withClockRate(const CalibrationError& error, const Session& session,
+                               const BoardObservations& seen, std::span<const ImuData> imus) {
+  constexpr std::array kFactors = {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6};
+  constexpr double kNear = 0.03;
+  constexpr double kSlowestImu_Hz = 10.0, kFastestImu_Hz = 20'000.0;
+  if (session.time_range_s) return error;
+  const double camera_s = durationOf(seen);
+  for (const ImuData& imu : imus) {
+    const double imu_s = durationOf(imu), factor = camera_s / imu_s;
+    if (!(camera_s > 0.0) || !(imu_s > 0.0)) continue;
+    const auto found = std::find_if(kFactors.begin(), kFactors.end(),
+                                    [&](double each) { return std::abs(factor / each - 1.0) < kNear; });
+    if (found == kFactors.end()) continue;
+    // An IMU that gave samples at a usual rate is believed, but for a doubled clock, which looks usual, too.
+    const double rate_Hz = static_cast<double>(imu.samples.size()) / imu_s;
+    const bool usual = rate_Hz > kSlowestImu_Hz && rate_Hz < kFastestImu_Hz && (*found > 2.0 || *found < 0.5);
+    const std::string& camera = seen.camera;
+    const std::string wrong = usual ? camera : imu.name;
+    const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);
+    const std::string key = fmt::format("{}.{}.clock_scale", usual ? "cameras" : "imus", wrong);
+    return CalibrationError(
+               error.kind(), error.place(),
+               fmt::format(
+                   "{}; the times of {} span {:.3f} s and those of {} {:.3f} s, so the clock of {} may "
+                   "count {:g} times as much as it should",
+                   error.problem(), imu.name, imu_s, camera, camera_s, wrong, usual ? *found : 1.0 / *found),
+               fmt::format("If so, set {} to {}", key, scale))
+        .repairedBy(Repair{key, scale});
+  }
+  return error;
+}
 
 void checkSession(const Session& session) {
   if (session.board_blinks)

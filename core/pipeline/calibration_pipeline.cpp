@@ -158,7 +158,12 @@ class Calibration {
   }
 
   void initialiseState() {
-    initial_ = initialise(input_, session_.options.initialisation, context_);
+    try {
+      initial_ = initialise(input_, session_.options.initialisation, context_);
+    } catch (const CalibrationError& error) {
+      if (input_.cameras.empty()) throw;
+      throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
+    }
     keepLargerParts();
     for (const InitialisationStep& step : initial_.steps)
       context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));

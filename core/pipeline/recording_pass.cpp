@@ -4,6 +4,7 @@
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
+#include "core/data/second_clock.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/bounded_queue.h"
 #include "core/pipeline/camera_views.h"
@@ -89,13 +90,16 @@ class WindowWorker {
 // Reading: packets to intakes and IMUs, within the session's time range.
 class ReadingPass {
  public:
-  ReadingPass(const Session& session, const RunContext& context, RecordingPass& result)
+  // `start_ns`: of the whole session, where not all of its sensors are read; its time range counts from there.
+  ReadingPass(const Session& session, const RunContext& context, RecordingPass& result,
+              std::optional<std::int64_t> start_ns = {})
       : session_(session),
         recording_(session, context.stop),
         result_(result),
-        range_(session, session.cameras.size() + session.imus.size(), recording_.start_ns()) {
+        range_(session, session.cameras.size() + session.imus.size(),
+               start_ns.value_or(recording_.start_ns())) {
     result.imus.resize(session.imus.size());
-    result.start_ns = recording_.start_ns();
+    result.start_ns = start_ns.value_or(recording_.start_ns());
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
       const Resolution resolution_px = recording_.resolution_px(camera);
       result.resolutions_px.push_back(resolution_px);
@@ -192,6 +196,7 @@ class ReadingPass {
   void finishImu(const SessionImu& session, ImuData& imu) {
     imu.name = session.name;
     imu.noise = session.noise;
+    leaveOutSecondClocks(session.stream, imu.samples);
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
       result_.faults.push_back(
@@ -201,6 +206,14 @@ class ReadingPass {
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
     imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
     imu.samples.shrink_to_fit();
+  }
+
+  void leaveOutSecondClocks(const std::string& stream, std::vector<ImuSample>& samples) {
+    const std::vector<SecondClock> clocks = findSecondClocks(samples);
+    for (const SecondClock& clock : clocks) result_.faults.push_back(faultOf(stream, samples, clock));
+    for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
+      samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(clock->begin),
+                    samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
   }
 
   const Session& session_;
@@ -272,8 +285,7 @@ RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunC
   Session imus_only = session;
   imus_only.cameras.clear();
   const Stopwatch stopwatch;
-  ReadingPass reading(imus_only, context, result);
-  result.start_ns = start_ns;
+  ReadingPass reading(imus_only, context, result, start_ns);
   BoundedQueue<CameraBatch> none(1);
   reading.run(none, context);
   context.throwIfStopped();

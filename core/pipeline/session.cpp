@@ -120,6 +120,8 @@ std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder
     text += fmt::format("    recording: {}\n", yamlText(recordingText(sensor.recording, folder)));
   text += fmt::format("    stream: {}\n", yamlText(sensor.stream));
   if (sensor.clock_offset_s != 0.0) text += fmt::format("    clock_offset_s: {}\n", sensor.clock_offset_s);
+  if (sensor.clock_scale != 1.0) text += fmt::format("    clock_scale: {}\n", sensor.clock_scale);
+  if (!sensor.columns.empty()) text += fmt::format("    columns: {}\n", yamlText(sensor.columns));
   return text;
 }
 

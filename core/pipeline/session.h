@@ -22,7 +22,9 @@ struct SessionCamera {
   std::optional<CameraIntrinsics> intrinsics;  // absent: calibrated first, from the same events
   std::filesystem::path recording = {};        // its own; empty: the session's
   double clock_offset_s = 0.0;                 // known: to be added to the stream's times
-  SensorPrior prior = {};                      // the file's prior.cameras.<name>
+  double clock_scale = 1.0;  // seconds per second of its clock, counted from its first stamp
+  std::string columns = {};  // of a text table: a header line that counts instead of the file's
+  SensorPrior prior = {};    // the file's prior.cameras.<name>
   std::optional<LensUncertainty> intrinsics_uncertainty = {};  // from another recording; absent: not said
   Shutter shutter = Shutter::Global;                           // of frames
   // The camera whose chip this one's stream comes from, too: pose and lens are that one's. Empty: its own.
@@ -38,6 +40,8 @@ struct SessionImu {
   AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
   std::filesystem::path recording;  // its own; empty: the session's
   double clock_offset_s = 0.0;      // known: to be added to the stream's times
+  double clock_scale = 1.0;         // seconds per second of its clock, counted from its first stamp
+  std::string columns = {};         // of a text table: a header line that counts instead of the file's
   ImuPrior prior = {};              // the file's prior.imus.<name>
 };
 
@@ -80,8 +84,8 @@ struct Session {
 // The board's spacing, and how well it is known, follow; without a length the spacing stays, and is as well known as any.
 void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session);
 
-// One key, as `--set` and repairs have it: an option, or imus.<name>. and acceleration_unit, angular_rate_unit,
-// gyroscope_axes or accelerometer_axes. Throws CalibrationError (BadInput).
+// One key, as `--set` and repairs have it: an option, cameras.<name>.clock_scale, or imus.<name>. and acceleration_unit,
+// angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws CalibrationError (BadInput).
 void setInSession(Session& session, const std::string& key, const std::string& value);
 
 // As the session gives them: those that it leaves out are not known yet.

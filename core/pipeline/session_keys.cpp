@@ -12,7 +12,7 @@ namespace evical {
 namespace {
 
 const std::vector<std::string> kImuKeys = {"acceleration_unit", "angular_rate_unit", "gyroscope_axes",
-                                           "accelerometer_axes"};
+                                           "accelerometer_axes", "clock_scale"};
 
 template <class Unit, class Names>
 Unit unitFrom(const Names& names, const std::string& key, const std::string& value) {
@@ -27,6 +27,10 @@ AxesReading axesOrThrow(const std::string& key, const std::string& value) {
   if (const std::optional<AxesReading> axes = axesFrom(value)) return *axes;
   throw badInput(key, fmt::format("'{}' is no reading of axes", value),
                  "Give each of x, y and z once, '-' before one that is the other way round: y,x,-z");
+}
+
+double clockScaleFrom(const std::string& key, const std::string& value) {
+  return YamlNode::parse(value, key).real(kLeastClockScale, 1.0 / kLeastClockScale, "");
 }
 
 }  // namespace
@@ -48,6 +52,8 @@ void setInImu(SessionImu& imu, const std::string& key, const std::string& value)
     imu.gyroscope_axes = axesOrThrow(key, value);
   } else if (key == "accelerometer_axes") {
     imu.accelerometer_axes = axesOrThrow(key, value);
+  } else if (key == "clock_scale") {
+    imu.clock_scale = clockScaleFrom(key, value);
   } else {
     throw badInput(key, "no such key of an IMU can be set", nameAdvice(key, kImuKeys));
   }
@@ -56,6 +62,11 @@ void setInImu(SessionImu& imu, const std::string& key, const std::string& value)
 void setInSession(Session& session, const std::string& key, const std::string& value) {
   if (key == "time_range_s") {
     session.time_range_s = timeRangeFrom(YamlNode::parse(value, key));
+    return;
+  }
+  for (SessionCamera& camera : session.cameras) {
+    if (key != "cameras." + camera.name + ".clock_scale") continue;
+    camera.clock_scale = clockScaleFrom(key, value);
     return;
   }
   const std::string imus = "imus.";

@@ -28,7 +28,9 @@ void setFromSession(const YamlNode& node, CalibrationOptions& options, const std
 // Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
 std::array<double, 2> timeRangeFrom(const YamlNode& node);
 
-// acceleration_unit, angular_rate_unit, gyroscope_axes or accelerometer_axes. Throws CalibrationError (BadInput).
+inline constexpr double kLeastClockScale = 1e-7;
+
+// acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws CalibrationError (BadInput).
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value);
 
 // Repairs of axes are of samples as the session has them read; this is of those that the sensor gives.

@@ -30,11 +30,20 @@ Resolution readResolution(const YamlNode& node) {
   return {items[0].integer(1, 30000), items[1].integer(1, 30000)};
 }
 
-constexpr double kLargestOffset_s = 1e10;
+constexpr double kLargestOffset_s = 4.6e9;  // times of recordings lie within (kLatestTime_ns)
 
-void readClockOffset(const YamlNode& map, double& offset_s) {
+// How the stream's own times and columns are to be read.
+template <class Sensor>
+void readTable(const YamlNode& map, Sensor& sensor) {
   if (const auto node = map.find("clock_offset_s"))
-    offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+    sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+  if (const auto node = map.find("clock_scale"))
+    sensor.clock_scale = node->real(kLeastClockScale, 1.0 / kLeastClockScale, "");
+  const auto columns = map.find("columns");
+  if (!columns) return;
+  sensor.columns = nameFrom(*columns);
+  if (sensor.columns.find('?') != std::string::npos)
+    throw columns->error("has a ?", "Put the column's name there, or - if it is not used");
 }
 
 // Which stream of which file, in which clock.
@@ -44,7 +53,7 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const Ses
   sensor.name = sensor_name;
   sensor.stream = nameFrom(map["stream"]);
   if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
-  readClockOffset(map, sensor.clock_offset_s);
+  readTable(map, sensor);
   return sensor;
 }
 
@@ -60,13 +69,13 @@ SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_na
   camera.name = camera_name;
   camera.recording = recordingBeside(*points, folder);
   camera.stream = camera.recording.filename().string();
-  readClockOffset(map, camera.clock_offset_s);
+  readTable(map, camera);
   return camera;
 }
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
-  map.allowOnly({"recording", "stream", "points", "clock_offset_s", "resolution_px", "shutter",
-                 "same_sensor_as", "same_sensor_check", "board", "intrinsics", "intrinsics_std",
+  map.allowOnly({"recording", "stream", "points", "clock_offset_s", "clock_scale", "columns", "resolution_px",
+                 "shutter", "same_sensor_as", "same_sensor_check", "board", "intrinsics", "intrinsics_std",
                  "intrinsics_correlation"});
   SessionCamera camera = readCameraSource(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
@@ -105,9 +114,10 @@ void setFromNode(const YamlNode& node, const std::string& key, SessionImu& imu) 
 }
 
 SessionImu readImu(const YamlNode& map, const std::string& imu_name, const SessionFolder& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "accelerometer_noise_density",
-                 "gyroscope_noise_density", "accelerometer_random_walk", "gyroscope_random_walk",
-                 "acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
+  map.allowOnly({"recording", "stream", "clock_offset_s", "clock_scale", "columns",
+                 "accelerometer_noise_density", "gyroscope_noise_density", "accelerometer_random_walk",
+                 "gyroscope_random_walk", "acceleration_unit", "angular_rate_unit", "gyroscope_axes",
+                 "accelerometer_axes"});
   SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");

@@ -68,8 +68,22 @@ std::size_t SessionRecording::sourceOf(const std::filesystem::path& path) {
   if (found != sources_.end()) return static_cast<std::size_t>(found - sources_.begin());
   Source& source = sources_.emplace_back();
   source.path = path;
-  source.reader = openRecording(path);
+  source.reader = openRecording(path, columnNames(path));
   return sources_.size() - 1;
+}
+
+// What the session says of the tables in this recording.
+ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) const {
+  ColumnNames names;
+  const auto add = [&](const auto& sensor) {
+    const std::filesystem::path& own = sensor.recording.empty() ? session_.recording : sensor.recording;
+    std::error_code ignored;
+    if (!sensor.columns.empty() && (own == path || std::filesystem::equivalent(own, path, ignored)))
+      names[sensor.stream] = sensor.columns;
+  };
+  for (const SessionCamera& camera : session_.cameras) add(camera);
+  for (const SessionImu& imu : session_.imus) add(imu);
+  return names;
 }
 
 void SessionRecording::addSensor(const std::filesystem::path& own_recording, const std::string& stream,
@@ -204,7 +218,7 @@ void SessionRecording::letIn(SensorPacket& packet) {
 }
 
 // Units and clock; the storage changes hands.
-void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
+void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) {
   const bool is_camera = packet.sensor < session_.cameras.size();
   const std::size_t imu = packet.sensor - session_.cameras.size();
   std::swap(packet.events, raw.events);
@@ -220,13 +234,33 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
       sample.specific_force_m_s2 = readAs(session_.imus[imu].accelerometer_axes, sample.specific_force_m_s2);
     }
   }
-  const double offset_s =
-      is_camera ? session_.cameras[packet.sensor].clock_offset_s : session_.imus[imu].clock_offset_s;
-  if (const std::int64_t offset_ns = nanosecondsFrom(offset_s); offset_ns != 0) {
-    forEachKind(packet, [&](auto& items) {
-      for (auto& item : items) item.time_ns += offset_ns;
-    });
-  }
+  setClock(packet);
+}
+
+// What the session says of the sensor's clock: its rate, and how far it is off.
+void SessionRecording::setClock(SensorPacket& packet) {
+  const bool is_camera = packet.sensor < session_.cameras.size();
+  const auto clock = [&](const auto& sensor) { return std::pair{sensor.clock_offset_s, sensor.clock_scale}; };
+  const auto [offset_s, scale] = is_camera ? clock(session_.cameras[packet.sensor])
+                                           : clock(session_.imus[packet.sensor - session_.cameras.size()]);
+  if (offset_s == 0.0 && scale == 1.0) return;
+  const std::int64_t offset_ns = nanosecondsFrom(offset_s);
+  std::optional<std::int64_t>& first_ns = gates_[packet.sensor].first_ns;
+  const std::string& name = is_camera ? session_.cameras[packet.sensor].name
+                                      : session_.imus[packet.sensor - session_.cameras.size()].name;
+  forEachKind(packet, [&](auto& items) {
+    for (auto& item : items) {
+      if (!first_ns) first_ns = item.time_ns;
+      const double since_ns = scale * static_cast<double>(item.time_ns - *first_ns);
+      if (scale != 1.0 && std::abs(since_ns) < static_cast<double>(kLatestTime_ns))
+        item.time_ns = *first_ns + std::llround(since_ns);
+      if (!__builtin_add_overflow(item.time_ns, offset_ns, &item.time_ns) && isTime(item.time_ns)) continue;
+      throw badInput(
+          name,
+          "with clock_offset_s and clock_scale its times are centuries away from those of any recording",
+          "Correct these two in the session");
+    }
+  });
 }
 
 double SessionRecording::fractionRead() const {

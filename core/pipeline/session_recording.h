@@ -74,15 +74,18 @@ class SessionRecording {
     StampFilter<ImuSample> samples{kSampleStamps};
     StampFilter<Frame> frames{kSampleStamps};
     StampFilter<MeasuredPoint> points{kPointStamps};
+    std::optional<std::int64_t> first_ns = {};  // of its own clock
     std::uint64_t immeasurable = 0;
     std::int64_t immeasurable_ns = 0;  // the first
   };
 
   std::size_t sourceOf(const std::filesystem::path& path);
+  ColumnNames columnNames(const std::filesystem::path& path) const;
   void addSensor(const std::filesystem::path& path, const std::string& stream,
                  std::span<const StreamType> types);
   void advance(Source& source);
-  void bringHome(Packet& raw, SensorPacket& packet) const;
+  void bringHome(Packet& raw, SensorPacket& packet);
+  void setClock(SensorPacket& packet);
   void letIn(SensorPacket& packet);
   bool flushNext(Source& source);
   void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;

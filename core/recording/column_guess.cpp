@@ -1,5 +1,7 @@
 #include "core/recording/column_guess.h"
 
+#include "core/recording/column_names.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -10,18 +12,6 @@ namespace {
 constexpr double kEpoch_ns = 1e17;          // as ns since 1970 it is 1973; as us, the year 5138
 constexpr double kFewestEventsPerS = 50.0;  // of a file that is worth a guess
 constexpr std::size_t kEnoughRows = 100;
-
-std::optional<std::int64_t> unitNamed(std::string_view text) {
-  for (const std::string_view name : {"ns", "nsec", "nanoseconds"})
-    if (text == name) return 1;
-  for (const std::string_view name : {"us", "usec", "microseconds"})
-    if (text == name) return 1000;
-  for (const std::string_view name : {"ms", "msec", "milliseconds"})
-    if (text == name) return 1'000'000;
-  for (const std::string_view name : {"s", "sec", "secs", "seconds"})
-    if (text == name) return 1'000'000'000;
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -80,7 +70,7 @@ std::optional<std::int64_t> timeUnitOf(std::string_view name) {
   while (!name.empty() && (name.back() == ']' || name.back() == ')' || name.back() == ' '))
     name.remove_suffix(1);
   const std::size_t before = name.find_last_of("[(_ ");
-  return before == std::string_view::npos ? std::nullopt : unitNamed(name.substr(before + 1));
+  return before == std::string_view::npos ? std::nullopt : timeUnitNamed(name.substr(before + 1));
 }
 
 }  // namespace evical

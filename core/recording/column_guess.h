@@ -32,6 +32,13 @@ std::optional<EventColumns> guessEventColumns(std::span<const ColumnNumbers> col
 // Fractions are seconds; whole numbers us, or ns where us would be no time or no rate of events.
 std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows);
 
+// Whether an event of this polarity is brighter: 1 is, 0 and -1 are not. Nothing for others, which may be triggers.
+template <class Number>
+std::optional<bool> brighterOf(Number polarity) {
+  if (polarity == Number(1)) return true;
+  return polarity == Number(0) || polarity == static_cast<Number>(-1) ? std::optional(false) : std::nullopt;
+}
+
 const char* timeUnitName(std::int64_t unit_ns);  // "ns", "us", "ms" or "s"
 
 // The unit at the end of "timestamp [ns]", "t_us", "time(s)".

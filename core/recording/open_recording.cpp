@@ -102,10 +102,17 @@ std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> r
   return std::make_unique<JoinedReader>(std::move(parts));
 }
 
-std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
+void requireNoNames(const std::filesystem::path& path, const ColumnNames& names) {
+  if (!names.empty())
+    throw badInput(path.string(), "this is no text table, so its columns cannot be named",
+                   "Remove columns from the session");
+}
+
+std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path, const ColumnNames& names) {
   requireFiles(path);
   if (isTextFolder(path))
-    return withPictures(std::make_unique<TextTableReader>(path), pictures::findRpgPictures(path));
+    return withPictures(std::make_unique<TextTableReader>(path, names), pictures::findRpgPictures(path));
+  requireNoNames(path, names);
   if (isTumVieFolder(path)) return withPictures(openHdf5(path), pictures::findTumViePictures(path));
   if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
   pictures::PictureFolder found = pictures::findPictures(path);
@@ -118,17 +125,8 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   return withPictures(tum_vie ? openHdf5(path) : nullptr, std::move(found));
 }
 
-std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
-  const std::filesystem::file_status status = std::filesystem::status(path);
-  if (!std::filesystem::exists(status)) {
-    throw badInput(path.string(), "there is no such file or folder", "Check the path");
-  }
-  if (std::filesystem::is_directory(status)) return openFolder(path);
-  if (!std::filesystem::is_regular_file(status)) {
-    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder");
-  }
-  const std::string start = firstBytes(path);
-  if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
+// Binary formats, by their first bytes; nullptr for others.
+std::unique_ptr<RecordingReader> openBinary(const std::filesystem::path& path, std::string_view start) {
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<RosReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
@@ -138,24 +136,42 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
   if (start.starts_with(kAedat3Magic)) return std::make_unique<Aedat3Reader>(path);
   if (isNumpyFile(path, start)) return std::make_unique<NumpyReader>(path);
   if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
-  if (isGzip(start)) {
-    if (textTableType(firstTextBytes(path, start.size())) != StreamType::Other)
-      return std::make_unique<TextTableReader>(path);
-    throw badInput(path.string(), "this is packed with gzip, and not a text", "Unpack it first");
+  return nullptr;
+}
+
+std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, const ColumnNames& names) {
+  const std::filesystem::file_status status = std::filesystem::status(path);
+  if (!std::filesystem::exists(status)) {
+    throw badInput(path.string(), "there is no such file or folder", "Check the path");
   }
+  if (std::filesystem::is_directory(status)) return openFolder(path, names);
+  if (!std::filesystem::is_regular_file(status)) {
+    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder");
+  }
+  const std::string start = firstBytes(path);
+  if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
+  // "% time, x, y, p" of a table begins as Prophesee's files do.
+  const bool is_table = start.starts_with("% ") && isTextTable(path);
+  if (!is_table)
+    if (std::unique_ptr<RecordingReader> reader = openBinary(path, start)) {
+      requireNoNames(path, names);
+      return reader;
+    }
+  if (isGzip(start) && !isTextTable(path))
+    throw badInput(path.string(), "this is packed with gzip, and not a text", "Unpack it first");
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }
-  if (textTableType(start) != StreamType::Other) return std::make_unique<TextTableReader>(path);
+  if (!names.empty() || isTextTable(path)) return std::make_unique<TextTableReader>(path, names);
   if (prophesee::isBareDat(start)) return openProphesee(path);
   throw badInput(path.string(), "the format is not known", kReadable);
 }
 
 }  // namespace
 
-std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path) {
+std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path, const ColumnNames& names) {
   try {
-    return openPath(path);
+    return openPath(path, names);
   } catch (const std::filesystem::filesystem_error& error) {
     throw badInput(path.string(), "cannot be reached: " + error.code().message(),
                    "Check the path and its permissions");

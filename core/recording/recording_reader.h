@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,9 +40,13 @@ class RecordingReader {
   virtual std::string format() const = 0;  // "rosbag", "text"
 };
 
+// Header lines that count instead of those of text tables, by the stream's name: "t_ns,-,ax,ay,az,gx,gy,gz".
+using ColumnNames = std::map<std::string, std::string>;
+
 // Opens a file or folder by its content. Throws CalibrationError (BadInput) if there
-// is nothing readable at `path`.
-std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path);
+// is nothing readable at `path`, or if `names` are of something else than text tables.
+std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path,
+                                               const ColumnNames& names = {});
 
 // Index of the stream of this name and one of these types, of several the first type's; throws CalibrationError
 // (BadInput) that lists those there are.

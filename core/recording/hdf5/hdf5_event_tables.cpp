@@ -1,4 +1,6 @@
+#include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/column_guess.h"
 #include "core/recording/hdf5/ecf_decoder.h"
 #include "core/recording/hdf5/hdf5_tables.h"
 
@@ -15,6 +17,7 @@ namespace {
 constexpr std::uint64_t kTablePacketRows = 32'768;
 constexpr std::int64_t kEarliestNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
 constexpr double kSecondsSpan_s = 1e6;                                  // no recording is 12 days long
+constexpr std::size_t kHeadRows = 2000;                                 // that tell columns apart
 constexpr std::uint16_t kOutside_px = 65'535;
 
 std::uint16_t pixel(std::int32_t value) {
@@ -93,20 +96,26 @@ class Columns : public EventTable {
         std::min<std::uint64_t>({xs.size(), ys.size(), ts.size(), ps.size(), kTablePacketRows, rows_ - row}));
     const std::size_t begin = events.size();
     events.resize(begin + count);
-    std::size_t used = begin, bad = 0;
+    std::size_t used = begin, bad = 0, unpolarised = 0;
     for (std::size_t i = 0; i < count; ++i) {
       Event& event = events[used];
       if (!time_.convert(ts[i], event.time_ns)) {
         ++bad;
         continue;
       }
+      const std::optional<bool> brighter = brighterOf(ps[i]);
+      if (!brighter) {
+        ++unpolarised;
+        continue;
+      }
       event.x_px = pixel(xs[i]);
       event.y_px = pixel(ys[i]);
-      event.brighter = ps[i] > 0;
+      event.brighter = *brighter;
       ++used;
     }
     events.resize(used);
     if (bad > 0) problem_ = fmt::format("{} rows from {} on have no time", bad, row);
+    if (unpolarised > 0) sayUnpolarised(unpolarised, row);
     return row + count;
   }
 
@@ -123,9 +132,20 @@ class EventRows : public EventTable {
       : values_(file, table, H5T_NATIVE_DOUBLE, place) {
     time_.is_real = true;
     const auto first = values_.numbersFrom(0);
-    const double first_time = first.empty() ? 0.0 : first[2];
+    const std::size_t count = std::min(first.size() / 4, kHeadRows);
+    std::array<ColumnNumbers, 4> head;
+    for (std::size_t i = 0; i < 4 * count; ++i) head[i % 4].add(first[i], i < 4);
+    const bool empty = std::all_of(head.begin(), head.end(),
+                                   [](const ColumnNumbers& column) { return column.largest <= 0.0; });
+    if (!empty) chooseColumns(head, place + ": " + table.path);
+    const ColumnNumbers& times = head[columns_.time];
+    const double first_time = times.first;
+    if (times.whole && count > 0) {
+      time_.factor_ns = static_cast<double>(guessTimeUnit_ns(times, count));
+      return;
+    }
     const auto last = rows() == 0 ? first : values_.numbersFrom(rows() - 1);
-    if (!last.empty()) chooseUnit(first_time, last[2], time_);
+    if (!last.empty()) chooseUnit(first_time, last[columns_.time], time_);
   }
 
   std::uint64_t rows() const override { return values_.rows(); }
@@ -139,19 +159,34 @@ class EventRows : public EventTable {
     const std::size_t count = std::min<std::size_t>(values.size() / 4, kTablePacketRows);
     for (std::size_t i = 0; i < count; ++i) {
       Event event{};
-      if (!time_.convert(values[4 * i + 2], event.time_ns)) {
+      if (!time_.convert(values[4 * i + columns_.time], event.time_ns)) {
         problem_ = fmt::format("row {} has no time", row + i);
         continue;
       }
-      event.x_px = pixel(values[4 * i]);
-      event.y_px = pixel(values[4 * i + 1]);
-      event.brighter = values[4 * i + 3] > 0.0;
+      const std::optional<bool> brighter = brighterOf(values[4 * i + columns_.polarity]);
+      if (!brighter) {
+        sayUnpolarised(1, row + i);
+        continue;
+      }
+      event.x_px = pixel(values[4 * i + columns_.x]);
+      event.y_px = pixel(values[4 * i + columns_.y]);
+      event.brighter = *brighter;
       events.push_back(event);
     }
     return row + count;
   }
 
  private:
+  // MVSEC has x, y, t, p; v2e t, x, y, p.
+  void chooseColumns(const std::array<ColumnNumbers, 4>& head, const std::string& place) {
+    const std::optional<EventColumns> found = guessEventColumns(head);
+    if (!found)
+      throw badInput(place, "its four columns are not x, y, time and polarity of events in any order",
+                     "Save x, y, t and p as datasets of their own");
+    columns_ = *found;
+  }
+
+  EventColumns columns_ = {2, 0, 1, 3};
   Rows<double> values_;
 };
 
@@ -179,8 +214,11 @@ class Compound : public EventTable {
     }
     const std::size_t count = std::min<std::size_t>(values.size(), kTablePacketRows);
     for (std::size_t i = 0; i < count; ++i) {
-      Event event{0, values[i].x, values[i].y, values[i].p > 0};
-      if (time_.convert(values[i].t, event.time_ns)) {
+      const std::optional<bool> brighter = brighterOf(values[i].p);
+      Event event{0, values[i].x, values[i].y, brighter.value_or(false)};
+      if (!brighter) {
+        sayUnpolarised(1, row + i);
+      } else if (time_.convert(values[i].t, event.time_ns)) {
         events.push_back(event);
       } else {
         problem_ = fmt::format("row {} has no time: its chunk holds fewer events than it should", row + i);
@@ -194,6 +232,10 @@ class Compound : public EventTable {
 };
 
 }  // namespace
+
+void EventTable::sayUnpolarised(std::size_t count, std::uint64_t row) {
+  problem_ = fmt::format("{} rows from {} on have a polarity that is none of 1, 0 and -1", count, row);
+}
 
 bool TimeScale::convert(std::int64_t time, std::int64_t& time_ns) const {
   std::int64_t scaled_ns = 0;

@@ -38,6 +38,8 @@ class EventTable {
   std::string takeProblem() { return std::exchange(problem_, {}); }
 
  protected:
+  void sayUnpolarised(std::size_t count, std::uint64_t row);
+
   TimeScale time_;
   std::string problem_;
 };

@@ -1,6 +1,7 @@
 #include "core/recording/numpy/numpy_events.h"
 
 #include "core/base/time.h"
+#include "core/recording/column_guess.h"
 
 #include <cmath>
 #include <limits>
@@ -48,7 +49,7 @@ bool EventTable::load(std::vector<Event>& events) {
   bad_.assign(count, 0);
   loadTimes(first_row, events);
   loadPlaces(first_row, events);
-  blocks_.forEach(3, [&](std::size_t row, auto number) { events[row].brighter = number > 0; });
+  loadPolarities(first_row, events);
   std::size_t kept = 0;
   for (std::size_t row = 0; row < count; ++row)
     if (bad_[row] == 0) events[kept++] = events[row];
@@ -74,6 +75,16 @@ void EventTable::loadPlaces(std::uint64_t first_row, std::vector<Event>& events)
   });
   blocks_.forEach(1, [&](std::size_t row, auto number) {
     if (!toPixel(number, events[row].y_px)) leaveOut(row);
+  });
+}
+
+void EventTable::loadPolarities(std::uint64_t first_row, std::vector<Event>& events) {
+  blocks_.forEach(3, [&](std::size_t row, auto number) {
+    const std::optional<bool> brighter = brighterOf(number);
+    events[row].brighter = brighter.value_or(false);
+    if (brighter) return;
+    if (bad_[row] == 0) unpolarised_.add(first_row + row);
+    bad_[row] = 1;
   });
 }
 

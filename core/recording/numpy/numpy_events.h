@@ -26,16 +26,18 @@ class EventTable {
   // Rows that are left out, and the first of them.
   const Occurrences& untimed() const { return untimed_; }
   const Occurrences& outside() const { return outside_; }
+  const Occurrences& unpolarised() const { return unpolarised_; }
 
  private:
   void loadTimes(std::uint64_t first_row, std::vector<Event>& events);
   void loadPlaces(std::uint64_t first_row, std::vector<Event>& events);
+  void loadPolarities(std::uint64_t first_row, std::vector<Event>& events);
 
   ColumnBlocks blocks_;
   std::uint64_t rows_;
   std::int64_t unit_ns_, offset_ns_;
   std::vector<unsigned char> bad_;  // of the rows of the block
-  Occurrences untimed_, outside_;
+  Occurrences untimed_, outside_, unpolarised_;
 };
 
 }  // namespace evical::numpy

@@ -233,6 +233,8 @@ void NumpyReader::closeTable(Source& source) {
              fmt::format("{}{} {}, from row {} on.", file, rows.count, what, rows.first_byte));
   };
   say(FaultKind::Untimed, table.untimed(), "rows have no time and are left out");
+  say(FaultKind::Corrupt, table.unpolarised(),
+      "rows have a polarity that is none of 1, 0 and -1 and are left out");
   say(FaultKind::Outside, table.outside(), "rows have coordinates that are no pixels and are left out");
   source.table.reset();
 }

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -43,21 +42,15 @@ std::string folderName(const fs::path& folder) {
   return name.empty() || name == "." || name == ".." ? "pictures" : name;
 }
 
-bool isImuTable(const fs::path& path) {
-  constexpr std::size_t kHead_bytes = 4096;
-  if (!isFile(path)) return false;
-  std::string bytes(kHead_bytes, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return textTableType(bytes.substr(0, bytes.rfind('\n'))) == StreamType::Imu;
-}
-
 void addEurocCamera(const fs::path& folder, PictureFolder& found) {
   if (!isFile(folder / "data.csv") || !isFolder(folder / "data")) return;
   PictureList list = newList(folderName(folder), "EuRoC", folder / "data");
   readNamedTimes(folder / "data.csv", kNanoseconds, list);
   found.lists.push_back(std::move(list));
+}
+
+void addImuTable(const std::string& name, const fs::path& file, PictureFolder& found) {
+  if (isFile(file) && isTextTable(file)) found.imus.push_back({name, file});
 }
 
 PictureFolder findEuroc(const fs::path& folder) {
@@ -67,8 +60,7 @@ PictureFolder findEuroc(const fs::path& folder) {
   for (const std::string& name : folderNames(folder)) {
     const fs::path part = folder / name;
     addEurocCamera(part, found);
-    const bool imu = name.starts_with("imu") && isImuTable(part / "data.csv");
-    if (imu) found.imus.push_back({name, part / "data.csv"});
+    if (name.starts_with("imu")) addImuTable(name, part / "data.csv", found);
   }
   return found;
 }
@@ -178,7 +170,7 @@ PictureFolder findByNames(const fs::path& folder) {
     if (auto list = listByNames(folder / name, name)) found.lists.push_back(std::move(*list));
   for (int i = 0; i < 10 && !found.lists.empty(); ++i) {
     const std::string name = fmt::format("imu{}", i);
-    if (isImuTable(folder / (name + ".csv"))) found.imus.push_back({name, folder / (name + ".csv")});
+    addImuTable(name, folder / (name + ".csv"), found);
   }
   return found;
 }

@@ -1,271 +1,346 @@
 #include "core/recording/text/text_columns.h"
 
+#include "core/base/time.h"
 #include "core/base/trimmed.h"
 #include "core/numerics/robust.h"
 #include "core/recording/column_guess.h"
+#include "core/recording/text/table_header.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
-#include <optional>
 
 namespace evical {
 namespace {
 
 constexpr std::string_view kAroundCell = " \t\r\"'";
-
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kMostRows = 2000;
 constexpr std::size_t kImuColumns = 7;
+constexpr std::size_t kEchoedImuColumns = 40;  // of sensor_msgs/Imu: 2 of time, frame, 37 numbers
 
-struct Rows {
-  std::vector<ColumnNumbers> columns;
-  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, where there are as many
-  std::size_t count = 0;
-};
+// Calls parse(text) with the decimal point in place of the comma.
+template <class Parse>
+bool withPoint(std::string_view text, Parse parse) {
+  std::array<char, 64> copy{};
+  if (text.size() > copy.size()) return false;
+  std::replace_copy(text.begin(), text.end(), copy.begin(), ',', '.');
+  return parse(std::string_view(copy.data(), text.size()));
+}
 
-bool columnNumber(std::string_view text, double& number) {
+bool cellNumber(std::string_view text, const TextStyle& style, double& number) {
   if (text == "true" || text == "True") return number = 1.0, true;
   if (text == "false" || text == "False") return number = 0.0, true;
-  return parseNumber(text, number);
+  std::int64_t date_ns = 0;
+  if (parseDate(text, date_ns)) return number = 1e-9 * static_cast<double>(date_ns), true;
+  return parseCell(text, style, number);
 }
 
-// False if the line is no row like those before.
-bool addRow(const std::vector<std::string_view>& line, Rows& rows) {
-  if (line.empty()) return false;
-  std::vector<double> numbers(line.size());
-  for (std::size_t i = 0; i < line.size(); ++i)
-    if (!columnNumber(line[i], numbers[i])) return false;
-  if (rows.count == 0) rows.columns.resize(line.size());
-  if (line.size() != rows.columns.size()) return false;
-  for (std::size_t i = 0; i < numbers.size(); ++i) rows.columns[i].add(numbers[i], rows.count == 0);
-  if (numbers.size() >= kImuColumns) {
-    rows.first_norms.push_back(std::hypot(numbers[1], numbers[2], numbers[3]));
-    rows.second_norms.push_back(std::hypot(numbers[4], numbers[5], numbers[6]));
-  }
-  ++rows.count;
-  return true;
+// "1,5" with digits on both sides.
+bool hasDecimalComma(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  const auto isDigit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  return comma != std::string_view::npos && comma > 0 && comma + 1 < cell.size() &&
+         isDigit(cell[comma - 1]) && isDigit(cell[comma + 1]) &&
+         cell.find(',', comma + 1) == std::string_view::npos;
 }
+
+TextStyle styleOf(std::string_view line) {
+  TextStyle style;
+  if (line.find_first_of(",;\t") == std::string_view::npos) style.blanks = true;
+  if (line.find_first_of(";\t") == std::string_view::npos) return style;
+  TextStyle comma = style;
+  comma.decimal_comma = true;
+  std::vector<std::string_view> cells;
+  splitColumns(line, comma, cells);
+  double number = 0.0;
+  const bool all = std::all_of(cells.begin(), cells.end(), [&](std::string_view cell) {
+    return cell.find(',') == std::string_view::npos ||
+           (hasDecimalComma(cell) && parseCell(cell, comma, number));
+  });
+  return all && std::any_of(cells.begin(), cells.end(), hasDecimalComma) ? comma : style;
+}
+
+// The first lines of a table: rows of numbers, and what stands above them.
+class TableHead {
+ public:
+  // `line` has its number in the file. False if the text is no table.
+  bool add(std::string_view line, std::uint64_t number) {
+    if (rows == 0) first_row = number + 1;
+    if (line.substr(0, 4) == "sep=" || readGeometry(line)) return true;
+    const bool comment = line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
+    if (comment && rows > 0) return true;
+    if (!comment && rows == 0) style = styleOf(line);
+    if (!comment && addRow(line)) {
+      if (rows++ == 0) first_row = number;
+      return true;
+    }
+    if (rows > 0) return true;  // a bad line among rows is the reader's to report
+    if (!comment && number == 1 && readSize(line)) return true;
+    const bool is_text =
+        std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
+    const bool named = comment || std::isalpha(static_cast<unsigned char>(line.front())) != 0 ||
+                       std::string_view("_,;\"'").find(line.front()) != std::string_view::npos;
+    if (!is_text || !named) return false;
+    headers.push_back(readTableHeader(line, comment));
+    return true;
+  }
+
+  TextStyle style;
+  std::vector<TableColumn> columns;
+  std::vector<TableHeader> headers;               // lines above the rows that may name columns
+  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, where there are as many
+  std::size_t rows = 0;
+  std::uint64_t first_row = 1;
+  Resolution size_px;
+  bool has_geometry = false;
+
+ private:
+  bool readGeometry(std::string_view line) {
+    constexpr std::string_view kGeometry = "%geometry:";
+    if (!line.starts_with(kGeometry)) return false;
+    has_geometry = true;
+    readSize(line.substr(kGeometry.size()));
+    return true;
+  }
+
+  // Two whole numbers: width and height, as e2vid's first line has them.
+  bool readSize(std::string_view line) {
+    std::vector<std::string_view> sides;
+    splitColumns(line, sides);
+    std::uint16_t width = 0, height = 0;
+    if (sides.size() != 2 || !parseNumber(sides[0], width) || !parseNumber(sides[1], height)) return false;
+    size_px = {width, height};
+    return true;
+  }
+
+  bool addRow(std::string_view line) {
+    splitColumns(line, style, cells_);
+    numbers_.assign(cells_.size(), 0.0);
+    std::vector<bool> is_number(cells_.size());
+    for (std::size_t i = 0; i < cells_.size(); ++i) is_number[i] = cellNumber(cells_[i], style, numbers_[i]);
+    const auto count = static_cast<std::size_t>(std::count(is_number.begin(), is_number.end(), true));
+    if (count < 3 || 2 * count < cells_.size() || (rows > 0 && cells_.size() != columns.size())) return false;
+    columns.resize(cells_.size());
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (!is_number[i]) {
+        ++columns[i].texts;
+        continue;
+      }
+      columns[i].numbers.add(numbers_[i], columns[i].values.empty());
+      columns[i].values.push_back(numbers_[i]);
+    }
+    if (cells_.size() >= kImuColumns) {
+      first_norms.push_back(std::hypot(numbers_[1], numbers_[2], numbers_[3]));
+      second_norms.push_back(std::hypot(numbers_[4], numbers_[5], numbers_[6]));
+    }
+    return true;
+  }
+
+  std::vector<std::string_view> cells_;
+  std::vector<double> numbers_;
+};
 
 bool isGravity(double norm) {
   return std::abs(norm - kStandardGravity_m_s2) < 0.8 || std::abs(norm - 1.0) < 0.08;
 }
 
-bool startsWithOne(std::string_view name, std::initializer_list<std::string_view> starts) {
-  return std::any_of(starts.begin(), starts.end(), [&](std::string_view s) { return name.starts_with(s); });
+std::vector<ColumnNumbers> numbersOf(const TableHead& head) {
+  std::vector<ColumnNumbers> numbers;
+  for (const TableColumn& column : head.columns) numbers.push_back(column.numbers);
+  return numbers;
 }
 
-// The letters in front of a unit or an index.
-std::string_view stem(std::string_view name) {
-  return name.substr(0, std::min(name.find_first_of("_[( "), name.size()));
-}
-
-bool isOneOf(std::string_view name, std::initializer_list<std::string_view> names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-struct HeaderColumns {
-  std::optional<std::size_t> time, x, y, polarity, acceleration, rate, point, sigma, alpha;
-  std::optional<std::int64_t> unit_ns;
-  AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
-  AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
-
-  bool nameEvents() const { return time && x && y && polarity; }
-  bool nameImu() const { return time && acceleration && rate; }
-  bool namePoints() const { return time && point && x && y; }
-
-  // Kalibr's table is "timestamp, omega_x, ..., alpha_x, ...", in ns; elsewhere alpha is a rate.
-  void takeKalibrs() {
-    if (!rate || acceleration || !alpha) return;
-    acceleration = alpha;
-    if (time && !unit_ns) unit_ns = 1;
-  }
-
-  void add(std::string_view name, std::size_t i) {
-    const auto first = [i](std::optional<std::size_t>& column) {
-      if (!column) column = i;
-    };
-    const std::string_view letters = stem(name);
-    if (startsWithOne(name, {"ang", "gyr", "w_", "wx", "gx", "omega"})) {
-      if (name.find("deg") != std::string_view::npos) angular_rate_unit = AngularRateUnit::DegreesPerSecond;
-      first(rate);
-    } else if (name.starts_with("alpha")) {
-      first(alpha);
-    } else if (startsWithOne(name, {"acc", "lin", "a_", "ax"})) {
-      if (name.ends_with("[g]") || name.ends_with("(g)")) acceleration_unit = AccelerationUnit::Gravity;
-      first(acceleration);
-    } else if (!time && (startsWithOne(name, {"time", "stamp"}) || isOneOf(letters, {"t", "ts", "sec"}))) {
-      time = i;
-      unit_ns = timeUnitOf(name);
-    } else if (letters == "x") {
-      first(x);
-    } else if (letters == "y") {
-      first(y);
-    } else if (isOneOf(letters, {"p", "pol", "polarity", "on"})) {
-      first(polarity);
-    } else if (isOneOf(letters, {"point", "circle", "corner"})) {
-      first(point);
-    } else if (isOneOf(letters, {"sigma", "std"})) {
-      first(sigma);
-    }
-  }
-};
-
-HeaderColumns readHeaderLine(std::string_view line) {
-  std::string lower(line);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  std::string_view names = trimmed(lower, kAroundCell);
-  while (names.starts_with('#') || names.starts_with('%')) names = trimmed(names.substr(1), kAroundCell);
-  std::vector<std::string_view> columns;
-  splitColumns(names, columns);
-  HeaderColumns header;
-  for (std::size_t i = 0; i < columns.size(); ++i) header.add(trimmed(columns[i], kAroundCell), i);
-  header.takeKalibrs();
-  return header;
-}
-
-bool readGeometry(std::string_view line, Resolution& size_px) {
-  constexpr std::string_view kGeometry = "%geometry:";
-  if (!line.starts_with(kGeometry)) return false;
-  std::vector<std::string_view> sides;
-  splitColumns(line.substr(kGeometry.size()), sides);
-  std::uint16_t width = 0, height = 0;
-  if (sides.size() == 2 && parseNumber(sides[0], width) && parseNumber(sides[1], height))
-    size_px = {width, height};
-  return true;
-}
-
-void applyHeader(const HeaderColumns& header, TextColumns& columns) {
-  columns.type = header.nameEvents() ? StreamType::Events
-                 : header.nameImu()  ? StreamType::Imu
-                                     : StreamType::Points;
-  columns.time = *header.time;
-  columns.x = header.x.value_or(0);
-  columns.y = header.y.value_or(0);
-  columns.polarity = header.polarity.value_or(0);
-  columns.point = header.point.value_or(0);
-  columns.sigma = header.sigma;
-  columns.acceleration = header.acceleration.value_or(0);
-  columns.rate = header.rate.value_or(0);
-  columns.acceleration_unit = header.acceleration_unit;
-  columns.angular_rate_unit = header.angular_rate_unit;
-  columns.time_unit_ns = header.unit_ns.value_or(0);
-}
-
-bool guessEvents(const Rows& rows, TextColumns& columns) {
-  const std::optional<EventColumns> events = guessEventColumns(rows.columns);
+bool guessEvents(const TableHead& head, TextColumns& columns) {
+  const std::optional<EventColumns> events = guessEventColumns(numbersOf(head));
   if (!events) return false;
   columns.type = StreamType::Events;
-  columns.time = events->time;
+  columns.time = {{events->time, 0}};
   columns.x = events->x;
   columns.y = events->y;
   columns.polarity = events->polarity;
   return true;
 }
 
-bool guessImu(const Rows& rows, TextColumns& columns) {
-  if (rows.columns.size() != kImuColumns) return false;
+// `ros2 topic echo --csv` of sensor_msgs/Imu: seconds, nanoseconds, frame, orientation and its covariance, rates and
+// theirs, accelerations and theirs.
+bool recogniseEcho(const TableHead& head, TextColumns& columns) {
+  if (head.columns.size() != kEchoedImuColumns || head.columns[2].numbers.isPixel()) return false;
+  const auto whole = [&](std::size_t i) {
+    return head.columns[i].texts == 0 && head.columns[i].numbers.whole;
+  };
+  if (!whole(0) || !whole(1) || head.columns[1].numbers.largest >= 1e9) return false;
   columns.type = StreamType::Imu;
-  const bool rate_first = isGravity(medianOf(rows.second_norms)) && !isGravity(medianOf(rows.first_norms));
-  columns.rate = rate_first ? 1 : 4;
-  columns.acceleration = rate_first ? 4 : 1;
+  columns.time = {{0, kSecond_ns}, {1, 1}};
+  columns.rate = {16, 17, 18};
+  columns.acceleration = {28, 29, 30};
   return true;
 }
 
-void describeGuess(TextColumns& columns, bool has_header) {
-  const char* unit = timeUnitName(columns.time_unit_ns);
-  if (has_header) {
-    columns.guess = fmt::format("The header does not tell the unit of time; {} is assumed.", unit);
-    return;
+// Seven columns: gravity tells which three are the accelerometer's.
+bool guessImu(const TableHead& head, TextColumns& columns) {
+  if (head.columns.size() != kImuColumns) return false;
+  const bool first = isGravity(medianOf(head.first_norms)), second = isGravity(medianOf(head.second_norms));
+  if (first == second) {
+    columns.problem =
+        "no header names the columns, and its numbers do not show which are the accelerometer's";
+    columns.advice = columnsAdvice("t_s,ax,ay,az,gx,gy,gz");
+    return false;
   }
+  columns.type = StreamType::Imu;
+  columns.time = {{0, 0}};
+  columns.acceleration = first ? std::array<std::size_t, 3>{1, 2, 3} : std::array<std::size_t, 3>{4, 5, 6};
+  columns.rate = first ? std::array<std::size_t, 3>{4, 5, 6} : std::array<std::size_t, 3>{1, 2, 3};
+  return true;
+}
+
+void describeGuess(TextColumns& columns) {
+  const char* unit = timeUnitName(columns.time.front().unit_ns);
+  const bool events = columns.type == StreamType::Events;
   std::string order;
-  const auto name = [&](std::size_t i) -> const char* {
-    if (i == columns.time) return "t";
-    if (columns.type == StreamType::Events) return i == columns.x ? "x" : i == columns.y ? "y" : "p";
-    constexpr const char *kAcceleration[] = {"ax", "ay", "az"}, *kRate[] = {"gx", "gy", "gz"};
-    return i - columns.acceleration < 3 ? kAcceleration[i - columns.acceleration] : kRate[i - columns.rate];
+  const auto name = [&](std::size_t i) -> std::string {
+    if (i == columns.time.front().column) return "t";
+    if (events) return i == columns.x ? "x" : i == columns.y ? "y" : "p";
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (columns.acceleration[axis] == i) return fmt::format("a{}", "xyz"[axis]);
+      if (columns.rate[axis] == i) return fmt::format("g{}", "xyz"[axis]);
+    }
+    return "-";
   };
   for (std::size_t i = 0; i < columns.count(); ++i) order += fmt::format("{}{}", i == 0 ? "" : ",", name(i));
   const bool conventional =
-      (order == "t,x,y,p" || order == "t,ax,ay,az,gx,gy,gz") && columns.time_unit_ns == 1'000'000'000;
+      (order == "t,x,y,p" || order == "t,ax,ay,az,gx,gy,gz") && columns.time.front().unit_ns == kSecond_ns;
   if (conventional) return;
-  columns.guess = fmt::format(
-      "There is no header; the columns are taken for {}, t in {}. If that is wrong, put a "
-      "line such as \"t_{},x,y,p\" on top.",
-      order, unit, unit);
+  columns.notes.push_back(
+      fmt::format("There is no header; the columns are taken for {}, t in {}. If that is wrong, put a line "
+                  "such as \"t_{},{}\" on top.",
+                  order, unit, unit, events ? "x,y,p" : "ax,ay,az,gx,gy,gz"));
+}
+
+// Of the lines above the rows the one that names their columns; nullptr if none does.
+const TableHeader* headerOf(const TableHead& head) {
+  const auto fits = [&](const TableHeader& header) {
+    return head.rows == 0 || header.names.size() == head.columns.size();
+  };
+  const TableHeader* best = nullptr;
+  for (const TableHeader& header : head.headers) {  // the last of the best
+    const auto rank = [&](const TableHeader& each) {
+      return (each.namesTable() ? 4 : 0) + (fits(each) ? 2 : 0) + (each.comment ? 0 : 1);
+    };
+    if (!best || rank(header) >= rank(*best)) best = &header;
+  }
+  const bool is_header =
+      best &&
+      (best->namesTable() || (fits(*best) && head.rows > 0 && (!best->comment || best->recognised() >= 2)));
+  return is_header ? best : nullptr;
+}
+
+// RPG's data set: events.txt is "t x y p", imu.txt "t ax ay az gx gy gz".
+bool followConvention(const TableHead& head, StreamType convention, TextColumns& columns) {
+  const bool events = convention == StreamType::Events && head.columns.size() >= 4;
+  const bool imu = convention == StreamType::Imu && head.columns.size() >= kImuColumns;
+  const bool rate_first =
+      imu && isGravity(medianOf(head.second_norms)) && !isGravity(medianOf(head.first_norms));
+  if (head.rows > 0 && ((!events && !imu) || rate_first)) return false;
+  columns.type = convention;
+  return convention != StreamType::Other;
+}
+
+TextColumns columnsOf(const TableHead& head, std::string_view names, StreamType convention) {
+  TextColumns columns;
+  if (!names.empty()) {
+    const TableHeader header = readTableHeader(names, false);
+    applyHeader(header, head.columns, head.rows, columns);
+  } else if (const TableHeader* const header = headerOf(head)) {
+    applyHeader(*header, head.columns, head.rows, columns);
+  } else if (head.has_geometry && head.columns.size() == 4) {
+    columns.type = StreamType::Events;  // Metavision's viewer
+    columns.x = 0;
+    columns.y = 1;
+    columns.polarity = 2;
+    columns.time = {{3, kMicrosecond_ns}};
+  } else if (!followConvention(head, convention, columns) && !recogniseEcho(head, columns) &&
+             (guessEvents(head, columns) || guessImu(head, columns))) {
+    std::int64_t& unit_ns = columns.time.front().unit_ns;
+    unit_ns = guessUnit_ns(head.columns[columns.time.front().column], columns.type);
+    describeGuess(columns);
+  }
+  columns.style = head.style;
+  columns.first_row = head.first_row;
+  if (head.size_px.known()) columns.resolution_px = head.size_px;
+  return columns;
 }
 
 }  // namespace
 
 std::size_t TextColumns::count() const {
-  if (type == StreamType::Events) return std::max({time, x, y, polarity}) + 1;
-  if (type == StreamType::Points) return std::max({time, x, y, point, sigma.value_or(0)}) + 1;
-  return std::max({time, acceleration + 2, rate + 2}) + 1;
+  std::size_t last = 0;
+  for (const TimeColumn& part : time) last = std::max(last, part.column);
+  if (type == StreamType::Events) return std::max({last, x, y, polarity}) + 1;
+  if (type == StreamType::Points) return std::max({last, x, y, point, sigma.value_or(0)}) + 1;
+  return std::max({last, *std::max_element(acceleration.begin(), acceleration.end()),
+                   *std::max_element(rate.begin(), rate.end())}) +
+         1;
 }
 
 void splitColumns(std::string_view line, std::vector<std::string_view>& columns) {
+  splitColumns(line, {line.find_first_of(",;\t") == std::string_view::npos, false}, columns);
+}
+
+void splitColumns(std::string_view line, const TextStyle& style, std::vector<std::string_view>& columns) {
   columns.clear();
-  if (line.find_first_of(",;\t") == std::string_view::npos) {
+  if (style.blanks) {
     for (std::string_view column = takeColumn(line); !column.empty(); column = takeColumn(line))
       columns.push_back(column);
     return;
   }
+  const std::string_view separators = style.decimal_comma ? ";\t" : ",;\t";
   for (std::size_t end = 0; end != std::string_view::npos;) {
-    end = line.find_first_of(",;\t");
+    end = line.find_first_of(separators);
     columns.push_back(trimmed(line.substr(0, end), kAroundCell));
     if (end != std::string_view::npos) line.remove_prefix(end + 1);
   }
   while (!columns.empty() && columns.back().empty()) columns.pop_back();  // behind a last comma
 }
 
-TextColumns findColumns(std::string_view first_bytes, bool cut) {
-  TextColumns columns;
-  Rows rows;
-  std::vector<std::string_view> parts;
-  bool has_header = false, metavision = false;
+bool parseCell(std::string_view text, const TextStyle& style, double& number) {
+  if (!style.decimal_comma) return parseNumber(text, number);
+  return withPoint(text, [&](std::string_view plain) { return parseNumber(plain, number); });
+}
+
+bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& columns,
+                std::int64_t& time_ns) {
+  time_ns = 0;
+  for (const TimeColumn& part : columns.time) {
+    std::int64_t part_ns = 0;
+    const std::string_view cell = cells[part.column];
+    const int digits = digitsOf(part.unit_ns);
+    const auto parse = [&](std::string_view plain) { return parseTime(plain, digits, part_ns); };
+    const bool good = columns.style.decimal_comma ? withPoint(cell, parse) : parse(cell);
+    if ((!good && !parseDate(cell, part_ns)) || __builtin_add_overflow(time_ns, part_ns, &time_ns))
+      return false;
+  }
+  return isTime(time_ns);
+}
+
+TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view names,
+                        StreamType convention) {
+  TableHead head;
   const char line_end = lineEndOf(first_bytes);
-  for (std::uint64_t number = 1; !first_bytes.empty() && rows.count < kMostRows; ++number) {
+  if (first_bytes.starts_with(kByteOrderMark)) first_bytes.remove_prefix(kByteOrderMark.size());
+  for (std::uint64_t number = 1; !first_bytes.empty() && head.rows < kMostRows; ++number) {
     const std::size_t end = first_bytes.find(line_end);
     if (end == std::string_view::npos && cut && number > 1) break;
-    const std::string_view line = trimmed(first_bytes.substr(0, end), kAroundCell);
+    const std::string_view line = trimmed(first_bytes.substr(0, end));
     first_bytes.remove_prefix(end == std::string_view::npos ? first_bytes.size() : end + 1);
-    if (line.empty()) continue;
-    if (readGeometry(line, columns.resolution_px)) {
-      metavision = true;
-      continue;
-    }
-    splitColumns(line, parts);
-    if (addRow(parts, rows) || rows.count > 0) continue;  // a bad line among rows is the reader's to report
-    const HeaderColumns header = readHeaderLine(line);
-    if (!has_header && (header.nameEvents() || header.nameImu() || header.namePoints())) {
-      applyHeader(header, columns);
-      columns.header_line = number;
-      has_header = true;
-    } else if (line.front() != '#' && line.front() != '%' &&
-               std::isalpha(static_cast<unsigned char>(line.front())) == 0) {
-      return columns;  // neither a row, nor names, nor a comment
-    }
+    if (!line.empty() && !head.add(line, number)) return {};
   }
-  if (metavision && !has_header && rows.columns.size() == 4) {
-    columns.type = StreamType::Events;
-    columns.x = 0;
-    columns.y = 1;
-    columns.polarity = 2;
-    columns.time = 3;
-    columns.time_unit_ns = 1000;
-    return columns;
-  }
-  if (!has_header && !guessEvents(rows, columns) && !guessImu(rows, columns)) return columns;
-  if (has_header && columns.time_unit_ns != 0) return columns;
-  const bool known = columns.time < rows.columns.size();
-  columns.time_unit_ns = known ? guessTimeUnit_ns(rows.columns[columns.time], rows.count) : 1'000'000'000;
-  const bool obvious = has_header && known && !rows.columns[columns.time].whole;
-  if (!obvious) describeGuess(columns, has_header);
-  return columns;
+  return columnsOf(head, names, convention);
 }
 
 }  // namespace evical

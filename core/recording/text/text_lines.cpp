@@ -1,10 +1,12 @@
 #include "core/recording/text/text_lines.h"
 
+#include "core/base/number.h"
 #include "core/base/time.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -115,10 +117,53 @@ bool parseTime(std::string_view text, int digits_of_unit, std::int64_t& time_ns)
   return isTime(time_ns);
 }
 
+int digitsOf(std::int64_t unit_ns) {
+  int digits = 0;
+  for (; unit_ns >= 10; unit_ns /= 10) ++digits;
+  return digits;
+}
+
+bool parseDate(std::string_view text, std::int64_t& time_ns) {
+  // "2026-03-01T10:00:00"
+  constexpr std::size_t kSeconds = 17;
+  if (text.size() < kSeconds + 2 || text[4] != '-' || text[7] != '-' ||
+      (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':')
+    return false;
+  const auto number = [&](std::size_t at, std::size_t length, int least, int most) {
+    int value = -1;
+    const char* const end = text.data() + at + length;
+    const auto result = std::from_chars(text.data() + at, end, value);
+    return result.ec == std::errc{} && result.ptr == end && value >= least && value <= most ? value : -1;
+  };
+  const int year = number(0, 4, 1970, 2100), month = number(5, 2, 1, 12), day = number(8, 2, 1, 31);
+  const int hour = number(11, 2, 0, 23), minute = number(14, 2, 0, 59);
+  std::string_view rest = text.substr(kSeconds);
+  const std::size_t zone = std::min(rest.find_first_of("Z+-"), rest.size());
+  std::int64_t seconds_ns = 0, zone_minutes = 0;
+  if (std::min({year, month, day, hour, minute}) < 0 || !parseSeconds(rest.substr(0, zone), seconds_ns))
+    return false;
+  rest.remove_prefix(zone);
+  if (rest.size() == 6 && rest[3] == ':') {  // "+01:00"
+    const std::size_t at = text.size() - rest.size();
+    const int hours = number(at + 1, 2, 0, 23), minutes = number(at + 4, 2, 0, 59);
+    if (hours < 0 || minutes < 0) return false;
+    zone_minutes = (rest[0] == '-' ? -1 : 1) * (60 * hours + minutes);
+  } else if (!rest.empty() && rest != "Z") {
+    return false;
+  }
+  const std::chrono::year_month_day date(std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day)));
+  if (!date.ok()) return false;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  time_ns = (((days * 24 + hour) * 60 + minute - zone_minutes) * 60) * kSecond_ns + seconds_ns;
+  return true;
+}
+
 bool parseNumber(std::string_view text, double& value) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+  const std::optional<double> number = realFrom(text);
+  if (number) value = *number;
+  return number.has_value();
 }
 
 bool parseNumber(std::string_view text, std::uint16_t& value) {

@@ -49,6 +49,12 @@ bool parseSeconds(std::string_view text, std::int64_t& time_ns);
 // The same for times in units of 10^digits ns: 9 for seconds, 3 for us.
 bool parseTime(std::string_view text, int digits, std::int64_t& time_ns);
 
+// The digits for a unit of 10^digits ns.
+int digitsOf(std::int64_t unit_ns);
+
+// A date and time of ISO 8601, "2026-03-01T10:00:00.25Z" or with a blank for the T, as ns since 1970; UTC where it gives no zone.
+bool parseDate(std::string_view text, std::int64_t& time_ns);
+
 // A finite number; false otherwise.
 bool parseNumber(std::string_view text, double& value);
 bool parseNumber(std::string_view text, std::uint16_t& value);

@@ -1,6 +1,7 @@
 #include "core/recording/text/text_table_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 
 #include <fmt/format.h>
 
@@ -40,18 +41,15 @@ bool isComment(std::string_view line) {
   return column.empty() || column.front() == '#' || column.front() == '%';
 }
 
-int digitsOf(std::int64_t unit_ns) {
-  int digits = 0;
-  for (; unit_ns >= 10; unit_ns /= 10) ++digits;
-  return digits;
+bool parseVector(const std::vector<std::string_view>& cells, const std::array<std::size_t, 3>& axes,
+                 const TextStyle& style, double factor, Eigen::Vector3d& vector) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!parseCell(cells[axes[i]], style, vector[static_cast<Eigen::Index>(i)])) return false;
+  if (factor != 1.0) vector *= factor;
+  return true;
 }
 
-bool parseVector(const std::vector<std::string_view>& parts, std::size_t first, Eigen::Vector3d& vector) {
-  return parseNumber(parts[first], vector.x()) && parseNumber(parts[first + 1], vector.y()) &&
-         parseNumber(parts[first + 2], vector.z());
-}
-
-const char* progressMessage(StreamType type) {
+const char* rowOf(StreamType type) {
   return type == StreamType::Events   ? "t x y p"
          : type == StreamType::Points ? "t point x y"
                                       : "t ax ay az gx gy gz";
@@ -59,8 +57,9 @@ const char* progressMessage(StreamType type) {
 
 }  // namespace
 
-StreamType textTableType(std::string_view first_bytes) {
-  return findColumns(first_bytes, true).type;
+bool isTextTable(const std::filesystem::path& file) {
+  const std::string head = firstTextBytes(file, kHead_bytes);
+  return findColumns(head, head.size() == kHead_bytes).isTable();
 }
 
 bool isTextFolder(const std::filesystem::path& folder) {
@@ -68,47 +67,46 @@ bool isTextFolder(const std::filesystem::path& folder) {
                      [&](const char* name) { return std::filesystem::exists(folder / name); });
 }
 
-TextTableReader::TextTableReader(const std::filesystem::path& path) {
+TextTableReader::TextTableReader(const std::filesystem::path& path, const ColumnNames& names) {
+  const auto namesOf = [&](const std::string& file) {
+    const auto found = names.find(file);
+    return found == names.end() ? std::string() : found->second;
+  };
   if (!std::filesystem::is_directory(path)) {
-    addSource(path);
+    addSource(path, namesOf(path.filename().string()));
     return;
   }
   for (const char* name : kFiles)
-    if (std::filesystem::exists(path / name)) addSource(path / name);
+    if (std::filesystem::exists(path / name)) addSource(path / name, namesOf(name));
 }
 
-void TextTableReader::addSource(const std::filesystem::path& path) {
+void TextTableReader::addSource(const std::filesystem::path& path, const std::string& names) {
   const std::string head = firstTextBytes(path, kHead_bytes);
-  TextColumns columns = findColumns(head, head.size() == kHead_bytes);
   const std::string name = path.filename().string();
-  if (name == kFiles[0] && columns.header_line == 0) {
-    const Resolution size_px = columns.resolution_px;
-    columns = {};  // the name says it all, also where the numbers allow a guess
-    columns.type = StreamType::Events;
-    columns.resolution_px = size_px;
-  } else if (name == kFiles[1] && columns.header_line == 0) {
-    columns = {};
-    columns.type = StreamType::Imu;
-  }
-  if (columns.type == StreamType::Other) {
+  const StreamType convention = name == kFiles[0]   ? StreamType::Events
+                                : name == kFiles[1] ? StreamType::Imu
+                                                    : StreamType::Other;
+  TextColumns columns = findColumns(head, head.size() == kHead_bytes, names, convention);
+  if (!columns.problem.empty()) throw badInput(path.string(), columns.problem, columns.advice);
+  if (columns.type == StreamType::Other)
     throw badInput(path.string(),
                    "the lines are neither events nor IMU samples, and no header names the columns",
                    "Put a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" on top");
-  }
   if (path.extension() == ".csv" || path.stem().extension() == ".csv") format_ = "csv";
   StreamInfo stream;
   stream.name = name;
   stream.type = columns.type;
-  stream.message = progressMessage(columns.type);
+  stream.message = rowOf(columns.type);
+  if (!columns.unused.empty()) stream.message += "; not used: " + columns.unused;
   stream.resolution_px = columns.resolution_px;
-  stream.time_unit_ns = columns.time_unit_ns == 1000 ? 1000 : 1;
+  stream.time_unit_ns = columns.time.back().unit_ns == kMicrosecond_ns ? kMicrosecond_ns : 1;
   stream.acceleration_unit = columns.acceleration_unit;
   stream.angular_rate_unit = columns.angular_rate_unit;
   streams_.push_back(stream);
-  if (!columns.guess.empty()) faults_.push_back({name, FaultKind::Guess, 0.0, columns.guess});
-  const int digits = digitsOf(columns.time_unit_ns);
+  for (const std::string& note : columns.notes) faults_.push_back({name, FaultKind::Guess, 0.0, note});
+  const std::size_t width = columns.count();
   sources_.push_back(
-      {TextLines(path), std::move(columns), digits, true, false, std::numeric_limits<std::int64_t>::min()});
+      {TextLines(path), std::move(columns), width, true, false, std::numeric_limits<std::int64_t>::min()});
 }
 
 void TextTableReader::select(const std::vector<std::size_t>& streams) {
@@ -147,7 +145,10 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
   while (source.lines.next(line)) {
     if (!parseEvent(source, line, event)) {
       if (isNoRow(source, line)) continue;
-      addBadLine(source, stream);
+      if (isOtherType(source))
+        ++source.other_types;
+      else
+        addBadLine(source, stream);
       continue;
     }
     if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kTextPacketEvents ||
@@ -199,6 +200,11 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
 
 void TextTableReader::finish(Source& source, std::size_t stream) {
   source.finished = true;
+  if (source.other_types > 0)
+    faults_.push_back(
+        {streams_[stream].name, FaultKind::Triggers, 0.0,
+         fmt::format("{} lines are left out: their type is neither 0 (darker) nor 1 (brighter).",
+                     source.other_types)});
   if (!source.lines.isDamaged()) return;
   faults_.push_back({streams_[stream].name, FaultKind::Truncated, 0.0,
                      fmt::format("The packed file is damaged after line {}; what comes behind is lost.",
@@ -206,28 +212,35 @@ void TextTableReader::finish(Source& source, std::size_t stream) {
 }
 
 bool TextTableReader::isNoRow(const Source& source, std::string_view line) {
-  return source.lines.number() == source.columns.header_line || isComment(line);
+  return source.lines.number() < source.columns.first_row || isComment(line);
+}
+
+// A trigger or a reset among events.
+bool TextTableReader::isOtherType(const Source& source) const {
+  std::uint16_t type = 0;
+  return source.columns.has_types && parts_.size() >= source.width &&
+         parseNumber(parts_[source.columns.polarity], type) && type > 1;
 }
 
 bool TextTableReader::parseEvent(const Source& source, std::string_view line, Event& event) {
   const TextColumns& columns = source.columns;
-  splitColumns(line, parts_);
-  return parts_.size() >= columns.count() &&
-         parseTime(parts_[columns.time], source.time_digits, event.time_ns) &&
+  splitColumns(line, columns.style, parts_);
+  return parts_.size() >= source.width && parseTimes(parts_, columns, event.time_ns) &&
          parsePixel(parts_[columns.x], event.x_px) && parsePixel(parts_[columns.y], event.y_px) &&
          parsePolarity(parts_[columns.polarity], event.brighter);
 }
 
 bool TextTableReader::parsePoint(const Source& source, std::string_view line, MeasuredPoint& point) {
   const TextColumns& columns = source.columns;
-  splitColumns(line, parts_);
+  splitColumns(line, columns.style, parts_);
   std::uint16_t index = 0;
   double x_px = 0.0, y_px = 0.0, sigma_px = 0.0;
-  if (parts_.size() < columns.count() ||
-      !parseTime(parts_[columns.time], source.time_digits, point.time_ns) ||
-      !parseNumber(parts_[columns.point], index) || !parseNumber(parts_[columns.x], x_px) ||
-      !parseNumber(parts_[columns.y], y_px) ||
-      (columns.sigma && !parseNumber(parts_[*columns.sigma], sigma_px)) || sigma_px < 0.0)
+  const auto real = [&](std::size_t column, double& number) {
+    return parseCell(parts_[column], columns.style, number);
+  };
+  if (parts_.size() < source.width || !parseTimes(parts_, columns, point.time_ns) ||
+      !parseNumber(parts_[columns.point], index) || !real(columns.x, x_px) || !real(columns.y, y_px) ||
+      (columns.sigma && !real(*columns.sigma, sigma_px)) || sigma_px < 0.0)
     return false;
   point.point = index;
   point.x_px = static_cast<float>(x_px);
@@ -238,11 +251,11 @@ bool TextTableReader::parsePoint(const Source& source, std::string_view line, Me
 
 bool TextTableReader::parseImu(const Source& source, std::string_view line, RawImuSample& sample) {
   const TextColumns& columns = source.columns;
-  splitColumns(line, parts_);
-  return parts_.size() >= columns.count() &&
-         parseTime(parts_[columns.time], source.time_digits, sample.time_ns) &&
-         parseVector(parts_, columns.acceleration, sample.specific_force) &&
-         parseVector(parts_, columns.rate, sample.angular_rate);
+  splitColumns(line, columns.style, parts_);
+  return parts_.size() >= source.width && parseTimes(parts_, columns, sample.time_ns) &&
+         parseVector(parts_, columns.acceleration, columns.style, columns.acceleration_factor,
+                     sample.specific_force) &&
+         parseVector(parts_, columns.rate, columns.style, columns.rate_factor, sample.angular_rate);
 }
 
 void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
@@ -254,7 +267,7 @@ void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
   const bool last = source.lines.atEnd();
   faults_.push_back({name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
                      fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(),
-                                 streams_[stream].message)});
+                                 rowOf(source.columns.type))});
 }
 
 double TextTableReader::fractionRead() const {

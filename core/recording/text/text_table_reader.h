@@ -1,8 +1,7 @@
-// Text and CSV, a table a file: events, IMU samples, or points of a board that another program found, whose
-// columns a header line names, or which are guessed and then said (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event camera
-// data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines
-// starting with '#' or
-// '%' are comments. Files may be packed with gzip.
+// Text and CSV, a table a file: events, IMU samples, or points of a board that another program found. Columns are told by
+// the names in the header line or in the session (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event
+// camera data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines starting with
+// '#' or '%' are comments. Files may be packed with gzip.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -20,8 +19,8 @@ namespace evical {
 
 class TextTableReader : public RecordingReader {
  public:
-  // A folder or a file; see isTextRecording.
-  explicit TextTableReader(const std::filesystem::path& path);
+  // A folder or a file. Throws CalibrationError (BadInput) if the columns of one cannot be told.
+  explicit TextTableReader(const std::filesystem::path& path, const ColumnNames& names = {});
 
   const std::vector<StreamInfo>& streams() const override { return streams_; }
   void select(const std::vector<std::size_t>& streams) override;
@@ -34,16 +33,17 @@ class TextTableReader : public RecordingReader {
   struct Source {
     TextLines lines;
     TextColumns columns;
-    int time_digits;  // of the unit in ns
+    std::size_t width;  // columns that a line must have
     bool wanted = true;
     bool finished = false;
     std::int64_t last_ns;
     Event next_event{};  // read, but it belongs to the next packet
     bool has_next_event = false;
     std::optional<MeasuredPoint> next_point = {};  // the same
+    std::uint64_t other_types = 0;                 // lines that are no events, by their type
   };
 
-  void addSource(const std::filesystem::path& path);
+  void addSource(const std::filesystem::path& path, const std::string& names);
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
   void fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples);
   void fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points);
@@ -51,6 +51,7 @@ class TextTableReader : public RecordingReader {
   bool parsePoint(const Source& source, std::string_view line, MeasuredPoint& point);
   bool parseEvent(const Source& source, std::string_view line, Event& event);
   bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);
+  bool isOtherType(const Source& source) const;
   static bool isNoRow(const Source& source, std::string_view line);
   void addBadLine(const Source& source, std::size_t stream);
 
@@ -61,8 +62,8 @@ class TextTableReader : public RecordingReader {
   std::vector<std::string_view> parts_;  // of a line
 };
 
-// Whether a text file's first bytes look like a table of events or IMU samples; Other if not.
-StreamType textTableType(std::string_view first_bytes);
+// Whether a file, packed or not, is a table of events, IMU samples or points, or one whose columns cannot be told.
+bool isTextTable(const std::filesystem::path& file);
 
 // Whether a folder has files that this reader knows by name.
 bool isTextFolder(const std::filesystem::path& folder);

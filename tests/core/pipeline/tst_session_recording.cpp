@@ -38,6 +38,9 @@ class TestSessionRecording : public QObject {
   void oneFile_isReadAsItIs();
   void twoFiles_areReadTogether();
   void clockOffset_isAdded();
+  void clockScale_isApplied();
+  void absurdClocks_areRefused();
+  void columns_areThoseOfTheSession();
   void units_areThoseOfTheSession();
   void clocksWithoutRelation_areRefused();
   void missingStream_namesFileAndStreams();
@@ -123,6 +126,43 @@ void TestSessionRecording::clockOffset_isAdded() {
   QCOMPARE(qint64(read.imu_samples[7].time_ns), qint64(written_.imu_samples[7].time_ns - 250'000'000));
   QCOMPARE(qint64(read.events[7].time_ns), qint64(written_.events[7].time_ns + 1000));
   QCOMPARE(qint64(SessionRecording(session_).start_ns()), qint64(read.imu_samples.front().time_ns));
+}
+
+// Counted from the sensor's first stamp; the offset is added then.
+void TestSessionRecording::clockScale_isApplied() {
+  useTwoFiles();
+  session_.imus[0].clock_scale = 0.5;
+  session_.imus[0].clock_offset_s = 0.25;
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  const std::int64_t first_ns = written_.imu_samples.front().time_ns;
+  QCOMPARE(qint64(read.imu_samples[0].time_ns), qint64(first_ns + 250'000'000));
+  QVERIFY(std::abs(read.imu_samples[30].time_ns -
+                   (first_ns + (written_.imu_samples[30].time_ns - first_ns) / 2 + 250'000'000)) <= 1);
+  QVERIFY(same(read.events, written_.events));
+}
+
+void TestSessionRecording::absurdClocks_areRefused() {
+  useTwoFiles();
+  session_.imus[0].clock_offset_s = 4.5e9;  // from 2020 on that is in the year 2162
+  QVERIFY_EXCEPTION_THROWN(SessionRecording recording(session_), CalibrationError);
+}
+
+void TestSessionRecording::columns_areThoseOfTheSession() {
+  std::string table = "t_us,ax,ay,az,gx,gy,gz\n";
+  for (int i = 0; i < 100; ++i)
+    table += std::to_string(1'600'000'000'123'456 + 5000 * i) + ",1,2,3,7,8,9.8\n";
+  writeFile(path("table.csv"), table);
+  session_.imus[0].recording = path("table.csv");
+  session_.imus[0].stream = "table.csv";
+  session_.imus[0].columns = "t_us,gz,gy,gx,ax,ay,az";
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  while (recording.read(packet) && packet.imu_samples.empty()) {
+  }
+  QVERIFY(!packet.imu_samples.empty());
+  QVERIFY((packet.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(3, 2, 1)));
+  QVERIFY((packet.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(7, 8, 9.8)));
 }
 
 void TestSessionRecording::units_areThoseOfTheSession() {

@@ -1,11 +1,15 @@
 // A part of a recording: what lies within time_range_s, and no more of the file than it takes.
+#include "core/base/atomic_file.h"
 #include "core/pipeline/recording_pass.h"
+#include "core/pipeline/session_recording.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -44,6 +48,36 @@ class TestTimeRange : public QObject {
     QVERIFY(std::ranges::any_of(to_the_end.faults, [](const RecordingFault& fault) {
       return fault.text.find("nothing behind it is read") != std::string::npos;
     }));
+  }
+
+  // The range counts from the session's first event or sample, also where the IMU begins later and is read alone.
+  void rangeOfIMUsAlone_countsFromTheSessionsStart() {
+    QTemporaryDir folder;
+    const std::filesystem::path path = folder.path().toStdString();
+    std::string events = "t_s x y p\n", samples = "t_s,ax,ay,az,gx,gy,gz\n";
+    for (int i = 0; i < 2000; ++i) events += fmt::format("{:.6f} 10 10 1\n", 100.0 + 0.005 * i);
+    for (int i = 400; i < 2000; ++i)
+      samples += fmt::format("{:.6f},0,0,9.8,0.1,0.2,0.3\n", 100.0 + 0.005 * i);
+    writeFileWhole(path / "events.txt", events);
+    writeFileWhole(path / "imu.csv", samples);
+    Session session;
+    session.recording = path / "events.txt";
+    SessionCamera camera;
+    camera.name = "camera";
+    camera.stream = "events.txt";
+    camera.resolution_px = {346, 260};
+    session.cameras = {camera};
+    SessionImu imu;
+    imu.name = "imu";
+    imu.stream = "imu.csv";
+    imu.recording = path / "imu.csv";
+    session.imus = {imu};
+    session.time_range_s = {3.0, 8.0};
+    const std::int64_t start_ns = SessionRecording(session).start_ns();
+    QCOMPARE(qint64(start_ns), qint64(100'000'000'000));
+    const RecordingPass pass = readImus(session, start_ns, {});
+    QCOMPARE(qint64(pass.imus[0].samples.front().time_ns), qint64(103'000'000'000));
+    QCOMPARE(qint64(pass.imus[0].samples.back().time_ns), qint64(108'000'000'000));
   }
 };
 

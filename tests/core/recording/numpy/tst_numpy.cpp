@@ -556,7 +556,7 @@ void TestNumpy::damage_isSaid_data() {
   row("a million million rows", tonic(1'000'000'000'000), kCount, FaultKind::Truncated,
       "claims 1000000000000 rows and has 3000");
   std::vector<ZipFile> files = fourArrays(false);
-  files[3].content = npyArray("'|i1'", "(10,)", "0123456789");
+  files[3].content = npyArray("'|i1'", "(10,)", std::string(10, '\1'));
   row("one is shorter", zipArchive(files), 10, FaultKind::Truncated, "the first 10 are read");
   for (const bool deflate : {false, true}) {
     files = fourArrays(deflate);

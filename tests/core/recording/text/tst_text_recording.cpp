@@ -35,6 +35,14 @@ class TestTextRecording : public QObject {
   void imuWithoutHeader_isToldByGravity();
   void columnsThatMakeNoSense_areRefused();
   void points_areReadByTheirHeader();
+  void imuColumns_areToldByName_data();
+  void imuColumns_areToldByName();
+  void eventColumns_areToldByName_data();
+  void eventColumns_areToldByName();
+  void namesThatDoNotTell_areRefused_data();
+  void namesThatDoNotTell_areRefused();
+  void sessionsColumns_countInstead();
+  void doubtfulUnitOfTime_isSaid();
   void packedText_isReadAsItIs();
   void packedText_thatIsCut_isToldOf();
   void packedOthers_areRefused();
@@ -351,6 +359,159 @@ void TestTextRecording::columnsThatMakeNoSense_areRefused() {
     writeFile(path("odd.csv"), text);
     QVERIFY_EXCEPTION_THROWN(openRecording(path("odd.csv")), CalibrationError);
   }
+}
+
+// Each table holds one sample: acceleration (1, 2, 9.5) m/s^2, rate (0.1, 0.2, 0.3) rad/s.
+void TestTextRecording::imuColumns_areToldByName_data() {
+  QTest::addColumn<QByteArray>("header");
+  QTest::addColumn<QByteArray>("row");
+  QTest::addColumn<qlonglong>("time_ns");
+  const auto row = [](const char* name, const char* header, const char* values, qlonglong time_ns) {
+    QTest::newRow(name) << QByteArray(header) << QByteArray(values) << time_ns;
+  };
+  row("axes in another order", "timestamp_ns,gyro_z,gyro_y,gyro_x,acc_z,acc_y,acc_x", "7,0.3,0.2,0.1,9.5,2,1",
+      7);
+  row("axes mixed", "t_us,ay,gx,az,gy,ax,gz", "7,2,0.1,9.5,0.2,1,0.3", 7000);
+  row("a stranger between", "timestamp_ns,accuracy,ax,ay,az,gx,gy,gz", "7,3,1,2,9.5,0.1,0.2,0.3", 7);
+  row("covariances",
+      "stamp_ns,angular_velocity.x,angular_velocity.y,angular_velocity.z,angular_velocity_covariance0,"
+      "linear_acceleration.x,linear_acceleration.y,linear_acceleration.z,linear_acceleration_covariance0",
+      "7,0.1,0.2,0.3,5,1,2,9.5,6", 7);
+  row("VectorNav", "TimeStartup,UncompGyroX,UncompGyroY,UncompGyroZ,UncompAccX,UncompAccY,UncompAccZ",
+      "7,0.1,0.2,0.3,1,2,9.5", 7);
+  row("rate and specific force", "t_s,RateX,RateY,RateZ,FX,FY,FZ", "0.5,0.1,0.2,0.3,1,2,9.5", 500'000'000);
+  row("PX4",
+      "timestamp [us],gyro_rad[0],gyro_rad[1],gyro_rad[2],gyro_integral_dt,accelerometer_timestamp_relative,"
+      "accelerometer_m_s2[0],accelerometer_m_s2[1],accelerometer_m_s2[2],accelerometer_integral_dt",
+      "7,0.1,0.2,0.3,5000,0,1,2,9.5,5000", 7000);
+  row("MAVLink", "time_us,xacc,yacc,zacc,xgyro,ygyro,zgyro,xmag,ymag,zmag", "7,1,2,9.5,0.1,0.2,0.3,4,5,6",
+      7000);
+  row("numbered from 1", "t_us,acc1,acc2,acc3,gyr1,gyr2,gyr3", "7,1,2,9.5,0.1,0.2,0.3", 7000);
+  row("seconds and nanoseconds", "stamp_secs,stamp_nsecs,gyro_x,gyro_y,gyro_z,acc_x,acc_y,acc_z",
+      "1700000000,5,0.1,0.2,0.3,1,2,9.5", 1'700'000'000'000'000'005);
+  row("ROS 2's parts", "header.stamp.sec,header.stamp.nanosec,gx,gy,gz,ax,ay,az", "3,7,0.1,0.2,0.3,1,2,9.5",
+      3'000'000'007);
+  row("the header's stamp before the bag's",
+      "%time,field.header.stamp,field.header.frame_id,field.angular_velocity.x,"
+      "field.angular_velocity.y,field.angular_velocity.z,field.linear_acceleration.x,field.linear_"
+      "acceleration.y,"
+      "field.linear_acceleration.z",
+      "1700000000000000300,1700000000000000007,imu,0.1,0.2,0.3,1,2,9.5", 1'700'000'000'000'000'007);
+  row("dates", "time,ax,ay,az,gx,gy,gz", "2026-03-01T10:00:00.25Z,1,2,9.5,0.1,0.2,0.3",
+      1'772'359'200'250'000'000);
+  row("dates of another zone", "time,ax,ay,az,gx,gy,gz", "2026-03-01 11:30:00.25+01:30,1,2,9.5,0.1,0.2,0.3",
+      1'772'359'200'250'000'000);
+  row("decimal commas", "t_s;ax;ay;az;gx;gy;gz", "0,5;1,0;2,0;9,5;0,1;0,2;0,3", 500'000'000);
+  row("decimal commas and tabs", "t_s\tax\tay\taz\tgx\tgy\tgz", "0,5\t1\t2\t9,5\t0,1\t0,2\t0,3", 500'000'000);
+  row("comments above",
+      "// Start Time: Unknown\n// Sample rate: "
+      "200.0Hz\nPacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z",
+      "0,7,1,2,9.5,0.1,0.2,0.3", 700'000);
+  row("byte order mark and sep", "\xEF\xBB\xBFsep=;\nt_us;ax;ay;az;gx;gy;gz", "7;1;2;9.5;0.1;0.2;0.3", 7000);
+  row("quoted, and an index", "\"\",\"t_us\",\"ax\",\"ay\",\"az\",\"gx\",\"gy\",\"gz\"",
+      "0,7,1,2,9.5,0.1,0.2,0.3", 7000);
+  row("units apart from names", "# t [us] ax [m/s^2] ay [m/s^2] az [m/s^2] gx [rad/s] gy [rad/s] gz [rad/s]",
+      "7 1 2 9.5 0.1 0.2 0.3", 7000);
+  row("milli-g and deg/s", "t_us,ax_mg,ay_mg,az_mg,gx_dps,gy_dps,gz_dps",
+      "7,101.97162129779282,203.94324259558565,968.7304023290318,5.729577951308232,11.459155902616464,17."
+      "188733853924695",
+      7000);
+}
+
+void TestTextRecording::imuColumns_areToldByName() {
+  QFETCH(QByteArray, header);
+  QFETCH(QByteArray, row);
+  QFETCH(qlonglong, time_ns);
+  writeFile(path("named.csv"), (header + "\n" + row + "\n").toStdString());
+  const auto reader = openRecording(path("named.csv"));
+  const Recording read = readRecording(*reader);
+  QCOMPARE(read.imu_samples.size(), std::size_t{1});
+  const ImuSample& sample = read.imu_samples[0];
+  QCOMPARE(qlonglong(sample.time_ns), time_ns);
+  QVERIFY((sample.specific_force_m_s2 - Eigen::Vector3d(1.0, 2.0, 9.5)).norm() < 1e-9);
+  QVERIFY((sample.angular_rate_rad_s - Eigen::Vector3d(0.1, 0.2, 0.3)).norm() < 1e-9);
+}
+
+// The same two events each: (300, 200, on) at 5 us, then (301, 7, off).
+void TestTextRecording::eventColumns_areToldByName_data() {
+  QTest::addColumn<QByteArray>("text");
+  const auto row = [](const char* name, const char* text) { QTest::newRow(name) << QByteArray(text); };
+  row("extra columns", "x,y,x_flow,t_us,confidence,p\n300,200,0.5,5,1,1\n301,7,0.5,6,1,0\n");
+  row("types of OpenMV", "type,sec,ms,us,x,y\n1,0,0,5,300,200\n2,0,0,5,0,0\n0,0,0,6,301,7\n4,0,0,9,0,0\n");
+  row("words", "event_type;pos_x;pos_y;time [us]\n1;300;200;5\n0;301;7;6\n");
+  row("text beside", "t_us,source,x,y,pol\n5,left,300,200,1\n6,left,301,7,-1\n");
+}
+
+void TestTextRecording::eventColumns_areToldByName() {
+  QFETCH(QByteArray, text);
+  writeFile(path("events_named.csv"), text.toStdString());
+  const auto reader = openRecording(path("events_named.csv"));
+  const Recording read = readRecording(*reader);
+  QCOMPARE(read.events.size(), std::size_t{2});
+  QVERIFY(read.events[0].time_ns == 5000 && read.events[0].x_px == 300 && read.events[0].y_px == 200);
+  QVERIFY(read.events[0].brighter && !read.events[1].brighter && read.events[1].x_px == 301);
+  const bool has_triggers = text.startsWith("type");
+  QCOMPARE(reader->faults().size(), has_triggers ? std::size_t{1} : std::size_t{0});
+  if (has_triggers) QVERIFY(reader->faults()[0].text.starts_with("2 lines are left out"));
+}
+
+void TestTextRecording::namesThatDoNotTell_areRefused_data() {
+  QTest::addColumn<QByteArray>("text");
+  QTest::addColumn<QByteArray>("problem");
+  QTest::addColumn<QByteArray>("line");
+  const auto row = [](const char* name, const char* text, const char* problem, const char* line) {
+    QTest::newRow(name) << QByteArray(text) << QByteArray(problem) << QByteArray(line);
+  };
+  row("no gyroscope", "t_us,ax,ay,az,b1,b2,b3\n7,1,2,9.5,1,2,3\n", "no gyroscope", "t_us,ax,ay,az,?,?,?");
+  row("no times", "n_samples,gyr_x,gyr_y,gyr_z,acc_x,acc_y,acc_z\n0,1,2,3,0.1,0.2,9.8\n1,1,2,3,0.1,0.2,9.8\n",
+      "no column of times", nullptr);
+  row("two accelerometers",
+      "t_us,low_acc_x,low_acc_y,low_acc_z,high_acc_x,high_acc_y,high_acc_z,gx,gy,gz\n7,1,2,9,1,2,9,1,2,3\n",
+      "more than one accelerometer: low_acc_x, high_acc_x", "t_us,ax,ay,az,-,-,-,gx,gy,gz");
+  row("an axis twice", "t_us,ax,ax,az,gx,gy,gz\n7,1,2,9.5,1,2,3\n",
+      "three columns x, y and z of the accelerometer", "");
+  row("an unknown unit", "t_us,ax [lsb],ay [lsb],az [lsb],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "not known: lsb", "");
+  row("different units", "t_us,ax [g],ay [g],az [mg],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "different units", "");
+  row("a name too few", "t_us,ax,ay,az,gx,gy\n7,1,2,9.5,1,2,3\n", "6 names, but its lines have 7", "");
+  row("no polarity", "t_us,x,y,z\n7,1,2,9\n", "neither polarity (events) nor point", "t_us,x,y,?");
+  row("no header, no gravity", "0.001,1,2,3,0.1,5.8,0.2\n0.002,1,2,3,0.1,5.8,0.2\n", "numbers do not show",
+      "t_s,ax,ay,az,gx,gy,gz");
+}
+
+void TestTextRecording::namesThatDoNotTell_areRefused() {
+  QFETCH(QByteArray, text);
+  QFETCH(QByteArray, problem);
+  QFETCH(QByteArray, line);
+  writeFile(path("unclear.csv"), text.toStdString());
+  try {
+    openRecording(path("unclear.csv"));
+    QFAIL("it was opened");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QByteArray(error.what()).contains(problem), error.what());
+    if (!line.isNull()) QVERIFY2(QByteArray(error.what()).contains("columns: \"" + line), error.what());
+  }
+}
+
+void TestTextRecording::sessionsColumns_countInstead() {
+  writeFile(path("wrong.csv"), "t_us,ax,ay,az,gx,gy,gz\n7,0.1,0.2,0.3,2,1,9.5\n");
+  const auto reader = openRecording(path("wrong.csv"), {{"wrong.csv", "t_ms,gx,gy,gz,ay,ax,az"}});
+  const Recording read = readRecording(*reader);
+  QCOMPARE(read.imu_samples.size(), std::size_t{1});
+  QCOMPARE(qlonglong(read.imu_samples[0].time_ns), qlonglong(7'000'000));
+  QVERIFY((read.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(1, 2, 9.5)));
+  QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(0.1, 0.2, 0.3)));
+  writeFile(path("no_text.npy"), "\x93NUMPY");
+  QVERIFY_EXCEPTION_THROWN(openRecording(path("no_text.npy"), {{"events", "t,x,y,p"}}), CalibrationError);
+}
+
+void TestTextRecording::doubtfulUnitOfTime_isSaid() {
+  std::string text = "t_us,ax,ay,az,gx,gy,gz\n";  // which are ms
+  for (int i = 0; i < 50; ++i) text += std::to_string(5 * i) + ",0,0,9.8,1,2,3\n";
+  writeFile(path("ms.csv"), text);
+  const auto reader = openRecording(path("ms.csv"));
+  QCOMPARE(reader->faults().size(), std::size_t{1});
+  QVERIFY2(reader->faults()[0].text.find("In ms there would be 200") != std::string::npos,
+           reader->faults()[0].text.c_str());
 }
 
 EVICAL_TEST(TestTextRecording)

@@ -1,0 +1,347 @@
+#include "core/recording/column_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <span>
+#include <vector>
+
+namespace evical {
+namespace {
+
+using Words = std::vector<std::string>;
+using Known = std::span<const std::string_view>;
+
+constexpr std::string_view kAccelerationWords[] = {
+    "acc",    "accel", "accels", "accelerometer", "accelerometers", "acceleration", "accelerations", "force",
+    "forces", "a",     "f"};
+constexpr std::string_view kRateWords[] = {
+    "gyro", "gyr",    "gyros",           "gyroscope",   "gyroscopes",   "omega", "angular",
+    "ang",  "angvel", "angularvelocity", "angularrate", "rotationrate", "rate",  "rates",
+    "w",    "g"};
+// Of columns that name a sensor, but hold something else of it.
+constexpr std::string_view kOtherWords[] = {
+    "covariance", "cov",          "variance", "var",         "std",         "stddev",     "bias", "biases",
+    "delta",      "dt",           "integral", "orientation", "quat",        "quaternion", "mag",  "magn",
+    "magnet",     "magnetometer", "magnetic", "temp",        "temperature", "accuracy",   "user", "gravity",
+    "relative",   "status",       "offset",   "scale",       "clipping",    "attitude",   "pose", "position",
+    "count",      "id",           "exposure", "duration",    "interval",    "jerk"};
+// Where one of these is, the column is a time, whatever sensor it is of.
+constexpr std::string_view kStampWords[] = {"time",  "times",  "timestamp", "timestamps",
+                                            "stamp", "stamps", "datetime"};
+constexpr std::string_view kTimeWords[] = {"time",    "times",    "timestamp",  "timestamps",   "stamp",
+                                           "stamps",  "datetime", "t",          "ts",           "sec",
+                                           "secs",    "second",   "seconds",    "nsec",         "nsecs",
+                                           "nanosec", "nanosecs", "nanosecond", "nanoseconds",  "ns",
+                                           "usec",    "usecs",    "microsec",   "microseconds", "us",
+                                           "msec",    "msecs",    "millisec",   "milliseconds", "ms",
+                                           "millis",  "micros"};
+// What may stand beside the x of an event.
+constexpr std::string_view kPlaceWords[] = {"event", "events", "ev",     "pos", "coord", "coords",
+                                            "px",    "pixel",  "pixels", "pix", "addr",  "field"};
+constexpr std::string_view kPolarityWords[] = {"p", "pol", "ps", "pols", "polarity", "polarities", "on"};
+constexpr std::string_view kPointWords[] = {"point", "circle", "corner"};
+constexpr std::string_view kSigmaWords[] = {"sigma", "std"};
+constexpr std::string_view kUnitWords[] = {
+    "m",   "s",    "s2",  "2",    "sec", "sec2", "ms2", "mps2", "mss", "g",       "mg",      "rad", "rads",
+    "deg", "degs", "dps", "mdps", "per", "px",   "ns",  "us",   "ms",  "degrees", "radians", "1"};
+
+bool isIn(std::string_view word, Known known) {
+  return std::find(known.begin(), known.end(), word) != known.end();
+}
+bool hasOne(const Words& words, Known known) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return isIn(word, known); });
+}
+bool has(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool isUpper(char c) {
+  return std::isupper(static_cast<unsigned char>(c)) != 0;
+}
+bool isLower(char c) {
+  return std::islower(static_cast<unsigned char>(c)) != 0;
+}
+bool isDigit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+bool isWordLetter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+// In lower case; "GyroX" becomes "gyro x", and "covariance0" "covariance 0".
+std::string spaced(std::string_view name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool camel = i > 0 && isUpper(name[i]) && isLower(name[i - 1]);
+    // Not within units ("s2"), nor within "x0": three letters make a word.
+    const bool number = i > 2 && isDigit(name[i]) && isWordLetter(name[i - 1]) && !isDigit(name[i - 1]) &&
+                        isWordLetter(name[i - 2]) && isWordLetter(name[i - 3]) && !isDigit(name[i - 2]);
+    if (camel || number) text += ' ';
+    text += static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
+  }
+  return text;
+}
+
+Words wordsOf(std::string_view text) {
+  Words words(1);
+  for (const char c : text) {
+    if (isWordLetter(c))
+      words.back() += c;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+int axisOf(std::string_view word) {
+  constexpr std::string_view kAxes[] = {"x", "y", "z"};
+  const auto found = std::find(std::begin(kAxes), std::end(kAxes), word);
+  return found == std::end(kAxes) ? -1 : static_cast<int>(found - std::begin(kAxes));
+}
+
+// Only letters and digits, so that "m/s^2", "m s^-2" and "m_s2" are one.
+std::string plainUnit(std::string_view unit) {
+  std::string plain;
+  for (const char c : replaced(replaced(std::string(unit), "\xC2\xB0", "deg"), "\xC2\xB2", "2"))
+    if (isWordLetter(c)) plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return plain;
+}
+
+// Takes "[...]" and "(...)" out of `text`: units, or an axis, which stays.
+std::string takeBrackets(std::string& text) {
+  std::string unit;
+  for (std::size_t begin = text.find_first_of("[("); begin != std::string::npos;
+       begin = text.find_first_of("[(", begin)) {
+    const std::size_t end = std::min(text.find_first_of("])", begin), text.size());
+    const std::string inside = text.substr(begin + 1, end - begin - 1);
+    const Words words = wordsOf(inside);
+    const bool is_axis =
+        words.size() == 1 && (axisOf(words[0]) >= 0 || (words[0].size() == 1 && isDigit(words[0][0])));
+    if (!is_axis) unit = inside;
+    text.replace(begin, std::min(end + 1, text.size()) - begin, is_axis ? " " + words[0] : "");
+  }
+  return unit;
+}
+
+// "ax" and "accx" become "a x" and "acc x"; so do "xacc" and "xgyro", as autopilots write them.
+void splitAxes(Words& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string word = words[i];
+    if (word.size() < 2 || isIn(word, kAccelerationWords) || isIn(word, kRateWords)) continue;
+    const std::string front = word.substr(0, word.size() - 1), back = word.substr(1);
+    const auto isSensor = [](const std::string& w) {
+      return isIn(w, kAccelerationWords) || isIn(w, kRateWords);
+    };
+    if (axisOf(word.substr(word.size() - 1)) >= 0 && isSensor(front)) {
+      words[i] = front;
+      words.insert(words.begin() + static_cast<std::ptrdiff_t>(i) + 1, word.substr(word.size() - 1));
+    } else if (back.size() > 1 && axisOf(word.substr(0, 1)) >= 0 && isSensor(back)) {
+      words[i] = back;
+      words.insert(words.begin() + static_cast<std::ptrdiff_t>(i) + 1, word.substr(0, 1));
+    }
+  }
+}
+
+// Takes the axis off the words: the last letter that is one, else the last digit.
+void takeAxis(Words& words, ColumnName& column) {
+  const auto take = [&](auto isAxis, auto number) {
+    const auto found = std::find_if(words.rbegin(), words.rend(), isAxis);
+    if (found == words.rend()) return false;
+    column.axis = number(*found);
+    words.erase(std::next(found).base());
+    return true;
+  };
+  column.lettered = take([](const std::string& w) { return axisOf(w) >= 0; },
+                         [](const std::string& w) { return axisOf(w); });
+  if (!column.lettered)
+    take([](const std::string& w) { return w.size() == 1 && w[0] >= '0' && w[0] <= '3'; },
+         [](const std::string& w) { return w[0] - '0'; });
+}
+
+// The words at the end that are a unit of this kind, and no part of a name.
+std::string takeUnit(Words& words, ColumnKind kind) {
+  const auto isUnit = [kind](const std::string& unit) {
+    return kind == ColumnKind::AngularRate ? angularRateUnitOf(unit).has_value()
+                                           : accelerationUnitOf(unit).has_value();
+  };
+  std::size_t count = 0;
+  while (count + 1 < words.size() && isIn(words[words.size() - 1 - count], kUnitWords)) ++count;
+  for (; count > 0; --count) {
+    std::string unit;
+    for (std::size_t i = words.size() - count; i < words.size(); ++i) unit += words[i];
+    if (!isUnit(unit)) continue;
+    words.resize(words.size() - count);
+    return unit;
+  }
+  return {};
+}
+
+std::string joinedWords(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : "_") + word;
+  return text;
+}
+
+// Whose component a vector's column is; Other if it is none of an IMU's.
+ColumnKind vectorKind(const Words& words) {
+  if (hasOne(words, kOtherWords)) return ColumnKind::Other;
+  if (has(words, "alpha")) return ColumnKind::Alpha;
+  // The first word decides: in "acc_g_x", g is the unit.
+  for (const std::string& word : words) {
+    if (isIn(word, kAccelerationWords)) return ColumnKind::Acceleration;
+    if (!isIn(word, kRateWords)) continue;
+    const bool acceleration = has(words, "acceleration") || has(words, "acc") || has(words, "accel");
+    return acceleration ? ColumnKind::Other : ColumnKind::AngularRate;
+  }
+  return ColumnKind::Other;
+}
+
+ColumnKind plainKind(const Words& words) {
+  const auto onlyBeside = [&](std::string_view word) {
+    return has(words, word) && std::all_of(words.begin(), words.end(), [&](const std::string& other) {
+             return other == word || isIn(other, kPlaceWords);
+           });
+  };
+  if (onlyBeside("x") || onlyBeside("xs")) return ColumnKind::X;
+  if (onlyBeside("y") || onlyBeside("ys")) return ColumnKind::Y;
+  if (words.empty()) return ColumnKind::Other;
+  if (hasOne(words, kTimeWords) && !hasOne(words, kOtherWords)) return ColumnKind::Time;
+  if (isIn(words.back(), kPolarityWords)) return ColumnKind::Polarity;
+  if (words.back() == "type" && (words.size() == 1 || words[0] == "event")) return ColumnKind::EventType;
+  if (isIn(words.front(), kPointWords)) return ColumnKind::Point;
+  if (isIn(words.front(), kSigmaWords)) return ColumnKind::Sigma;
+  return ColumnKind::Other;
+}
+
+// One of the three columns of a vector; nothing if it is none.
+std::optional<ColumnName> vectorColumn(Words words, const std::string& unit) {
+  splitAxes(words);
+  ColumnName column;
+  column.kind = vectorKind(words);
+  if (column.kind == ColumnKind::Other) return std::nullopt;
+  takeAxis(words, column);
+  if (column.axis < 0) return std::nullopt;
+  const std::string written = takeUnit(words, column.kind);
+  column.unit = unit.empty() ? written : unit;
+  column.group = joinedWords(words);
+  return column;
+}
+
+// "t_us" is a time with a unit; "stamp_nsecs" has the unit in its only word for time.
+std::string timeUnitIn(const Words& words) {
+  if (has(words, "fine") && has(words, "time")) return "100us";  // Xsens' SampleTimeFine
+  if (has(words, "startup") && has(words, "time")) return "ns";  // VectorNav's TimeStartup
+  return words.size() > 0 && timeUnitNamed(words.back()) ? words.back() : "";
+}
+
+template <class Unit>
+struct UnitSpelling {
+  std::string_view plain;
+  ScaledUnit<Unit> unit;
+};
+
+constexpr UnitSpelling<AccelerationUnit> kAccelerationSpellings[] = {
+    {"ms2", {AccelerationUnit::MetresPerSecond2}},
+    {"msec2", {AccelerationUnit::MetresPerSecond2}},
+    {"mps2", {AccelerationUnit::MetresPerSecond2}},
+    {"mss", {AccelerationUnit::MetresPerSecond2}},
+    {"mpers2", {AccelerationUnit::MetresPerSecond2}},
+    {"mpersec2", {AccelerationUnit::MetresPerSecond2}},
+    {"g", {AccelerationUnit::Gravity}},
+    {"gs", {AccelerationUnit::Gravity}},
+    {"gn", {AccelerationUnit::Gravity}},
+    {"mg", {AccelerationUnit::Gravity, 1e-3}},
+    {"millig", {AccelerationUnit::Gravity, 1e-3}},
+    {"mms2", {AccelerationUnit::MetresPerSecond2, 1e-3}},
+    {"cms2", {AccelerationUnit::MetresPerSecond2, 1e-2}}};
+
+constexpr UnitSpelling<AngularRateUnit> kRateSpellings[] = {
+    {"rads", {AngularRateUnit::RadiansPerSecond}},
+    {"rads1", {AngularRateUnit::RadiansPerSecond}},
+    {"rad", {AngularRateUnit::RadiansPerSecond}},
+    {"radsec", {AngularRateUnit::RadiansPerSecond}},
+    {"radps", {AngularRateUnit::RadiansPerSecond}},
+    {"radpersec", {AngularRateUnit::RadiansPerSecond}},
+    {"radians", {AngularRateUnit::RadiansPerSecond}},
+    {"radianss", {AngularRateUnit::RadiansPerSecond}},
+    {"radianspersecond", {AngularRateUnit::RadiansPerSecond}},
+    {"mrads", {AngularRateUnit::RadiansPerSecond, 1e-3}},
+    {"degs", {AngularRateUnit::DegreesPerSecond}},
+    {"degs1", {AngularRateUnit::DegreesPerSecond}},
+    {"deg", {AngularRateUnit::DegreesPerSecond}},
+    {"degsec", {AngularRateUnit::DegreesPerSecond}},
+    {"dps", {AngularRateUnit::DegreesPerSecond}},
+    {"degps", {AngularRateUnit::DegreesPerSecond}},
+    {"degpersec", {AngularRateUnit::DegreesPerSecond}},
+    {"degrees", {AngularRateUnit::DegreesPerSecond}},
+    {"degreess", {AngularRateUnit::DegreesPerSecond}},
+    {"degreessec", {AngularRateUnit::DegreesPerSecond}},
+    {"degreespersecond", {AngularRateUnit::DegreesPerSecond}},
+    {"mdps", {AngularRateUnit::DegreesPerSecond, 1e-3}},
+    {"mdegs", {AngularRateUnit::DegreesPerSecond, 1e-3}},
+    {"degh", {AngularRateUnit::DegreesPerSecond, 1.0 / 3600.0}}};
+
+template <class Unit, std::size_t N>
+std::optional<ScaledUnit<Unit>> spelled(std::string_view unit, const UnitSpelling<Unit> (&spellings)[N]) {
+  const std::string plain = plainUnit(unit);
+  const auto found =
+      std::find_if(std::begin(spellings), std::end(spellings),
+                   [&](const UnitSpelling<Unit>& spelling) { return spelling.plain == plain; });
+  return found == std::end(spellings) ? std::nullopt : std::optional(found->unit);
+}
+
+}  // namespace
+
+std::optional<ScaledUnit<AccelerationUnit>> accelerationUnitOf(std::string_view unit) {
+  return spelled(unit, kAccelerationSpellings);
+}
+
+std::optional<ScaledUnit<AngularRateUnit>> angularRateUnitOf(std::string_view unit) {
+  return spelled(unit, kRateSpellings);
+}
+
+std::optional<std::int64_t> timeUnitNamed(std::string_view unit) {
+  struct Spelling {
+    std::int64_t unit_ns;
+    std::array<std::string_view, 8> names;
+  };
+  constexpr Spelling kUnits[] = {
+      {1, {"ns", "nsec", "nsecs", "nanosec", "nanosecs", "nanosecond", "nanoseconds"}},
+      {1000, {"us", "usec", "usecs", "microsec", "microseconds", "micros", "\xC2\xB5s"}},
+      {100'000, {"100us"}},
+      {1'000'000, {"ms", "msec", "msecs", "millisec", "milliseconds", "millis"}},
+      {1'000'000'000, {"s", "sec", "secs", "second", "seconds"}}};
+  for (const Spelling& spelling : kUnits)
+    if (!unit.empty() &&
+        std::find(spelling.names.begin(), spelling.names.end(), unit) != spelling.names.end())
+      return spelling.unit_ns;
+  return std::nullopt;
+}
+
+ColumnName columnNamed(std::string_view name) {
+  std::string text = spaced(name);
+  const std::string unit = takeBrackets(text);
+  const Words words = wordsOf(text);
+  if (!hasOne(words, kStampWords))
+    if (std::optional<ColumnName> column = vectorColumn(words, unit)) return *column;
+  ColumnName column;
+  column.kind = plainKind(words);
+  column.unit = unit;
+  Words rest = words;
+  if (column.kind == ColumnKind::Time) {
+    if (unit.empty()) column.unit = timeUnitIn(words);
+    while (!rest.empty() && timeUnitNamed(rest.back())) rest.pop_back();
+  }
+  column.group = joinedWords(rest);
+  return column;
+}
+
+}  // namespace evical
