@@ -2,10 +2,10 @@
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
-#include "core/geometry/aruco_library.h"
 #include "core/geometry/charuco_layout.h"
 
 #include <fmt/format.h>
+#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -22,16 +22,21 @@ const char* nameOf(MarkerFamily family) {
   return kNames.at(static_cast<std::size_t>(family));
 }
 
+// OpenCV 4.7 and later hand it out by value.
+cv::Ptr<cv::aruco::Dictionary> predefined(int set) {
+  return cv::makePtr<cv::aruco::Dictionary>(cv::aruco::getPredefinedDictionary(set));
+}
+
 // The first markers of a family: its smaller sets are the beginnings of its larger ones, and a set that holds
 // no more than the board needs takes less for a marker that is none.
 cv::Ptr<cv::aruco::Dictionary> dictionaryOf(MarkerFamily family, int markers) {
-  if (family == MarkerFamily::Original) return aruco::dictionary(cv::aruco::DICT_ARUCO_ORIGINAL);
+  if (family == MarkerFamily::Original) return predefined(cv::aruco::DICT_ARUCO_ORIGINAL);
   constexpr int kSetsOfFamily = 4;
   constexpr std::array<int, kSetsOfFamily> kSizes = {50, 100, 250, 1000};
   int set = 0;
   while (set + 1 < kSetsOfFamily && kSizes.at(static_cast<std::size_t>(set)) < markers) ++set;
   const int first = (static_cast<int>(family) - static_cast<int>(MarkerFamily::Of4x4)) * kSetsOfFamily;
-  return aruco::dictionary(cv::aruco::DICT_4X4_50 + first + set);
+  return predefined(cv::aruco::DICT_4X4_50 + first + set);
 }
 
 struct SeenMarker {

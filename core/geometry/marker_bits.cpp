@@ -1,9 +1,9 @@
 #include "core/geometry/marker_bits.h"
 
 #include "core/base/error.h"
-#include "core/geometry/aruco_library.h"
 
 #include <fmt/format.h>
+#include <opencv2/aruco.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,11 @@ namespace {
 PatternBits bitsOf(const cv::aruco::Dictionary& dictionary, int id) {
   const int size = dictionary.markerSize;
   cv::Mat picture;
-  aruco::drawMarker(dictionary, id, size + 2, picture);
+#if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR < 407
+  dictionary.drawMarker(id, size + 2, picture);
+#else
+  cv::aruco::generateImageMarker(dictionary, id, size + 2, picture);
+#endif
   PatternBits bits;
   for (int y = 0; y < size; ++y) {
     bits.emplace_back();
@@ -31,7 +35,9 @@ cv::Ptr<cv::aruco::Dictionary> dictionaryOf(const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw badInput("markers", "'" + name + "' is no dictionary", "Use 4x4, 5x5, 6x6, 7x7 or original");
-  return aruco::dictionary(kSets.at(static_cast<std::size_t>(found - names.begin())));
+  // OpenCV 4.7 and later hand it out by value.
+  return cv::makePtr<cv::aruco::Dictionary>(
+      cv::aruco::getPredefinedDictionary(kSets.at(static_cast<std::size_t>(found - names.begin()))));
 }
 
 }  // namespace

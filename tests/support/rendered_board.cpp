@@ -1,10 +1,10 @@
 #include "tests/support/rendered_board.h"
 
-#include "core/geometry/aruco_library.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/charuco_layout.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
+#include "tests/support/aruco_library.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
@@ -80,12 +80,12 @@ Pattern tagGrid(const PrintedBoard& printed) {
 
 Pattern charuco(const PrintedBoard& printed) {
   const Board board = printed.board;
-  const auto dictionary = aruco::dictionary(printed.dictionary);
+  const auto dictionary = test::aruco::dictionary(printed.dictionary);
   const int cells = dictionary->markerSize + 2;
   std::map<std::pair<int, int>, cv::Mat> markers;
   int id = 0;
   for (const BoardSquare& square : charucoMarkers(board, printed.first_is_bright))
-    aruco::drawMarker(*dictionary, id++, cells, markers[{square.row, square.col}]);
+    test::aruco::drawMarker(*dictionary, id++, cells, markers[{square.row, square.col}]);
   return [board, markers, cells](const Eigen::Vector2d& at) {
     const int col = floorOf(at.x() / board.spacing_m) + 1, row = floorOf(at.y() / board.spacing_m) + 1;
     if (col < 0 || row < 0 || col >= board.cols || row >= board.rows) return 1.0;

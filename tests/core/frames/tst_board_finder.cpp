@@ -4,8 +4,8 @@
 #include "core/frames/board_finder.h"
 #include "core/frames/ideal_views.h"
 #include "core/frames/views_from_frames.h"
-#include "core/geometry/aruco_library.h"
 #include "core/geometry/camera_model.h"
+#include "tests/support/aruco_library.h"
 #include "tests/support/rendered_board.h"
 #include "tests/support/test_program.h"
 
@@ -273,8 +273,8 @@ void TestBoardFinder::wrongNumbers_areDoubted() {
 void TestBoardFinder::drawingOfOpenCv_isFound() {
   for (const int rows : {5, 6}) {
     cv::Mat picture;
-    aruco::drawCharucoBoard(aruco::dictionary(cv::aruco::DICT_6X6_250), {8, rows}, 0.04F, 0.03F,
-                            {640, 80 * rows}, picture);
+    test::aruco::drawCharucoBoard(test::aruco::dictionary(cv::aruco::DICT_6X6_250), {8, rows}, 0.04F, 0.03F,
+                                  {640, 80 * rows}, picture);
     cv::copyMakeBorder(picture, picture, 40, 40, 40, 40, cv::BORDER_CONSTANT, 255);
     GrayImage image{{picture.cols, picture.rows}, {}};
     image.pixels.assign(picture.datastart, picture.dataend);

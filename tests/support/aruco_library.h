@@ -7,7 +7,7 @@
 #include <opencv2/aruco/charuco.hpp>
 #endif
 
-namespace evical::aruco {
+namespace evical::test::aruco {
 
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
 inline cv::Ptr<cv::aruco::Dictionary> dictionary(int set) {
@@ -37,4 +37,4 @@ inline void drawCharucoBoard(const cv::Ptr<cv::aruco::Dictionary>& dictionary, c
 }
 #endif
 
-}  // namespace evical::aruco
+}  // namespace evical::test::aruco
