@@ -97,6 +97,7 @@ struct BoardObservations {
   BoardExtent extent;
   std::uint64_t events = 0;                          // read; or frames, or points
   std::optional<PolarityDelay> polarity_delay = {};  // of events, where speeds differ enough to tell
+  double stamp_step_s = 0.0;  // of events whose time stamps are rounded; 0: they are fine
 };
 
 }  // namespace evical

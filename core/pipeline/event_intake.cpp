@@ -18,6 +18,7 @@ std::optional<CameraBatch> EventIntake::take(std::vector<Event>& events) {
     if (use_ == EventUse::Bursts) extractor_.emplace(resolution_px_, burst_options_);
   }
   count_ += events.size();
+  stamp_step_.add(events);
   batch.camera = camera_;
   batch.first_event_ns = events.front().time_ns;
   batch.complete_until_ns = last_ns_ = events.back().time_ns;
@@ -48,6 +49,12 @@ void EventIntake::report(std::vector<RecordingFault>& faults) const {
     faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
                       fmt::format("{}: time runs backwards: {} events left out", session_.stream, late_)});
   }
+  if (const double step_s = stampStep_s(); step_s > 0.0)
+    faults.push_back(
+        {session_.stream, FaultKind::Encoding, 0.0,
+         fmt::format(
+             "{}: time stamps of events step by {:.3g} ms, so the time offset is uncertain by half of that",
+             session_.stream, 1e3 * step_s)});
   if (outside_ > 0) {
     faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
                       fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,

@@ -7,6 +7,7 @@
 #include "core/frontend/edge_bursts.h"
 #include "core/pipeline/camera_batch.h"
 #include "core/pipeline/session.h"
+#include "core/recording/stamp_step.h"
 
 #include <cstdint>
 #include <limits>
@@ -32,6 +33,7 @@ class EventIntake {
   std::optional<CameraBatch> finish();
 
   std::uint64_t eventCount() const { return count_; }
+  double stampStep_s() const { return stamp_step_.step_s(); }
   void report(std::vector<RecordingFault>& faults) const;
 
  private:
@@ -43,6 +45,7 @@ class EventIntake {
   Resolution resolution_px_;
   EventUse use_;
   std::uint64_t count_ = 0;  // handed on
+  StampStep stamp_step_;
   std::optional<BurstExtractor> extractor_;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;

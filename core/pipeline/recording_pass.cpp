@@ -142,6 +142,10 @@ class ReadingPass {
     const Intake& intake = intakes_[camera];
     return intake.events ? intake.events->eventCount() : intake.count;
   }
+  double stampStep_s(std::size_t camera) const {
+    const Intake& intake = intakes_[camera];
+    return intake.events ? intake.events->stampStep_s() : 0.0;
+  }
   CameraKind kind(std::size_t camera) const { return intakes_[camera].kind; }
 
  private:
@@ -268,6 +272,7 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     result.cameras[k].kind = reading.kind(k);
     result.cameras[k].events = reading.count(k);
+    result.cameras[k].stamp_step_s = reading.stampStep_s(k);
     if (result.cameras[k].events > 0) continue;
     throw badInput(
         session.recording.string(),

@@ -94,7 +94,7 @@ inline constexpr int kMembers<BoardExtent> = 2;
 template <>
 inline constexpr int kMembers<PolarityDelay> = 2;
 template <>
-inline constexpr int kMembers<BoardObservations> = 7;
+inline constexpr int kMembers<BoardObservations> = 8;
 template <>
 inline constexpr int kMembers<ImuNoise> = 4;
 template <>

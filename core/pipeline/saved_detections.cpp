@@ -53,6 +53,7 @@ std::string cameraYaml(const SessionCamera& camera, const RecordingPass& pass, s
       yamlText(camera.name), yamlText(camera.stream), kKinds.at(static_cast<std::size_t>(seen.kind)),
       seen.events, camera.clock_offset_s, size.width_px, size.height_px, endsYaml(seen.extent.rows),
       endsYaml(seen.extent.cols));
+  if (seen.stamp_step_s > 0.0) text += fmt::format("    stamp_step_s: {}\n", seen.stamp_step_s);
   if (seen.polarity_delay)
     text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
                         seen.polarity_delay->std_s);
@@ -115,6 +116,7 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
   seen.kind = static_cast<CameraKind>(map["kind"].choice(kKinds));
   seen.events = static_cast<std::uint64_t>(std::max<std::int64_t>(0, map["measurements"].nanoseconds()));
   seen.extent = {endsFrom(map["extent"]["rows"]), endsFrom(map["extent"]["cols"])};
+  if (const auto step = map.find("stamp_step_s")) seen.stamp_step_s = step->real();
   if (const auto delay = map.find("polarity_delay"))
     seen.polarity_delay = PolarityDelay{(*delay)["later_s"].real(), (*delay)["std_s"].real()};
   restored.pass.resolutions_px.push_back(checkedResolution(map, camera));

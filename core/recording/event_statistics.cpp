@@ -39,6 +39,7 @@ unsigned EventStatistics::rowsWith(unsigned y_px) {
 
 void EventStatistics::add(EventSpan events) {
   if (events.empty()) return;
+  stamp_step_.add(events);
   if (numbers_.count == 0) numbers_.first_ns = numbers_.last_ns = events.front().time_ns;
   const auto width = static_cast<unsigned>(counted_px_.width_px);
   auto height = static_cast<unsigned>(counted_px_.height_px);
@@ -103,6 +104,11 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
          fmt::format("{} events lie outside of {} x {} pixels.", outside_,
                      summary.info.resolution_px.width_px, summary.info.resolution_px.height_px)});
   }
+  if (const double step_s = stamp_step_.step_s(); step_s > 0.0)
+    faults.push_back(
+        {name, FaultKind::Encoding, 0.0,
+         fmt::format("The time stamps step by {:.3g} ms: a time offset is uncertain by half of that.",
+                     1e3 * step_s)});
   if (duration_s > 0.0) findHotPixels(duration_s, faults);
 }
 

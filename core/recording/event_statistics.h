@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/recording/inspection.h"
+#include "core/recording/stamp_step.h"
 
 #include <cstdint>
 #include <vector>
@@ -31,6 +32,7 @@ class EventStatistics {
   Resolution counted_px_;                    // of pixel_counts_: as many rows as events reached
   int most_rows_ = 0;
   std::uint64_t outside_ = 0;
+  StampStep stamp_step_;
 };
 
 }  // namespace evical

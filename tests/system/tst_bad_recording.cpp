@@ -34,6 +34,7 @@ class TestBadRecording : public QObject {
   void angularRates_inDegrees_areRecognised();
   void init_ofNoSession_writesNone_data();
   void init_ofNoSession_writesNone();
+  void coarseStamps_areSaid();
 };
 
 void TestBadRecording::recording_thatIsMissing_isNamed() {
@@ -245,6 +246,32 @@ void TestBadRecording::init_ofNoSession_writesNone() {
   VERIFY_OUTCOME(outcome, 2);
   VERIFY_SAYS(outcome, says);
   QCOMPARE(filesIn(folder.path()), before);
+}
+
+// Rounded stamps leave the time offset open, by as much as its sigma says, and that is the reason given.
+void TestBadRecording::coarseStamps_areSaid() {
+  QTemporaryDir folder;
+  for (const QString name : {"imu.txt", "session.yaml", "truth.yaml"})
+    QFile::copy(simulated("short") + "/" + name, folder.filePath(name));
+  QByteArray rounded;
+  for (const QByteArray& line : readFile(simulated("short") + "/events.txt").split('\n')) {
+    const qsizetype blank = line.indexOf(' ');
+    if (blank < 0) continue;
+    rounded += QByteArray::number(0.005 * std::floor(line.left(blank).toDouble() / 0.005), 'f', 3) +
+               line.mid(blank) + '\n';
+  }
+  writeFile(folder.filePath("events.txt"), rounded);
+  const Outcome inspected = runProgram({"inspect", folder.path()});
+  VERIFY_TEXT(inspected.output, "encoding: .*The time stamps step by 5 ms");
+  const QString out = folder.filePath("out");
+  const Outcome outcome = runProgram({"calibrate", folder.filePath("session.yaml"), "-o", out});
+  VERIFY_OUTCOME(outcome, 0);
+  VERIFY_TEXT(QString::fromUtf8(readFile(out + "/result.yaml")),
+              "status: doubtful\nreason: .*time stamps of left's events step by 5 ms");
+  const Outcome compared = runProgram({"compare", out + "/result.yaml", folder.filePath("truth.yaml")});
+  const auto match = QRegularExpression("left\\.time_offset.* (-?\\d+\\.\\d+)\\n").match(compared.output);
+  QVERIFY2(match.hasMatch(), qPrintable(compared.output));
+  QVERIFY2(std::abs(match.captured(1).toDouble()) < 2.0, qPrintable(compared.output));  // sigmas
 }
 
 EVICAL_TEST(TestBadRecording)

@@ -202,6 +202,16 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
                                  const QuantityCovariance& covariance, const QuantityCovariance& scale_known,
                                  const OptimisationOptions& options) {
   Observability result = Judge(input, state, scale_known, options).judge();
+  for (const CameraData& camera : input.cameras) {
+    const double uncertain_ms = 0.5e3 * camera.observations.stamp_step_s;
+    if (!options.judge_sigmas || input.imus.empty() || uncertain_ms <= options.needed_time_offset_ms)
+      continue;
+    addDoubt(fmt::format("the time stamps of {}'s events step by {:.3g} ms, which leaves its time offset "
+                         "open by {:.2g} ms "
+                         "(needed: {:.2g}): record the sensor's own stamps, in us",
+                         camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
+             result);
+  }
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const QuantityInfo& info = *covariance.quantities[i].info;
     if (info.need != QuantityNeed::Translation || !options.judge_sigmas) continue;

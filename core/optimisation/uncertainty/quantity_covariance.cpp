@@ -118,7 +118,8 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
 // Centres lie behind by a mean of what brightening and darkening edges do; which, to a quarter either way, is not known.
 double delayVariance_s2(const BoardObservations& seen, const OptimisationOptions& options) {
   constexpr double kShare = 0.25;
-  const double delay_s = 1e-3 * options.pixel_delay_ms;
+  // Rounded stamps are late or early by up to a step, all of them alike.
+  const double delay_s = std::hypot(1e-3 * options.pixel_delay_ms, 0.5 * seen.stamp_step_s);
   if (!seen.polarity_delay) return delay_s * delay_s;
   const double more_s = std::max(0.0, std::abs(seen.polarity_delay->later_s) - 1e-3 * options.slow_pixels_ms);
   return delay_s * delay_s + kShare * kShare * more_s * more_s;
