@@ -15,6 +15,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -209,11 +210,21 @@ ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const
   return best;
 }
 
+// Of the slower of the two sensors, whose samples a driver may repeat.
 double closestKnots_s(const ImuData& imu) {
-  std::vector<double> periods_s;
-  for (std::size_t i = 1; i < imu.samples.size(); ++i)
-    periods_s.push_back(secondsSince(imu.samples[i - 1].time_ns, imu.samples[i].time_ns));
-  return std::clamp(kLeastSamples_a_knot * medianOf(std::move(periods_s)), kClosestKnots_s, kWidestKnots_s);
+  const SampleSelection fit = fitSamples(imu.samples);
+  double period_s = 0.0;
+  for (const std::vector<std::uint8_t>* const taken : {&fit.gyroscope, &fit.accelerometer}) {
+    std::vector<double> periods_s;
+    std::optional<std::int64_t> last_ns;
+    for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+      if (!(*taken)[i]) continue;
+      if (last_ns) periods_s.push_back(secondsSince(*last_ns, imu.samples[i].time_ns));
+      last_ns = imu.samples[i].time_ns;
+    }
+    period_s = std::max(period_s, medianOf(std::move(periods_s)));
+  }
+  return std::clamp(kLeastSamples_a_knot * period_s, kClosestKnots_s, kWidestKnots_s);
 }
 
 KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,

@@ -75,6 +75,10 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed_data() {
   QTest::newRow("accelerometer at its limit")
       << Spoil([](Samples& samples) { clip(samples, &ImuSample::specific_force_m_s2, 11.0); })
       << "specific force . is at its limit of 11 ";
+  QTest::newRow("accelerometer held by the driver") << Spoil([](Samples& samples) {
+    for (std::size_t k = 0; k < samples.size(); ++k)
+      samples[k].specific_force_m_s2 = samples[k - k % 4].specific_force_m_s2;
+  }) << "The accelerometer measures at .* and its samples are repeated";
   QTest::newRow("gyroscope at its limit") << Spoil([](Samples& samples) {
     clip(samples, &ImuSample::angular_rate_rad_s, 0.8 * peakOf(samples, &ImuSample::angular_rate_rad_s));
   }) << "angular rate . is at its limit of ";
