@@ -1,4 +1,3 @@
-#include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/recording/column_guess.h"
 #include "core/recording/hdf5/ecf_decoder.h"
@@ -131,21 +130,19 @@ class EventRows : public EventTable {
   EventRows(hid_t file, const DatasetInfo& table, const std::string& place)
       : values_(file, table, H5T_NATIVE_DOUBLE, place) {
     time_.is_real = true;
-    const auto first = values_.numbersFrom(0);
-    const std::size_t count = std::min(first.size() / 4, kHeadRows);
     std::array<ColumnNumbers, 4> head;
-    for (std::size_t i = 0; i < 4 * count; ++i) head[i % 4].add(first[i], i < 4);
-    const bool empty = std::all_of(head.begin(), head.end(),
-                                   [](const ColumnNumbers& column) { return column.largest <= 0.0; });
-    if (!empty) chooseColumns(head, place + ": " + table.path);
+    const std::size_t count = readHead(head);
+    // Rows that are not there are the reader's to report.
+    const auto last = count == 0 ? std::span<const double>() : values_.numbersFrom(rows() - 1);
+    const bool is_empty = std::all_of(head.begin(), head.end(),
+                                      [](const ColumnNumbers& column) { return column.largest <= 0.0; });
+    if (last.empty() || is_empty) return;
+    chooseColumns(head);
     const ColumnNumbers& times = head[columns_.time];
-    const double first_time = times.first;
-    if (times.whole && count > 0) {
+    if (times.whole)
       time_.factor_ns = static_cast<double>(guessTimeUnit_ns(times, count));
-      return;
-    }
-    const auto last = rows() == 0 ? first : values_.numbersFrom(rows() - 1);
-    if (!last.empty()) chooseUnit(first_time, last[columns_.time], time_);
+    else
+      chooseUnit(times.first, last[columns_.time], time_);
   }
 
   std::uint64_t rows() const override { return values_.rows(); }
@@ -177,12 +174,18 @@ class EventRows : public EventTable {
   }
 
  private:
+  std::size_t readHead(std::array<ColumnNumbers, 4>& head) {
+    const auto first = values_.numbersFrom(0);
+    const std::size_t count = std::min(first.size() / 4, kHeadRows);
+    for (std::size_t i = 0; i < 4 * count; ++i) head[i % 4].add(first[i], i < 4);
+    return count;
+  }
+
   // MVSEC has x, y, t, p; v2e t, x, y, p.
-  void chooseColumns(const std::array<ColumnNumbers, 4>& head, const std::string& place) {
+  void chooseColumns(const std::array<ColumnNumbers, 4>& head) {
     const std::optional<EventColumns> found = guessEventColumns(head);
     if (!found)
-      throw badInput(place, "its four columns are not x, y, time and polarity of events in any order",
-                     "Save x, y, t and p as datasets of their own");
+      throw UnknownColumns("its four columns are not x, y, time and polarity of events in any order");
     columns_ = *found;
   }
 

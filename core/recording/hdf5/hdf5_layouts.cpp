@@ -188,15 +188,24 @@ class TableLayoutFinder {
 
   void addTable(const DatasetInfo& dataset) {
     if (dataset.name() == "events" && dataset.extent[1] == 4 && dataset.type_class != H5T_COMPOUND) {
-      FoundStream& stream = add(dataset.path, StreamType::Events, "rows of x, y, t, p");
-      stream.events = openEventRows(file_, dataset, place_);
-      finishEvents(dataset.folder(), stream);
+      addEventRows(dataset);
     }
     const DatasetInfo* times = findList(dataset.folder(), {"imu_ts"});
     if (dataset.name() == "imu" && dataset.extent[1] == 6 && times) {
       FoundStream& stream = add(dataset.path, StreamType::Imu, "imu, imu_ts");
       stream.imu = openImuRows(file_, *times, dataset, place_);
       finishImu(*times, stream);
+    }
+  }
+
+  void addEventRows(const DatasetInfo& dataset) {
+    try {
+      std::unique_ptr<EventTable> events = openEventRows(file_, dataset, place_);
+      FoundStream& stream = add(dataset.path, StreamType::Events, "rows of x, y, t, p");
+      stream.events = std::move(events);
+      finishEvents(dataset.folder(), stream);
+    } catch (const UnknownColumns& error) {
+      problems_.push_back(fmt::format("{} is left out: {}.", dataset.path, error.what()));
     }
   }
 
@@ -251,13 +260,15 @@ class TableLayoutFinder {
     std::vector<std::string> names;
     for (const DatasetInfo& dataset : datasets_)
       if (names.size() < kMostNamedTables) names.push_back(dataset.path);
-    throw badInput(place_,
-                   names.empty()
-                       ? "the HDF5 file has no datasets; was the recording finished?"
-                       : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
-                                     "known; its datasets: {}{}",
-                                     joined(names), datasets_.size() > kMostNamedTables ? ", ..." : ""),
-                   "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
+    throw badInput(
+        place_,
+        names.empty()
+            ? "the HDF5 file has no datasets; was the recording finished?"
+            : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
+                          "known; its datasets: {}{}",
+                          joined(names), datasets_.size() > kMostNamedTables ? ", ..." : "") +
+                  (problems_.empty() ? "" : ". " + problems_.front().substr(0, problems_.front().size() - 1)),
+        "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
   }
 
   hid_t file_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,13 @@ class ImuTable {
 // Lists x, y, t, p of equal length (the shortest counts), in this order.
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
                                         std::int64_t offset_us, const std::string& place);
-// Rows x, y, t, p.
+// What rows of four hold that cannot be told.
+class UnknownColumns : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Rows x, y, t, p, or t, x, y, p, as the numbers themselves show. Throws UnknownColumns where they are no events.
 std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place);
 // Metavision's: a compound of x, y, p, t.
 std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, const std::string& place);

@@ -83,6 +83,7 @@ class TestHdf5 : public QObject {
   void dsecWriter_refusesWhatTheLayoutCannotHold();
   void layouts_areFound_data();
   void layouts_areFound();
+  void columnsThatAreNoEvents_areRefused();
   void tumVieFolder_isOneRecording();
   void lengthsThatDiffer_areStated();
   void missingDatasets_areBadInput();
@@ -209,6 +210,8 @@ f['davis/left/imu'] = np.hstack([a, w]); f['davis/left/imu_ts'] = ts * 1e-6)");
 f.create_dataset('davis/left/events', data=np.stack([x, y, t * 1e-6, np.where(p, 1.0, -1.0)], axis=1),
                  compression='gzip', chunks=(128, 2))
 f['davis/left/imu'] = np.hstack([w, a]); f['davis/left/imu_ts'] = ts * 1e-6)");
+  row("v2e, time first", "events", "", 0, R"(
+f['events'] = np.stack([t, x, y, p], axis=1).astype('u4'))");
   row("evlib", "raw_events", "", 0, R"(
 f['raw_events/x'] = x.astype('i4'); f['raw_events/y'] = y.astype('i4'); f['raw_events/p'] = p.astype(bool)
 f['raw_events/t'] = t * 1e-6)");
@@ -244,6 +247,23 @@ void TestHdf5::layouts_areFound() {
   QCOMPARE(samples[3].time_ns, std::int64_t{3'100'000});
   QVERIFY((samples[3].angular_rate_rad_s == Eigen::Vector3d(1, 2, 3)));
   QVERIFY((samples[3].specific_force_m_s2 == Eigen::Vector3d(4, 5, 7.5)));
+}
+
+// A sensor of 54045 pixels has no one: what no event can be is refused, and other values of p are no events.
+void TestHdf5::columnsThatAreNoEvents_areRefused() {
+  if (!hasH5py()) QSKIP("python3-h5py is not installed");
+  QVERIFY(!runPython(kArrays + std::string(R"(
+f = h5py.File('no_events.h5', 'w'); f['events'] = np.stack([x, y, t[::-1], t[::-1]], axis=1).astype('f8'); f.close()
+f = h5py.File('types.h5', 'w')
+f['events/x'] = x; f['events/y'] = y; f['events/t'] = t; f['events/p'] = (np.arange(n) % 4).astype('u1'); f.close())"),
+                     folder_.path())
+               .isEmpty());
+  QVERIFY_EXCEPTION_THROWN(openRecording(folder_ / "no_events.h5"), CalibrationError);
+  const Contents contents = readAll(folder_ / "types.h5");
+  QVERIFY(contents.eventCount() > 0);
+  for (const auto& [stream, events] : contents.events)
+    for (std::size_t i = 0; i < events.size(); ++i) QCOMPARE(events[i].brighter, i % 2 == 1);
+  QVERIFY(contents.faults.at(0).text.find("polarity that is none of 1, 0 and -1") != std::string::npos);
 }
 
 void TestHdf5::tumVieFolder_isOneRecording() {

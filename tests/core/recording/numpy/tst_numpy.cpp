@@ -578,6 +578,12 @@ void TestNumpy::damage_isSaid_data() {
   QTest::newRow("bytes changed") << QByteArray::fromStdString(bad) << qsizetype{-1} << ""
                                  << "events: ";
   files = fourArrays(false);
+  std::string types;
+  for (std::size_t i = 0; i < kCount; ++i) types += static_cast<char>(i % 4);
+  files[3].content = npyArray("'|i1'", shape(kCount), types);
+  row("types for polarities", zipArchive(files), kCount / 2, FaultKind::Corrupt,
+      "polarity that is none of 1, 0 and -1");
+  files = fourArrays(false);
   files.push_back({"frames.npy", "\x93NUMPY\1"});
   row("another array", zipArchive(files), kCount, FaultKind::Corrupt, "frames.npy is left out");
 }
