@@ -60,8 +60,12 @@ CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, Ex
   if (!(fit.worst_px <= kLargestError_px))
     throw badInput(
         fmt::format("result: cameras.{}.intrinsics", camera.name),
-        fmt::format("{} has no place for {}, and the nearest lens that it knows is off by up to {:.3g} px",
-                    known.program, have, fit.worst_px),
+        std::isfinite(fit.worst_px)
+            ? fmt::format(
+                  "{} has no place for {}, and the nearest lens that it knows is off by up to {:.3g} px",
+                  known.program, have, fit.worst_px)
+            : fmt::format("{} has no place for {}, and no lens that it knows sees so wide", known.program,
+                          have),
         "Calibrate the intrinsics with a model that it knows");
   const bool to_radtan = fit.camera.model == CameraModel::PinholeRadtan;
   notes.push_back(fmt::format(

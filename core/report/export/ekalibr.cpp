@@ -145,6 +145,12 @@ ExportedFiles exportEkalibr(const NamedResult& result) {
   for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kEkalibrModels, exported.notes);
   exported.files.push_back({"ekalibr_param.yaml", parameterFile(rig)});
   for (const RigCamera& camera : rig.cameras)
+    if (camera.intrinsics.model == CameraModel::PinholeEquidistant)
+      exported.notes.push_back(
+          fmt::format("{}: eKalibr reads equidistant lenses in ekalibr_param.yaml, but takes none as input "
+                      "(PinholeIntrinsicBrownT2 only)",
+                      camera.name));
+  for (const RigCamera& camera : rig.cameras)
     exported.files.push_back(
         {fmt::format("intrinsics-{}.yaml", camera.file_name),
          headerComment(

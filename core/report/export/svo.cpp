@@ -129,7 +129,8 @@ ExportedFiles exportUltimateSlam(const NamedResult& result) {
   const RigImu& imu = checkedImu(rig, "Ultimate SLAM", exported.notes);
   const RigCamera* const events = firstOf(rig, CameraKind::Events);
   const RigCamera& dvs = events ? *events : rig.cameras.front();
-  noteUltimateSlamTimes(dvs, firstOf(rig, CameraKind::Frames), exported.notes);
+  const RigCamera* const images = firstOf(rig, CameraKind::Frames);
+  noteUltimateSlamTimes(dvs, images, exported.notes);
   exported.notes.push_back(
       fmt::format("the camera {} is called dvs in calib.yaml: it must be the event camera", dvs.file_name));
   exported.files.push_back(
@@ -141,9 +142,13 @@ ExportedFiles exportUltimateSlam(const NamedResult& result) {
             fmt::format("The event camera is called dvs there: here it is {}.", dvs.file_name)}) +
            rigText(rig, "Ultimate SLAM", &dvs, exported.notes)});
   exported.files.push_back(
-      {"imu.flags", headerComment(rig, {"For --flagfile: t_imu = t_image + timeshift_cam_imu, of images "
-                                        "only; noise in Kalibr's units."}) +
-                        ultimateSlamFlags(rig, imu, exported.notes)});
+      {"imu.flags",
+       headerComment(
+           rig, {"For --flagfile: t_imu = t_image + timeshift_cam_imu; noise in Kalibr's units.",
+                 images ? fmt::format("timeshift_cam_imu is of the images of {}.", images->file_name)
+                        : std::string(
+                              "timeshift_cam_imu moves no events, and the rig has no camera of pictures.")}) +
+           ultimateSlamFlags(rig, imu, exported.notes)});
   return exported;
 }
 

@@ -6,6 +6,8 @@
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/LU>
 
 #include <limits>

@@ -274,7 +274,7 @@ class TestExportLoaders : public QObject {
     QVERIFY(gflags::ReadFromFlagsFile(slam.folder.filePath("ultimate-slam/imu.flags").toStdString(), "slam",
                                       false));
     const ReadFile& read = slam.read.files.back();
-    QCOMPARE(FLAGS_timeshift_cam_imu, read.cameras.at(0).time_offset_s.value());
+    QVERIFY(FLAGS_timeshift_cam_imu == 0.0 && read.cameras.empty());  // it moves images, and there are none
     QCOMPARE(FLAGS_swe_imu_rate, read.imus.at(0).rate_hz.value());
     QCOMPARE(FLAGS_gyro_noise_density, read.imus[0].noise.value().gyroscope_density);
     QCOMPARE(FLAGS_acc_noise_density, read.imus[0].noise.value().accelerometer_density);

@@ -115,15 +115,17 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
     throw cameras.front()["camera"]["label"].error("must be dvs, or that of another camera must be");
   ReadFile file{folder / "imu.flags"};
   std::map<std::string, double> flags = flagsOf(file.path);
-  // camera_imu_synchronizer_base.cpp shifts images only.
-  const auto images =
-      static_cast<std::size_t>(std::find_if_not(cameras.begin(), cameras.end(), isDvs) - cameras.begin());
-  if (images < cameras.size()) {
-    file.cameras.resize(images + 1);
-    file.cameras.back().time_offset_s = flags["timeshift_cam_imu"];
+  // camera_imu_synchronizer_base.cpp shifts images only; which camera takes them is a topic's matter, and said in a comment.
+  const std::string text = textOf(file.path);
+  constexpr std::string_view kImages = "the images of ";
+  if (const std::size_t at = text.find(kImages); at != std::string::npos) {
+    const std::size_t begin = at + kImages.size();
+    ReadCamera images;
+    images.name = text.substr(begin, text.find_first_of(".\n", begin) - begin);
+    images.time_offset_s = flags["timeshift_cam_imu"];
+    file.cameras = {images};
   } else if (flags["timeshift_cam_imu"] != 0.0) {
-    throw badInput(file.path.string(),
-                   "timeshift_cam_imu moves images, and calib.yaml has no camera of images");
+    throw badInput(file.path.string(), "timeshift_cam_imu moves images, and the rig has no camera of images");
   }
   ReadImu imu;
   imu.noise = {flags["gyro_noise_density"], flags["acc_noise_density"], flags["vio_ceres_sigma_gyro_drift"],
