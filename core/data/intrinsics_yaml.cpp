@@ -1,6 +1,7 @@
 #include "core/data/intrinsics_yaml.h"
 
 #include "core/base/nearest_name.h"
+#include "core/base/trimmed.h"
 #include "core/data/intrinsics_result.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
@@ -10,6 +11,13 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace evical {
@@ -76,6 +84,9 @@ CameraIntrinsics readKalibrOmni(const YamlNode& map) {
 }
 
 CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
+  if (const YamlNode model = map["distortion_model"]; model.text() == "fov")
+    throw model.error("is the fov model, which Evical does not have",
+                      "Calibrate this camera anew with radtan or equidistant");
   const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
   const CameraModel model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
   CameraIntrinsics camera = kalibrLens(map["intrinsics"], model, 0);
@@ -99,21 +110,85 @@ CameraIntrinsics readKalibr(const YamlNode& map) {
   return camera;
 }
 
-// sensor_msgs/CameraInfo as camera_calibration_parsers writes it, or as `rostopic echo` prints it.
-CameraIntrinsics readCameraInfo(const YamlNode& map) {
-  const bool parsers = map.has("camera_matrix");
-  CameraIntrinsics camera;
-  camera.model = map["distortion_model"].choice({"plumb_bob", "equidistant", "fisheye"}) == 0
-                     ? CameraModel::PinholeRadtan
-                     : CameraModel::PinholeEquidistant;
-  const YamlNode matrix = parsers ? map["camera_matrix"]["data"] : map["K"];
-  const std::vector<double> k = matrix.reals(9);
+// The first of these keys that there is; that there is one has been looked at, or `names` says what is missing.
+YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
+  for (const char* const key : keys)
+    if (const auto node = map.find(key)) return *node;
+  return map[*keys.begin()];
+}
+
+// OpenCV's matrix {rows, cols, data}, or the numbers alone.
+YamlNode numbersOf(const YamlNode& node) {
+  return node.isMap() ? node["data"] : node;
+}
+
+// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero here.
+void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
+  constexpr std::size_t kRadtan = 5;
+  const std::vector<double> all = node.reals();
+  if (camera.model != CameraModel::PinholeRadtan || all.size() <= kRadtan) return setDistortion(node, camera);
+  if (std::any_of(all.begin() + kRadtan, all.end(), [](double each) { return each != 0.0; }))
+    throw node.error("are those of a rational lens, and Evical has three radial coefficients at most",
+                     "Calibrate this camera anew, or export it with k4, k5 and k6 fixed at zero");
+  std::copy_n(all.begin(), kRadtan, camera.distortion.begin());
+}
+
+void setMatrix(const YamlNode& node, CameraIntrinsics& camera) {
+  constexpr double kNoSkew_px = 1e-3;
+  const std::vector<double> k = node.reals(9);
+  if (std::abs(k[1]) > kNoSkew_px)
+    throw node.error(fmt::format("has a skew of {:.4g} px, which no lens of Evical has", k[1]),
+                     "Calibrate this camera anew without skew");
   camera.focal_length_px = {k[0], k[4]};
   camera.principal_point_px = {k[2], k[5]};
-  setDistortion(parsers ? map["distortion_coefficients"]["data"] : map["D"], camera);
+}
+
+// ROS names it distortion_model, older files camera_model; files without a name have OpenCV's five coefficients.
+CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
+  const auto name = map.has("distortion_model") ? map.find("distortion_model") : map.find("camera_model");
+  if (!name) {
+    if (distortion.reals().size() >= 5) return CameraModel::PinholeRadtan;
+    throw distortion.error("may be of either model, and distortion_model is missing",
+                           "Add distortion_model: plumb_bob, or equidistant");
+  }
+  const std::size_t model = name->choice({"plumb_bob", "rational_polynomial", "equidistant", "fisheye"});
+  return model < 2 ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant;
+}
+
+// sensor_msgs/CameraInfo as camera_calibration_parsers writes it, or as `rostopic echo` or `ros2 topic echo` prints it.
+CameraIntrinsics readCameraInfo(const YamlNode& map) {
+  const bool parsers = map.has("camera_matrix");
+  const YamlNode distortion = numbersOf(anyOf(map, {"distortion_coefficients", "D", "d"}));
+  CameraIntrinsics camera;
+  camera.model = rosModel(map, distortion);
+  setMatrix(numbersOf(anyOf(map, {"camera_matrix", "K", "k"})), camera);
+  setOpenCvDistortion(distortion, camera);
   const char* prefix = parsers ? "image_" : "";
   camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
                           map[fmt::format("{}height", prefix)].integer(1, kMostPixels)};
+  return camera;
+}
+
+// The first camera of a Luxonis OAK's calibration.
+CameraIntrinsics readOak(const YamlNode& root) {
+  const std::vector<YamlNode> cameras = root["cameraData"].items();
+  if (cameras.empty()) throw root["cameraData"].error("is empty", "Give a calibration with a camera");
+  const std::vector<YamlNode> entry = cameras.front().items();
+  if (entry.size() != 2)
+    throw cameras.front().error("is no socket with its camera", "Give an OAK's own file");
+  const YamlNode& map = entry[1];
+  constexpr const char* kPerspective[] = {"0", "1"};
+  CameraIntrinsics camera;
+  if (const auto model = map.find("cameraType");
+      model && model->text() != kPerspective[0] && model->text() != kPerspective[1])
+    camera.model = CameraModel::PinholeEquidistant;
+  const std::vector<YamlNode> rows = map["intrinsicMatrix"].items();
+  if (rows.size() != 3) throw map["intrinsicMatrix"].error("must have three rows");
+  const std::vector<double> x = rows[0].reals(3), y = rows[1].reals(3);
+  camera.focal_length_px = {x[0], y[1]};
+  camera.principal_point_px = {x[2], y[2]};
+  setOpenCvDistortion(map["distortionCoeff"], camera);
+  camera.resolution_px = {map["width"].integer(1, kMostPixels), map["height"].integer(1, kMostPixels)};
   return camera;
 }
 
@@ -143,7 +218,8 @@ bool namesStream(const YamlNode& camera, const std::string& stream) {
 
 // A file's cameras by name: a Kalibr camchain's cam0, cam1, ..., or the cameras of a result.
 YamlNode pickCamera(const YamlNode& cameras, const std::string& name, const std::string& stream) {
-  const std::vector<std::string> names = cameras.keys();
+  std::vector<std::string> names = camchainCameras(cameras);
+  if (names.empty()) names = cameras.keys();
   for (const std::string& key : names)
     if (key == name) return cameras[key];
   for (const std::string& key : names)
@@ -197,18 +273,71 @@ KnownIntrinsics withSigmas(const YamlNode& beside) {
   return known;
 }
 
-bool isCamchain(const YamlNode& root) {
-  return root.isMap() && (root.has("cam0") || root.has("cam1")) && !root.has("camera_model");
+// What of a lens is read, or says nothing that would be lost.
+constexpr std::string_view kLensKeys[] = {
+    "camera_model", "intrinsics", "distortion_model", "distortion_coeffs", "resolution", "rostopic",
+    "cam_overlaps", "image_width", "image_height", "width", "height", "camera_name", "camera_matrix",
+    "distortion_coefficients", "K", "k", "D", "d", "projection_matrix", "P", "p", "rectification_matrix", "R",
+    "r", "header", "binning_x", "binning_y", "roi",
+    // said by who imports them
+    "T_cam_imu", "T_cn_cnm1", "timeshift_cam_imu",
+    // ours, eKalibr's and an OAK's
+    "model", "resolution_px", "focal_length_px", "principal_point_px", "distortion", "Intrinsics",
+    "intrinsics_std", "correlation", "cameraData"};
+
+// ost.txt in the keys of camera_info: headings, each with rows of numbers below.
+std::string cameraInfoOf(const std::string& text) {
+  std::map<std::string, std::string> numbers;
+  std::istringstream lines(text);
+  std::string line, heading;
+  while (std::getline(lines, line)) {
+    const std::string_view plain = trimmed(line);
+    if (plain.empty() || plain.front() == '#' || plain.front() == '[') continue;
+    if (std::isalpha(static_cast<unsigned char>(plain.front())) != 0) {
+      heading = plain;
+      continue;
+    }
+    std::istringstream words{std::string(plain)};
+    for (std::string word; words >> word;) numbers[heading] += (numbers[heading].empty() ? "" : ", ") + word;
+  }
+  const std::string distortion = numbers["distortion"];
+  return fmt::format(
+      "image_width: {}\nimage_height: {}\ncamera_matrix: [{}]\ndistortion_model: "
+      "{}\ndistortion_coefficients: [{}]\n"
+      "projection_matrix: [{}]\n",
+      numbers["width"], numbers["height"], numbers["camera matrix"],
+      std::count(distortion.begin(), distortion.end(), ',') >= 4 ? "plumb_bob" : "", distortion,
+      numbers["projection"]);
 }
 
 }  // namespace
 
+std::vector<std::string> camchainCameras(const YamlNode& root) {
+  std::vector<std::string> cameras;
+  if (!root.isMap() || root.has("camera_model")) return cameras;
+  for (const std::string& key : root.keys()) {
+    const bool numbered = key.starts_with("cam") && key.size() > 3 &&
+                          key.find_first_not_of("0123456789", 3) == std::string::npos;
+    if (numbered && root[key].isMap()) cameras.push_back(key);
+  }
+  return cameras;
+}
+
+bool isLens(const YamlNode& root) {
+  for (const char* const key :
+       {"Intrinsics", "camera_matrix", "camera_model", "K", "k", "focal_length_px", "cameraData"})
+    if (root.has(key)) return true;
+  return false;
+}
+
 CameraIntrinsics readIntrinsics(const YamlNode& map) {
   if (!map.isMap()) throw map.error("must be a map of intrinsics", "Give model, focal_length_px, ...");
-  const CameraIntrinsics camera = map.has("polymorphic_name")                ? readEkalibr(map)
-                                  : map.has("camera_model")                  ? readKalibr(map)
-                                  : map.has("camera_matrix") || map.has("K") ? readCameraInfo(map)
-                                                                             : readOwn(map);
+  const CameraIntrinsics camera = map.has("polymorphic_name") ? readEkalibr(map)
+                                  : map.has("cameraData")     ? readOak(map)
+                                  : map.has("camera_matrix") || map.has("K") || map.has("k")
+                                      ? readCameraInfo(map)
+                                  : map.has("camera_model") ? readKalibr(map)
+                                                            : readOwn(map);
   if (camera.resolution_px.known()) {
     validate(camera, map.place());
   } else {
@@ -224,9 +353,43 @@ CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std
   return readKnownIntrinsics(file, camera_name, stream).camera;
 }
 
+YamlNode loadIntrinsics(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest_bytes = 1 << 16;
+  std::error_code ignored;
+  const bool small = std::filesystem::is_regular_file(file, ignored) &&
+                     std::filesystem::file_size(file, ignored) < kLargest_bytes;
+  std::ifstream stream(file);
+  std::string text;
+  if (small) text.assign(std::istreambuf_iterator<char>(stream), {});
+  const bool ost =
+      text.find("[image]") != std::string::npos && text.find("camera matrix") != std::string::npos;
+  return ost ? YamlNode::parse(cameraInfoOf(text), file.string()) : YamlNode::load(file);
+}
+
+std::vector<std::string> leftOutOf(const YamlNode& lens) {
+  std::vector<std::string> notes;
+  if (!lens.isMap()) return notes;
+  std::vector<std::string> others;
+  for (const std::string& key : lens.keys())
+    if (std::find(std::begin(kLensKeys), std::end(kLensKeys), key) == std::end(kLensKeys))
+      others.push_back(key);
+  if (!others.empty()) notes.push_back(fmt::format("left out: {}", joined(others)));
+  const auto projection = lens.has("projection_matrix") ? lens.find("projection_matrix") : lens.find("P");
+  const bool has_matrix = lens.has("camera_matrix") || lens.has("K");
+  if (!projection || !has_matrix) return notes;
+  const std::vector<double> p = numbersOf(*projection).reals(),
+                            k = numbersOf(anyOf(lens, {"camera_matrix", "K"})).reals(9);
+  constexpr double kSame_px = 1e-3;
+  if (p.size() == 12 && p[0] != 0.0 &&
+      (std::abs(p[0] - k[0]) > kSame_px || std::abs(p[5] - k[4]) > kSame_px ||
+       std::abs(p[2] - k[2]) > kSame_px || std::abs(p[6] - k[5]) > kSame_px || std::abs(p[3]) > kSame_px))
+    notes.emplace_back("its projection matrix is of rectified images and is left out");
+  return notes;
+}
+
 KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std::string& camera_name,
                                     const std::string& stream) {
-  const YamlNode root = YamlNode::load(file);
+  const YamlNode root = loadIntrinsics(file);
   if (!root.isMap())
     throw root.error("holds no camera intrinsics", "Give intrinsics as Evical, Kalibr or ROS write them");
   if (root.has("evical_result")) {
@@ -237,7 +400,7 @@ KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std
       known.uncertainty->correlation = correlationInResult(root, name, 4 + distortionCount(known.camera));
     return known;
   }
-  if (isCamchain(root)) return {readIntrinsics(pickCamera(root, camera_name, stream)), {}};
+  if (!camchainCameras(root).empty()) return {readIntrinsics(pickCamera(root, camera_name, stream)), {}};
   if (root.has("Intrinsics")) return {readIntrinsics(root["Intrinsics"]), {}};
   if (root.has("intrinsics") && root["intrinsics"].isMap()) return withSigmas(root);
   return {readIntrinsics(root), {}};

@@ -49,10 +49,15 @@ void readCamera(const ImportSource& source, const YamlNode& entry, ImportedSessi
   imported.session.cameras.push_back(std::move(camera));
 }
 
-void readImu(const YamlNode& entry, Session& session) {
+void readImu(const YamlNode& entry, ImportedSession& imported) {
+  Session& session = imported.session;
   SessionImu imu;
   const YamlNode value = entry["value"];
   imu.stream = entry["key"].text();
+  if (value["Type"].text() == "SBG_IMU") {
+    imported.notes.push_back(fmt::format("{} is left out: messages of SBG's IMUs are not read", imu.stream));
+    return;
+  }
   imu.name = sensorName(imu.stream, true, session);
   imu.noise.accelerometer_density = value["AcceWhiteNoise"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = value["GyroWhiteNoise"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
@@ -108,7 +113,7 @@ void importEkalibr(const ImportSource& source, const ImportRequest& request, Imp
   const YamlNode root = source.root["Configor"], data = root["DataStream"], prior = root["Prior"];
   for (const YamlNode& entry : data["EventTopics"].items()) readCamera(source, entry, imported);
   if (const auto imus = data.find("IMUTopics"); imus && !imus->isNull())
-    for (const YamlNode& entry : imus->items()) readImu(entry, imported.session);
+    for (const YamlNode& entry : imus->items()) readImu(entry, imported);
   if (const auto reference = data.find("RefIMUTopic"))
     for (const SessionImu& imu : imported.session.imus)
       if (imu.stream == reference->text()) imported.session.reference = imu.name;

@@ -1,5 +1,8 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/import_sources.h"
+#include "core/pipeline/session_guess.h"
+#include "core/recording/inspection.h"
+#include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>
 
@@ -81,7 +84,7 @@ void readImus(const YamlNode& root, ImportedSession& imported) {
 }
 
 void readCameras(const YamlNode& root, ImportedSession& imported) {
-  for (const std::string& key : root.keys()) {
+  for (const std::string& key : camchainCameras(root)) {
     const YamlNode map = root[key];
     SessionCamera camera;
     camera.name = key;
@@ -98,6 +101,28 @@ void readCameras(const YamlNode& root, ImportedSession& imported) {
 const char* nameOf(ImportKind kind) {
   if (kind == ImportKind::KalibrTarget) return "target";
   return kind == ImportKind::KalibrImu ? "imu" : "camchain";
+}
+
+// Before Kalibr has run there is no camchain: then every stream of events is a camera, as `evical init` has it.
+void addRecordedCameras(const ImportRequest& request, ImportedSession& imported) {
+  if (request.recording.empty())
+    throw badInput(
+        "cameras", "none of the files describes one",
+        "Give Kalibr's camchain file too; or --recording FILE, whose event streams become the cameras");
+  const Inspection inspection = inspectRecording(*openRecording(request.recording));
+  Session& session = imported.session;
+  for (const StreamSummary& stream : inspection.streams) {
+    const bool camera = stream.info.readable && stream.count > 0 &&
+                        (stream.info.type == StreamType::Events || stream.info.type == StreamType::Frames);
+    if (!camera) continue;
+    session.cameras.push_back(withSeenResolution(guessedCamera(stream, session), stream));
+    imported.notes.push_back(
+        fmt::format("{}: the camera of the stream {}; its lens is calibrated first, from the same recording",
+                    session.cameras.back().name, stream.info.name));
+  }
+  if (session.cameras.empty())
+    throw badInput(request.recording.string(), "has no stream of events or frames",
+                   "Give the recording of the cameras");
 }
 
 }  // namespace
@@ -120,8 +145,7 @@ void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest&
   }
   if (!seen[static_cast<std::size_t>(ImportKind::KalibrTarget)])
     throw badInput("board", "none of the files describes it", "Give Kalibr's target file too");
-  if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)])
-    throw badInput("cameras", "none of the files describes one", "Give Kalibr's camchain file too");
+  if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)]) addRecordedCameras(request, imported);
 }
 
 }  // namespace evical

@@ -70,7 +70,7 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
       const std::string name = source.path.stem().string();
       cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
     } else {
-      for (const std::string& key : source.root.keys())
+      for (const std::string& key : camchainCameras(source.root))
         cameras.push_back({key, readIntrinsics(source.root[key])});
     }
   }
@@ -79,14 +79,26 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
 
 // What a camchain knows beyond the lens is an estimate, and becomes no prior unasked.
 void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
-  for (const ImportSource& source : sources)
-    if (source.kind == ImportKind::KalibrCamchain)
-      for (const std::string& key : source.root.keys())
-        if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
-          notes.push_back(fmt::format(
-              "{}: its pose and time offset are left out and estimated anew; where they are to be "
-              "held, give them under prior",
-              key));
+  for (const ImportSource& source : sources) {
+    if (source.kind == ImportKind::Intrinsics)
+      for (const std::string& note : leftOutOf(source.root))
+        notes.push_back(fmt::format("{}: {}", source.path.filename().string(), note));
+    if (source.kind != ImportKind::KalibrCamchain) continue;
+    const std::vector<std::string> cameras = camchainCameras(source.root);
+    for (const std::string& key : source.root.keys()) {
+      if (std::find(cameras.begin(), cameras.end(), key) == cameras.end()) {
+        notes.push_back(fmt::format("{} is left out: it is no camera", key));
+        continue;
+      }
+      for (const std::string& note : leftOutOf(source.root[key]))
+        notes.push_back(fmt::format("{}: {}", key, note));
+      if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
+        notes.push_back(
+            fmt::format("{}: its pose and time offset are left out and estimated anew; where they are to be "
+                        "held, give them under prior",
+                        key));
+    }
+  }
 }
 
 ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,

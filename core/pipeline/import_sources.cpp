@@ -1,5 +1,7 @@
 #include "core/pipeline/import_sources.h"
 
+#include "core/data/intrinsics_yaml.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,25 +9,35 @@
 namespace evical {
 namespace {
 
-bool isLens(const YamlNode& root) {
-  return root.has("Intrinsics") || root.has("camera_matrix") || root.has("camera_model") || root.has("K") ||
-         root.has("focal_length_px");
+// What a file seems to be that is not imported.
+std::string likely(const YamlNode& root) {
+  if (!root.isMap()) return {};
+  if (root.has("value0")) return "basalt's calibration";
+  if (root.has("label") && root.has("cameras")) return "a camera rig of SVO or Ultimate SLAM";
+  if (root.has("model_type")) return "a camera of camodocal, as VINS has it";
+  if (root.has("intrinsics") && root.has("extrinsics")) return "DSEC's cam_to_cam.yaml";
+  if (root.has("evical_session")) return "a session already";
+  return {};
 }
 
 }  // namespace
 
 ImportSource recogniseSource(const std::filesystem::path& path) {
-  const YamlNode root = YamlNode::load(path);
+  const YamlNode root = loadIntrinsics(path);
   const auto as = [&](ImportKind kind) { return ImportSource{path, root, kind}; };
   if (root.isMap()) {
     if (root.has("Configor")) return as(ImportKind::EkalibrConfiguration);
     if (root.has("target_type")) return as(ImportKind::KalibrTarget);
-    if (root.has("cam0")) return as(ImportKind::KalibrCamchain);
+    if (!camchainCameras(root).empty()) return as(ImportKind::KalibrCamchain);
     if (root.has("imu0") || root.has("accelerometer_noise_density")) return as(ImportKind::KalibrImu);
     if (isLens(root)) return as(ImportKind::Intrinsics);
   }
-  throw root.error("is no file that can be imported",
-                   "Give an eKalibr configuration, or Kalibr's target, imu and camchain files");
+  const std::string seems = likely(root);
+  throw root.error(seems.empty() ? "is of no layout that can be imported"
+                                 : fmt::format("is {}, which cannot be imported yet", seems),
+                   "Give an eKalibr configuration; Kalibr's target, imu and camchain files; or intrinsics of "
+                   "Kalibr, ROS (camera_info, "
+                   "ost.txt), eKalibr or an OAK");
 }
 
 std::string sensorName(const std::string& topic, bool imu, const Session& session) {

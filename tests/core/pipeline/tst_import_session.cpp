@@ -5,6 +5,8 @@
 
 #include <QTemporaryDir>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -103,6 +105,91 @@ class TestImportSession : public QObject {
   }
 
  private slots:
+  // MVSEC's and DM-VIO's camchains hold more than cameras.
+  void furtherKeysOfACamchain_areSaid() {
+    ImportRequest request = kalibr();
+    std::string chain = kCamchain;
+    chain += "T_cam0_lidar: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n";
+    chain.insert(chain.find("  rostopic"),
+                 "  T_imu_cam: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
+    request.files[1] = write("camchain.yaml", chain);
+    std::vector<std::string> notes;
+    QCOMPARE(written(request, notes).cameras.size(), std::size_t{1});
+    QVERIFY(has(notes, "T_cam0_lidar is left out"));
+    QVERIFY(has(notes, "cam0: left out: T_imu_cam"));
+  }
+
+  // A chain of the second and third camera alone.
+  void camchainWithoutCam0_isOne() {
+    std::string chain = kCamchain;
+    chain.replace(chain.find("cam0"), 4, "cam2");
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", chain)}, "", {}, std::nullopt}, "lens.yaml");
+    QCOMPARE(imported.files.size(), std::size_t{1});
+    QVERIFY(imported.files[0].content.find("pinhole_equidistant") != std::string::npos);
+  }
+
+  // Before Kalibr has run there is no camchain.
+  void withoutCamchain_camerasAreThoseOfTheRecording() {
+    ImportRequest request = kalibr();
+    request.files.erase(request.files.begin() + 1);
+    std::string events = "t_s x y p\n";
+    for (int i = 0; i < 2000; ++i) events += fmt::format("{:.6f} {} {} 1\n", 0.001 * i, i % 346, i % 260);
+    request.recording = write("events.txt", events);
+    std::vector<std::string> notes;
+    const Session session = written(request, notes);
+    QCOMPARE(session.cameras.size(), std::size_t{1});
+    QCOMPARE(session.cameras[0].stream, std::string("events.txt"));
+    QVERIFY(!session.cameras[0].intrinsics && session.imus.size() == 1);
+    QVERIFY(has(notes, "its lens is calibrated first"));
+    request.recording.clear();
+    try {
+      importSession(request);
+      QFAIL("imported");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(std::string(error.what()).find("or --recording FILE") != std::string::npos, error.what());
+    }
+  }
+
+  // Files as people report them: imported with these numbers, or refused by what they are.
+  void reportedFiles_areImportedOrNamed_data() {
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<double>("focal_length_px");  // of the first camera; 0: refused
+    QTest::addColumn<QString>("text");            // that the lens, or the refusal, has
+    const auto row = [](const char* file, double focal_length_px, const char* text) {
+      QTest::newRow(file) << QString(file) << focal_length_px << QString(text);
+    };
+    row("camchain_12.yaml", 1049.5, "pinhole_equidistant");
+    row("camchain_fov.yaml", 0.0, "is the fov model");
+    row("oak.json", 0.0, "rational lens");
+    row("ost.txt", 580.46715, "[0.134462, -0.311908, 0.002304, 0.003083]");
+    row("rational.yaml", 0.0, "rational lens");
+    row("ros1_skew.yaml", 0.0, "skew of 4.265 px");
+    row("ros2_echo.yaml", 0.0, "skew of 4.265 px");
+    row("ros_flatd.yaml", 579.31292788, "-0.17473019");
+    row("ros_nomodel.yaml", 538.63, "-0.30678");
+    row("ros_oldmodel.yaml", 580.46715, "0.134462");
+  }
+
+  void reportedFiles_areImportedOrNamed() {
+    const QString folder = qEnvironmentVariable("EVICAL_DATA");
+    if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
+    QFETCH(QString, file);
+    QFETCH(double, focal_length_px);
+    QFETCH(QString, text);
+    const std::filesystem::path path = (folder + "/reports/calibration_files/" + file).toStdString();
+    try {
+      const ImportedFiles imported = importFiles({{path}, "", {}, std::nullopt}, "lens.yaml");
+      QVERIFY2(focal_length_px > 0.0, "imported");
+      const std::string& yaml = imported.files[0].content;
+      QVERIFY2(yaml.find(text.toStdString()) != std::string::npos, yaml.c_str());
+      const CameraIntrinsics lens = readIntrinsics(YamlNode::parse(yaml, "lens.yaml"));
+      QCOMPARE(lens.focal_length_px.x(), focal_length_px);
+    } catch (const CalibrationError& error) {
+      QVERIFY2(focal_length_px == 0.0 && QString(error.what()).contains(text), error.what());
+    }
+  }
+
   void ekalibr_becomesASession() {
     write("recording.bag", "bag");
     write("left.yaml", kEkalibrLens);
@@ -237,7 +324,7 @@ class TestImportSession : public QObject {
     QTest::newRow("no target") << "target.yaml" << kTarget << kImu << "Give Kalibr's target file too";
     QTest::newRow("two camchains") << "target.yaml" << kTarget << kCamchain << "is the second camchain file";
     QTest::newRow("something else") << "target.yaml" << kTarget << "a: b\n"
-                                    << "no file that can be imported";
+                                    << "no layout that can be imported";
   }
   void badInput_isNamed() {
     QFETCH(QString, file);
@@ -269,13 +356,24 @@ class TestImportSession : public QObject {
   }
 
   void imuType_thatIsUnknown_isNamed() {
-    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "SBG_IMU").toStdString();
+    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "ANOTHER_IMU").toStdString();
     try {
       importSession({{write("config.yaml", text)}, "", {}, std::nullopt});
       QFAIL("taken");
     } catch (const CalibrationError& error) {
-      QVERIFY2(QString(error.what()).contains("SBG_IMU"), error.what());
+      QVERIFY2(QString(error.what()).contains("ANOTHER_IMU"), error.what());
     }
+  }
+
+  // eKalibr's own template names one; the other IMU and the cameras are imported.
+  void imuOfSbg_isLeftOut() {
+    write("recording.bag", "bag");
+    write("left.yaml", kEkalibrLens);
+    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "SBG_IMU").toStdString();
+    std::vector<std::string> notes;
+    const Session session = written({{write("config.yaml", text)}, "", {}, std::nullopt}, notes);
+    QVERIFY(session.imus.size() == 1 && session.imus[0].stream == "/davis_right/imu");
+    QVERIFY(has(notes, "/davis_left/imu is left out"));
   }
 };
 
