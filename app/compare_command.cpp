@@ -5,10 +5,22 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 namespace evical {
+
+namespace {
+
+// People name folders.
+std::filesystem::path fileIn(const std::filesystem::path& path, const char* name) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) ? path / name : path;
+}
+
+}  // namespace
 
 void addCompareCommand(Command& app, int& exit_code) {
   struct Arguments {
@@ -16,11 +28,11 @@ void addCompareCommand(Command& app, int& exit_code) {
   };
   auto arguments = std::make_shared<Arguments>();
   Command command = app.command("compare", "A result against a simulated recording's truth");
-  command.option("RESULT", arguments->result, "result.yaml").required();
-  command.option("TRUTH", arguments->truth, "truth.yaml").required();
+  command.option("RESULT", arguments->result, "result.yaml, or the folder of a run").required();
+  command.option("TRUTH", arguments->truth, "truth.yaml, or the folder that has it").required();
   command.action([arguments, &exit_code] {
-    print("{}", comparisonTable(
-                    compareWithTruth(readResultYaml(arguments->result), readResultYaml(arguments->truth))));
+    print("{}", comparisonTable(compareWithTruth(readResultYaml(fileIn(arguments->result, "result.yaml")),
+                                                 readResultYaml(fileIn(arguments->truth, "truth.yaml")))));
     exit_code = kDone;
   });
 }

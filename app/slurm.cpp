@@ -26,6 +26,16 @@ std::filesystem::path submittedOf(const std::filesystem::path& folder) {
   return folder / "jobs" / "slurm.yaml";
 }
 
+// A file in a line of #SBATCH, where a per cent sign begins a pattern, as in `name`.
+std::string sbatchPath(const std::filesystem::path& folder, const std::string& name) {
+  std::string text = "\"";
+  for (const char c : folder.string()) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c == '%' ? "%%" : std::string(1, c);
+  }
+  return text + "/" + name + "\"";
+}
+
 std::string scriptText(const Batch& batch, const SlurmRequest& request,
                        const std::vector<std::string>& names) {
   std::string text = "#!/bin/bash\n#SBATCH --job-name=evical\n";
@@ -33,7 +43,7 @@ std::string scriptText(const Batch& batch, const SlurmRequest& request,
   if (batch.memory_limit_mb > 0) text += fmt::format("#SBATCH --mem={}M\n", batch.memory_limit_mb);
   // A node that is lost gives its tasks back; what they print goes on in the same file.
   text += fmt::format("#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --output={}\n",
-                      (request.folder / "jobs" / "slurm-%a.txt").string());
+                      sbatchPath(request.folder / "jobs", "slurm-%a.txt"));
   text += "jobs=(";
   for (const std::string& name : names) text += (text.back() == '(' ? "" : " ") + name;
   return text + fmt::format(")\nexec {} batch {} -o {} --job \"${{jobs[$SLURM_ARRAY_TASK_ID]}}\"\n",

@@ -49,10 +49,16 @@ class Worker {
   std::jthread thread_;  // the last member: it uses the others
 };
 
+// Names in damaged files need not be UTF-8.
+py::str textOf(const std::string& bytes) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace"));
+}
+
 void handOn(const RunLog::News& news, const py::object& progress) {
   if (!news.lines.empty()) {
     const py::object logger = py::module_::import("logging").attr("getLogger")("evical");
-    for (const RunLog::Line& line : news.lines) logger.attr(levelName(line.level))("%s", line.text);
+    for (const RunLog::Line& line : news.lines) logger.attr(levelName(line.level))("%s", textOf(line.text));
   }
   if (news.moved && !progress.is_none()) progress(news.stage, news.fraction);
 }

@@ -59,6 +59,7 @@ std::vector<double> RateNorms::filled() const {
 ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
                               const MaintenanceOptions& options) {
   constexpr double kFewest = 300.0;  // bins
+  constexpr double kNone = -2.0;     // where too little overlaps
   ClockAgreement best;
   const std::vector<double> a = reference.filled(), b = own.filled();
   const long between = own.firstBin() - reference.firstBin();
@@ -68,7 +69,7 @@ ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
     const Moments sum = momentsAt(a, b, lag - between);
     const bool enough =
         sum.count >= kFewest && std::sqrt(std::max(sum.varianceA(), 0.0)) > options.least_rate_rad_s;
-    correlations.push_back(enough ? sum.correlation() : -1.0);
+    correlations.push_back(enough ? sum.correlation() : kNone);
     if (!enough) continue;
     best.moved = true;
     if (correlations.back() <= best.correlation) continue;
@@ -81,7 +82,7 @@ ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
   if (best.moved && at > 0 && at < 2 * reach) {
     const auto i = static_cast<std::size_t>(at);
     const double bend = correlations[i - 1] - 2.0 * correlations[i] + correlations[i + 1];
-    if (bend < 0.0)
+    if (bend < 0.0 && correlations[i - 1] > kNone && correlations[i + 1] > kNone)
       best.later_s -= 0.5 * RateNorms::kBin_s * (correlations[i - 1] - correlations[i + 1]) / bend;
   }
   return best;

@@ -182,7 +182,8 @@ std::string maintenanceJson(const Maintenance& maintenance) {
                              {"or_else", step.or_else}});
   json["took_s"] = maintenance.took_s;
   json["program"] = {{"version", maintenance.version}};
-  return json.dump(2) + "\n";
+  // Names of logs need not be UTF-8.
+  return json.dump(2, ' ', false, decltype(json)::error_handler_t::replace) + "\n";
 }
 
 std::string maintenanceTable(const Maintenance& maintenance) {
