@@ -91,7 +91,7 @@ class TestExportDialog : public QObject {
     QTest::addColumn<bool>("usable");
     QVERIFY(QDir(scratch_.path()).mkdir("empty"));
     QVERIFY(QFile(scratch_.filePath("file")).open(QIODevice::WriteOnly));
-    QTest::newRow("new") << scratch_.filePath("not/yet") << "is new" << true;
+    QTest::newRow("new") << scratch_.filePath("not/yet") << "will be created" << true;
     QTest::newRow("empty") << scratch_.filePath("empty") << "empty" << true;
     QTest::newRow("has files") << scratch_.path() << "are replaced" << true;
     QTest::newRow("file") << scratch_.filePath("file") << "is a file" << false;

@@ -186,7 +186,7 @@ class TestMaintainPage : public QObject {
       QCOMPARE(row.childCount(), static_cast<int>(quantity.numbers.size()));
       QCOMPARE(row.text(MaintainTable::kVerdict), QString(quantity.changed  ? "changed"
                                                           : quantity.told() ? "unchanged"
-                                                                            : "not told"));
+                                                                            : "undecided"));
     }
     const auto* const steps = test.child<StepTable>();
     QVERIFY(steps->isVisible());

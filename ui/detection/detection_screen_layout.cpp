@@ -237,7 +237,7 @@ void DetectionScreen::adaptTo(CameraKind kind) {
   kind_ = kind;
   const bool frames = framesInView();
   mode_box_->setVisible(!frames);
-  verdict_title_->setText(frames ? tr("What became of this frame") : tr("What became of this window"));
+  verdict_title_->setText(frames ? tr("This frame") : tr("This window"));
   view_->setAccessibleName(frames ? tr("Frame") : tr("Events"));
   std::vector<QCheckBox*> shown;
   for (std::size_t k = 0; k < kLayerCount; ++k) {

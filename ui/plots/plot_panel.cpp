@@ -11,6 +11,8 @@
 #include <QPainter>
 #include <QVBoxLayout>
 
+#include <numeric>
+
 namespace evical::ui {
 namespace {
 

@@ -119,7 +119,8 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
                                 .arg(boardMillimetres(2.0 * board_.radius_m))
       : board_.type == BoardType::AprilGrid
           ? tr("%1 tags of %2").arg(board_.rows * board_.cols).arg(boardMillimetres(board_.tag_size_m))
-          : tr(board_.hasPattern() ? "%1 inner corners" : "%1 points").arg(board_.pointCount()));
+      : board_.hasPattern() ? tr("%1 inner corners").arg(board_.pointCount())
+                            : tr("%1 points").arg(board_.pointCount()));
 }
 
 }  // namespace evical::ui

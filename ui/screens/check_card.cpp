@@ -155,8 +155,7 @@ void CheckCard::clear() {
 
 void CheckCard::setChecking(double fraction) {
   const bool keep = following_ && assessed_;
-  if (!progress_->isVisibleTo(this) && !keep)
-    showState(tr("Looking whether the recording is good enough..."), {});
+  if (!progress_->isVisibleTo(this) && !keep) showState(tr("Checking the recording..."), {});
   progress_->show();
   progress_->setValue(static_cast<int>(1000.0 * fraction));
   setVisible(true);

@@ -18,7 +18,7 @@ QString size(double value, const std::string& unit) {
 
 QString verdictOf(const CheckedQuantity& quantity) {
   if (quantity.changed) return QObject::tr("changed");
-  return quantity.toldEnough() ? QObject::tr("unchanged") : QObject::tr("not told");
+  return quantity.toldEnough() ? QObject::tr("unchanged") : QObject::tr("undecided");
 }
 
 QIcon iconOf(const CheckedQuantity& quantity) {

@@ -38,7 +38,7 @@ QString titleOf(AssessedThing thing) {
     case AssessedThing::Lens:
       return QObject::tr("Lens");
     case AssessedThing::Turns:
-      return QObject::tr("Turns (x, y, z)");
+      return QObject::tr("Angular rate (x, y, z)");
     case AssessedThing::Accelerations:
       return QObject::tr("Accelerations (x, y, z)");
     case AssessedThing::Rotation:

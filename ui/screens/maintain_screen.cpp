@@ -43,7 +43,7 @@ QComboBox* unitBox(const char* object_name, const QString& title, const Words& w
   box->setObjectName(object_name);
   box->setAccessibleName(title);
   box->setToolTip(QObject::tr("Where logs do not say what they are in, or say it wrongly"));
-  box->addItem(QObject::tr("as the logs say"));
+  box->addItem(QObject::tr("automatic"));
   for (const char* const word : words) box->addItem(word);
   return box;
 }
@@ -100,8 +100,8 @@ QLayout* MaintainScreen::makeUnits() {
     row->addWidget(label);
     row->addWidget(widget, stretch);
   };
-  add(tr("&Forces"), acceleration_unit_, 0);
-  add(tr("Ra&tes"), rate_unit_, 0);
+  add(tr("&Accelerometer unit"), acceleration_unit_, 0);
+  add(tr("Gyroscope u&nit"), rate_unit_, 0);
   add(tr("St&reams"), streams_, 1);
   return row;
 }
@@ -118,7 +118,7 @@ QWidget* MaintainScreen::makeForm() {
       *grid, card);
   trajectory_->setPlaceholder(tr("none"));
   grid->setColumnStretch(1, 1);
-  work_ = new WorkBar("maintain", "check", tr("Look"),
+  work_ = new WorkBar("maintain", "check", tr("Check"),
                       tr("Compare the logs with the old result, and follow the IMUs over time"), card);
   work_->addButton(save_);
   auto* const layout = new QVBoxLayout(card);
@@ -137,12 +137,11 @@ QWidget* MaintainScreen::makeForm() {
 
 QWidget* MaintainScreen::makeEmpty() {
   return emptyHint(
-      tr("No board is needed. Stops in several attitudes tell each accelerometer's biases and scales; "
-         "several "
-         "IMUs that turn together tell how they lie to each other, second by second, and when one has moved; "
-         "a "
-         "trajectory from elsewhere tells the accelerometer of the reference IMU without stops. How much it "
-         "takes until something counts as changed stands under Parameters, Maintain."),
+      tr("No board is needed. Hold the rig still in several orientations to determine the biases and scales "
+         "of "
+         "each accelerometer. Turn several IMUs together to see how they are mounted relative to each other, "
+         "and when one has moved. A trajectory from another system checks the accelerometer of the reference "
+         "IMU without stops. Limits for what counts as a change are under Parameters, Maintain."),
       this);
 }
 

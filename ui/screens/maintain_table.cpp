@@ -37,7 +37,7 @@ QString sensorText(const std::string& sensor, const std::string& against) {
 
 QString maintainVerdictOf(const MaintainedQuantity& quantity) {
   if (quantity.changed) return QObject::tr("changed");
-  return quantity.told() ? QObject::tr("unchanged") : QObject::tr("not told");
+  return quantity.told() ? QObject::tr("unchanged") : QObject::tr("undecided");
 }
 
 QIcon maintainIconOf(const MaintainedQuantity& quantity) {

@@ -176,7 +176,7 @@ QWidget* PrintBoardDialog::makeMeasure() {
   auto* const layout = new QVBoxLayout(group);
   layout->addWidget(
       wrappedLabel(tr("The line below the board must be 100 mm long. Glue the print to something flat, "
-                      "and measure it: the board's size is the result's."),
+                      "and measure it. Any error in the board's size becomes the same error in translation."),
                    "hint", group));
   layout->addWidget(measured_);
   layout->addWidget(take_);

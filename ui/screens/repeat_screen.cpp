@@ -129,9 +129,9 @@ QWidget* RepeatScreen::makeForm() {
 
 QWidget* RepeatScreen::makeEmpty() {
   return emptyHint(
-      tr("Each recording is calibrated alone, then all in one solution. How much the results spread, beside "
-         "what their sigmas promise, tells how honest the sigmas are; a recording that does not fit the "
-         "others is named, with what is different in it."),
+      tr("Each recording is calibrated alone, then all in one solution. The scatter between recordings "
+         "shows whether the stated uncertainties are realistic. A recording that does not fit the others is "
+         "named, with what is different in it."),
       this);
 }
 

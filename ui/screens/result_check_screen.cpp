@@ -89,8 +89,8 @@ QWidget* ResultCheckScreen::makeForm() {
 QWidget* ResultCheckScreen::makeEmpty() {
   return emptyHint(tr("Move the rig before the board for some ten seconds, as for a calibration, and "
                       "choose that recording above. It is calibrated anew and held against the old "
-                      "result: each quantity is called unchanged, changed, or not told, where the "
-                      "recording would not have shown a change that matters."),
+                      "result. Each quantity is reported as unchanged, changed, or undecided (the "
+                      "recording is too weak to tell)."),
                    this);
 }
 

@@ -71,11 +71,11 @@ const std::vector<ShownMotion>& shownMotions() {
       {"left_right", QObject::tr("Turn left and right"),
        QObject::tr("Turn the camera to the left and to the right, 20 degrees to either side, and back. Turns "
                    "show how the "
-                   "camera and the IMU are turned against each other, and how far they are apart."),
+                   "camera and the IMU are rotated relative to each other, and how far they are apart."),
        &leftAndRight, ahead},
       {"up_down", QObject::tr("Turn up and down"),
        QObject::tr("Nod with the camera, up and down, while the board stays in view."), &upAndDown, ahead},
-      {"about_lens", QObject::tr("Turn about the lens's axis"),
+      {"about_lens", QObject::tr("Roll about the optical axis"),
        QObject::tr("Turn the camera as one turns a key, 30 degrees to either side. This turn is the one that "
                    "is forgotten "
                    "most, and nothing else stands in for it."),

@@ -57,10 +57,10 @@ QWidget* StartScreen::makeChoices() {
   auto* const layout = new QVBoxLayout(column);
   layout->setSpacing(10);
   layout->addWidget(wrappedLabel(tr("Evical"), "title", column));
-  layout->addWidget(
-      wrappedLabel(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
-                      "with how sure it is, from one recording of a printed circle grid. Or a camera alone."),
-                   "hint", column));
+  layout->addWidget(wrappedLabel(
+      tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
+         "with its uncertainty, from one recording of a printed circle grid. Or a camera alone."),
+      "hint", column));
   layout->addSpacing(6);
   layout->addWidget(aim_, 0, Qt::AlignLeft);
   layout->addSpacing(6);

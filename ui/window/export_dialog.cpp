@@ -202,7 +202,7 @@ void ExportDialog::judgeFolder() {
   const bool has_files = info.exists() && !QDir(text).isEmpty();
   hint_->setText(has_files       ? tr("There are files in this folder: those of the same names are replaced.")
                  : info.exists() ? tr("This folder is there, and empty.")
-                                 : tr("This folder is new: it is made."));
+                                 : tr("A new folder will be created."));
 }
 
 ExportRequest ExportDialog::request() const {

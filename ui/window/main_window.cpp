@@ -199,10 +199,7 @@ void MainWindow::wireDocument() {
   connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
   connect(files_, &SessionFiles::opened, this, [this] {
     error_->dismiss();
-    if (workbench_.document.last().run)
-      showScreen("result");
-    else if (stack_->currentIndex() == 0)
-      showScreen("recording");
+    showScreen(workbench_.document.last().run ? "result" : "recording");
   });
   connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
     exported_->showOutcome(outcome);

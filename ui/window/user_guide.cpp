@@ -12,6 +12,8 @@
 #include <QSplitter>
 #include <QTextBlock>
 #include <QTextBrowser>
+#include <QTextCursor>
+#include <QTimer>
 #include <QUrl>
 #include <QVBoxLayout>
 
@@ -83,6 +85,9 @@ void showUserGuide(QWidget* window) {
   addCloseButton(dialog);
   dialog->resize(kWidth_px, kHeight_px);
   dialog->show();
+  // Pictures that grow while the text is laid out leave the view at its end.
+  browser->moveCursor(QTextCursor::Start);
+  QTimer::singleShot(0, browser, [browser] { browser->verticalScrollBar()->setValue(0); });
 }
 
 void showKeys(QWidget* window) {
