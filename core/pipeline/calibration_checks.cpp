@@ -97,7 +97,7 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
                                const BoardObservations& seen, std::span<const ImuData> imus) {
   constexpr std::array kFactors = {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6};
   constexpr double kNear = 0.03;
-  constexpr double kSlowestImu_Hz = 10.0, kFastestImu_Hz = 20'000.0;
+  constexpr double kSlowestImu_hz = 10.0, kFastestImu_hz = 20'000.0;
   if (session.time_range_s) return error;
   const double camera_s = durationOf(seen);
   for (const ImuData& imu : imus) {
@@ -108,7 +108,7 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
     if (found == kFactors.end()) continue;
     // An IMU that gave samples at a usual rate is believed, but for a doubled clock, which looks usual, too.
     const double rate_Hz = static_cast<double>(imu.samples.size()) / imu_s;
-    const bool usual = rate_Hz > kSlowestImu_Hz && rate_Hz < kFastestImu_Hz && (*found > 2.0 || *found < 0.5);
+    const bool usual = rate_Hz > kSlowestImu_hz && rate_Hz < kFastestImu_hz && (*found > 2.0 || *found < 0.5);
     const std::string& camera = seen.camera;
     const std::string wrong = usual ? camera : imu.name;
     const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);

@@ -240,14 +240,15 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) {
 // What the session says of the sensor's clock: its rate, and how far it is off.
 void SessionRecording::setClock(SensorPacket& packet) {
   const bool is_camera = packet.sensor < session_.cameras.size();
-  const auto clock = [&](const auto& sensor) { return std::pair{sensor.clock_offset_s, sensor.clock_scale}; };
-  const auto [offset_s, scale] = is_camera ? clock(session_.cameras[packet.sensor])
-                                           : clock(session_.imus[packet.sensor - session_.cameras.size()]);
+  const std::size_t imu = packet.sensor - session_.cameras.size();
+  const double offset_s =
+      is_camera ? session_.cameras[packet.sensor].clock_offset_s : session_.imus[imu].clock_offset_s;
+  const double scale =
+      is_camera ? session_.cameras[packet.sensor].clock_scale : session_.imus[imu].clock_scale;
   if (offset_s == 0.0 && scale == 1.0) return;
   const std::int64_t offset_ns = nanosecondsFrom(offset_s);
   std::optional<std::int64_t>& first_ns = gates_[packet.sensor].first_ns;
-  const std::string& name = is_camera ? session_.cameras[packet.sensor].name
-                                      : session_.imus[packet.sensor - session_.cameras.size()].name;
+  const std::string& name = is_camera ? session_.cameras[packet.sensor].name : session_.imus[imu].name;
   forEachKind(packet, [&](auto& items) {
     for (auto& item : items) {
       if (!first_ns) first_ns = item.time_ns;

@@ -21,9 +21,9 @@ constexpr const char* kNoTimes =
 constexpr double kEpoch_ns = 1e17;  // as ns since 1970 it is 1973: such whole numbers can be nothing else
 constexpr std::size_t kMostListed = 8;
 constexpr std::size_t kFewestForRate = 10;
-constexpr double kSlowestImu_Hz = 20.0, kFastestImu_Hz = 20'000.0;
-constexpr double kSlowestPossible_Hz = 2.0,
-                 kFastestPossible_Hz = 50'000.0;  // beyond, a stated unit is doubted
+constexpr double kSlowestImu_hz = 20.0, kFastestImu_hz = 20'000.0;
+constexpr double kSlowestPossible_hz = 2.0,
+                 kFastestPossible_hz = 50'000.0;  // beyond, a stated unit is doubted
 
 using Axes = std::array<std::size_t, 3>;
 
@@ -188,7 +188,7 @@ void chooseTimeUnit(std::span<const TableColumn> table, std::size_t rows, TextCo
     const double rate_Hz =
         static_cast<double>(values.size() - 1) /
         (1e-9 * static_cast<double>(time.unit_ns) * std::max(values.back() - values.front(), 1e-9));
-    const bool possible = rate_Hz >= kSlowestPossible_Hz && rate_Hz <= kFastestPossible_Hz;
+    const bool possible = rate_Hz >= kSlowestPossible_hz && rate_Hz <= kFastestPossible_hz;
     if (possible || likely_ns == time.unit_ns) return;
     columns.notes.push_back(
         fmt::format("The header says that times are in {}; then there are {:.4g} samples a second. In {} "
@@ -403,7 +403,7 @@ std::int64_t guessUnit_ns(const TableColumn& time, StreamType type) {
   const double step = medianOf(std::move(steps));
   for (const std::int64_t unit_ns : {std::int64_t{1}, kMicrosecond_ns, std::int64_t{1'000'000}, kSecond_ns}) {
     const double rate_Hz = 1e9 / (step * static_cast<double>(unit_ns));
-    if (rate_Hz >= kSlowestImu_Hz && rate_Hz < kFastestImu_Hz) return unit_ns;
+    if (rate_Hz >= kSlowestImu_hz && rate_Hz < kFastestImu_hz) return unit_ns;
   }
   return guessTimeUnit_ns(time.numbers, values.size());
 }

@@ -35,11 +35,11 @@ class TestLocale : public QObject {
     QCOMPARE(sessionYaml(session, "."), yaml);
     QVERIFY(readScenario(test::scenarioPath("davis346_10s")).board.spacing_m > 0.01);
 
-    const std::vector<TimedPose> poses = readTrajectory(
-        write("trajectory.csv",
-              "time_s,x,y,z,qx,qy,qz,qw\n0.5,1.25,2.5,3.75,0,0,0,1\n0.75,1.5,2.5,3.75,0,0,0,1\n"),
-        0);
-    QCOMPARE(poses.size(), std::size_t{2});
+    QByteArray trajectory = "time_s,x,y,z,qx,qy,qz,qw\n";
+    for (int k = 0; k < 40; ++k)
+      trajectory += QByteArray::number(0.5 + 0.25 * k) + ",1.25,2.5,3.75,0,0,0,1\n";
+    const std::vector<TimedPose> poses = readTrajectory(write("trajectory.csv", trajectory), 0);
+    QCOMPARE(poses.size(), std::size_t{40});
     QCOMPARE(poses[0].time_s, 0.5);
     QVERIFY((poses[0].position_m == Eigen::Vector3d(1.25, 2.5, 3.75)));
 
