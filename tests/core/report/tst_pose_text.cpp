@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 using namespace evical;
@@ -27,10 +28,10 @@ const PoseForm& form(const std::string& name) {
   throw std::runtime_error("no form " + name);
 }
 
-const SensorPose& poseOfPoseText(const std::vector<SensorPose>& poses, const std::string& sensor) {
+const SensorPose& poseOfPoseText(const std::vector<SensorPose>& poses, std::string_view sensor) {
   for (const SensorPose& pose : poses)
     if (pose.sensor == sensor) return pose;
-  throw std::runtime_error("no sensor " + sensor);
+  throw std::runtime_error("no sensor " + std::string(sensor));
 }
 
 // Every number with a decimal point, in their order.
