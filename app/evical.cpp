@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   holdStandardStreams();
   // A file size limit is a full disk like any other: let write() say so.
   std::signal(SIGXFSZ, SIG_IGN);
-  // Whoever started us may ignore it: then nobody could tell how a job ended.
+  // If our parent ignores it, we would inherit that and could not see how a job ended.
   std::signal(SIGCHLD, SIG_DFL);
   const int exit_code = runOrFail(argc, argv);
   const std::string lost = lostOutput();

@@ -86,7 +86,7 @@ CameraIntrinsics readKalibrOmni(const YamlNode& map) {
 CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
   if (const YamlNode model = map["distortion_model"]; model.text() == "fov")
     throw model.error("is the fov model, which Evical does not have",
-                      "Calibrate this camera anew with radtan or equidistant");
+                      "Calibrate this camera again with radtan or equidistant");
   const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
   const CameraModel model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
   CameraIntrinsics camera = kalibrLens(map["intrinsics"], model, 0);
@@ -110,7 +110,7 @@ CameraIntrinsics readKalibr(const YamlNode& map) {
   return camera;
 }
 
-// The first of these keys that there is; that there is one has been looked at, or `names` says what is missing.
+// The first of these keys that the map has. Without any, the error names the first one.
 YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
   for (const char* const key : keys)
     if (const auto node = map.find(key)) return *node;
@@ -129,7 +129,7 @@ void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
   if (camera.model != CameraModel::PinholeRadtan || all.size() <= kRadtan) return setDistortion(node, camera);
   if (std::any_of(all.begin() + kRadtan, all.end(), [](double each) { return each != 0.0; }))
     throw node.error("are those of a rational lens, and Evical has three radial coefficients at most",
-                     "Calibrate this camera anew, or export it with k4, k5 and k6 fixed at zero");
+                     "Calibrate this camera again, or export it with k4, k5 and k6 fixed at zero");
   std::copy_n(all.begin(), kRadtan, camera.distortion.begin());
 }
 
@@ -138,7 +138,7 @@ void setMatrix(const YamlNode& node, CameraIntrinsics& camera) {
   const std::vector<double> k = node.reals(9);
   if (std::abs(k[1]) > kNoSkew_px)
     throw node.error(fmt::format("has a skew of {:.4g} px, which no lens of Evical has", k[1]),
-                     "Calibrate this camera anew without skew");
+                     "Calibrate this camera again without skew");
   camera.focal_length_px = {k[0], k[4]};
   camera.principal_point_px = {k[2], k[5]};
 }
@@ -175,7 +175,7 @@ CameraIntrinsics readOak(const YamlNode& root) {
   if (cameras.empty()) throw root["cameraData"].error("is empty", "Give a calibration with a camera");
   const std::vector<YamlNode> entry = cameras.front().items();
   if (entry.size() != 2)
-    throw cameras.front().error("is no socket with its camera", "Give an OAK's own file");
+    throw cameras.front().error("must be a pair of a socket and its camera", "Give an OAK's own file");
   const YamlNode& map = entry[1];
   constexpr const char* kPerspective[] = {"0", "1"};
   CameraIntrinsics camera;
@@ -273,7 +273,7 @@ KnownIntrinsics withSigmas(const YamlNode& beside) {
   return known;
 }
 
-// What of a lens is read, or says nothing that would be lost.
+// Keys of a lens that are read, or that hold nothing worth a note.
 constexpr std::string_view kLensKeys[] = {
     "camera_model", "intrinsics", "distortion_model", "distortion_coeffs", "resolution", "rostopic",
     "cam_overlaps", "image_width", "image_height", "width", "height", "camera_name", "camera_matrix",

@@ -138,8 +138,8 @@ std::vector<bool> joinedSamples(std::span<const ImuSample> samples) {
   return joined;
 }
 
-// Where a driver holds each sample of a slow sensor until the next, all three axes repeat for about the same number of samples.
-// A sensor that rests or is coarse repeats, too, but not so regularly.
+// If a driver holds each sample of a slow sensor until the next, all three axes repeat for about the same number of samples.
+// A sensor at rest and a coarse sensor repeat too, but less regularly.
 std::vector<std::size_t> repeatsOf(std::span<const ImuSample> samples, bool rate) {
   constexpr std::size_t kFewestRuns = 20;
   constexpr double kRegular = 0.95;  // of the runs, that are as long as the median one, give or take a sample
@@ -249,18 +249,18 @@ std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<cons
                                        const UnfitSamples& unfit) {
   std::vector<RecordingFault> faults;
   if (samples.size() < 2) return faults;
-  const double rate_Hz =
+  const double rate_hz =
       static_cast<double>(samples.size() - 1) / secondsSince(samples.front().time_ns, samples.back().time_ns);
   for (const auto& [repeats, sensor] : {std::pair{&unfit.gyroscope_repeats, "gyroscope"},
                                         std::pair{&unfit.accelerometer_repeats, "accelerometer"}}) {
     if (repeats->empty()) continue;
-    const double own_Hz =
-        rate_Hz * (1.0 - static_cast<double>(repeats->size()) / static_cast<double>(samples.size()));
+    const double own_hz =
+        rate_hz * (1.0 - static_cast<double>(repeats->size()) / static_cast<double>(samples.size()));
     faults.push_back(
         {stream, FaultKind::Held, 0.0,
          fmt::format("The {} measures at {:.1f} Hz, and its samples are repeated at {:.1f} Hz: calibrations "
                      "take each once.",
-                     sensor, own_Hz, rate_Hz)});
+                     sensor, own_hz, rate_hz)});
   }
   return faults;
 }

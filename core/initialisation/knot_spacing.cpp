@@ -171,11 +171,10 @@ class Demand {
   Fit closest_;
 };
 
-// Those that are fit; forces in a frame that does not turn, where they are accelerations less gravity.
-std::array<Signal, 2> signalsOf(const ImuData& imu, std::int64_t start_ns, TimeRange range,
-                                const GyroRotation& rotation) {
+// Those that `fit` has; forces in a frame that does not turn, where they are accelerations less gravity.
+std::array<Signal, 2> signalsOf(const ImuData& imu, const SampleSelection& fit, std::int64_t start_ns,
+                                TimeRange range, const GyroRotation& rotation) {
   std::array<Signal, 2> signals = {Signal{Felt::Velocity, {}, {}}, Signal{Felt::Acceleration, {}, {}}};
-  const SampleSelection fit = fitSamples(imu.samples);
   const auto add = [](Signal& signal, double time_s, const Eigen::Vector3d& value) {
     signal.times_s.push_back(time_s);
     signal.values.push_back(value);
@@ -188,6 +187,22 @@ std::array<Signal, 2> signalsOf(const ImuData& imu, std::int64_t start_ns, TimeR
     if (fit.accelerometer[i]) add(signals[1], time_s, rotation.at(time_s) * sample.specific_force_m_s2);
   }
   return signals;
+}
+
+// The slower of the two sensors decides: a driver may repeat its samples.
+double closestKnots_s(const ImuData& imu, const SampleSelection& fit) {
+  double period_s = 0.0;
+  for (const std::vector<std::uint8_t>* const taken : {&fit.gyroscope, &fit.accelerometer}) {
+    std::vector<double> periods_s;
+    std::optional<std::int64_t> last_ns;
+    for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+      if (!(*taken)[i]) continue;
+      if (last_ns) periods_s.push_back(secondsSince(*last_ns, imu.samples[i].time_ns));
+      last_ns = imu.samples[i].time_ns;
+    }
+    period_s = std::max(period_s, medianOf(std::move(periods_s)));
+  }
+  return std::clamp(kLeastSamples_a_knot * period_s, kClosestKnots_s, kWidestKnots_s);
 }
 
 }  // namespace
@@ -210,32 +225,19 @@ ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const
   return best;
 }
 
-// Of the slower of the two sensors, whose samples a driver may repeat.
 double closestKnots_s(const ImuData& imu) {
-  const SampleSelection fit = fitSamples(imu.samples);
-  double period_s = 0.0;
-  for (const std::vector<std::uint8_t>* const taken : {&fit.gyroscope, &fit.accelerometer}) {
-    std::vector<double> periods_s;
-    std::optional<std::int64_t> last_ns;
-    for (std::size_t i = 0; i < imu.samples.size(); ++i) {
-      if (!(*taken)[i]) continue;
-      if (last_ns) periods_s.push_back(secondsSince(*last_ns, imu.samples[i].time_ns));
-      last_ns = imu.samples[i].time_ns;
-    }
-    period_s = std::max(period_s, medianOf(std::move(periods_s)));
-  }
-  return std::clamp(kLeastSamples_a_knot * period_s, kClosestKnots_s, kWidestKnots_s);
+  return closestKnots_s(imu, fitSamples(imu.samples));
 }
-
 KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,
                         const GyroRotation& rotation, const ViewPrecision& views) {
   KnotSpacing found;
-  std::array<Signal, 2> signals = signalsOf(imu, start_ns, range, rotation);
+  const SampleSelection fit = fitSamples(imu.samples);
+  std::array<Signal, 2> signals = signalsOf(imu, fit, start_ns, range, rotation);
   if (std::min(signals[0].size(), signals[1].size()) < kLeastSamples) {
     found.rates.spacing_s = found.accelerations.spacing_s = kUsualKnot_s;
     return found;
   }
-  const double closest_s = closestKnots_s(imu);
+  const double closest_s = closestKnots_s(imu, fit);
   std::vector<double> spacings_s = {closest_s};
   std::copy_if(kSpacings_s.begin(), kSpacings_s.end(), std::back_inserter(spacings_s),
                [&](double spacing_s) { return spacing_s > closest_s; });

@@ -106,9 +106,9 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
     const auto found = std::find_if(kFactors.begin(), kFactors.end(),
                                     [&](double each) { return std::abs(factor / each - 1.0) < kNear; });
     if (found == kFactors.end()) continue;
-    // An IMU that gave samples at a usual rate is believed, but for a doubled clock, which looks usual, too.
-    const double rate_Hz = static_cast<double>(imu.samples.size()) / imu_s;
-    const bool usual = rate_Hz > kSlowestImu_hz && rate_Hz < kFastestImu_hz && (*found > 2.0 || *found < 0.5);
+    // An IMU with a usual rate of samples is right, except that a doubled clock looks usual too.
+    const double rate_hz = static_cast<double>(imu.samples.size()) / imu_s;
+    const bool usual = rate_hz > kSlowestImu_hz && rate_hz < kFastestImu_hz && (*found > 2.0 || *found < 0.5);
     const std::string& camera = seen.camera;
     const std::string wrong = usual ? camera : imu.name;
     const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);

@@ -87,7 +87,7 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
     const std::vector<std::string> cameras = camchainCameras(source.root);
     for (const std::string& key : source.root.keys()) {
       if (std::find(cameras.begin(), cameras.end(), key) == cameras.end()) {
-        notes.push_back(fmt::format("{} is left out: it is no camera", key));
+        notes.push_back(fmt::format("{} is left out: it is not a camera", key));
         continue;
       }
       for (const std::string& note : leftOutOf(source.root[key]))

@@ -9,7 +9,6 @@
 namespace evical {
 namespace {
 
-constexpr double kEpoch_ns = 1e17;          // as ns since 1970 it is 1973; as us, the year 5138
 constexpr double kFewestEventsPerS = 50.0;  // of a file that is worth a guess
 constexpr std::size_t kEnoughRows = 100;
 

@@ -29,6 +29,9 @@ struct EventColumns {
 // rest the order is x, y. Nothing where four columns cannot be events.
 std::optional<EventColumns> guessEventColumns(std::span<const ColumnNumbers> columns);
 
+// Whole times from here on are ns: since 1970 it is 1973, and as us it would be the year 5138.
+inline constexpr double kEpoch_ns = 1e17;
+
 // Fractions are seconds; whole numbers us, or ns where us would be no time or no rate of events.
 std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows);
 

@@ -151,18 +151,18 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
   const std::string start = firstBytes(path);
   if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
   // "% time, x, y, p" of a table begins as Prophesee's files do.
-  const bool is_table = start.starts_with("% ") && isTextTable(path);
-  if (!is_table)
+  if (!start.starts_with("% ") || !isTextTable(path))
     if (std::unique_ptr<RecordingReader> reader = openBinary(path, start)) {
       requireNoNames(path, names);
       return reader;
     }
-  if (isGzip(start) && !isTextTable(path))
+  const bool is_table = isTextTable(path);
+  if (isGzip(start) && !is_table)
     throw badInput(path.string(), "this is packed with gzip, and not a text", "Unpack it first");
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }
-  if (!names.empty() || isTextTable(path)) return std::make_unique<TextTableReader>(path, names);
+  if (!names.empty() || is_table) return std::make_unique<TextTableReader>(path, names);
   if (prophesee::isBareDat(start)) return openProphesee(path);
   throw badInput(path.string(), "the format is not known", kReadable);
 }

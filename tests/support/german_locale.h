@@ -6,6 +6,7 @@
 #include <QTemporaryDir>
 
 #include <clocale>
+#include <cstdlib>
 
 namespace evical::test {
 

@@ -15,6 +15,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QListWidget>
+#include <QScrollBar>
 #include <QSet>
 #include <QShortcut>
 #include <QTextBlock>
@@ -160,6 +161,8 @@ class TestMainWindowKeys : public QObject {
     WindowFixture test;
     test.press(Qt::Key_F1);
     auto* const browser = test.child<QDialog>("user_guide")->findChild<QTextBrowser*>();
+    QTRY_VERIFY(browser->verticalScrollBar()->maximum() > 1000);
+    QTRY_COMPARE(browser->verticalScrollBar()->value(), 0);  // it opens at its beginning
     QStringList shown;
     for (QTextBlock block = browser->document()->begin(); block.isValid(); block = block.next())
       for (auto part = block.begin(); !part.atEnd(); ++part)

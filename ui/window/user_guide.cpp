@@ -13,7 +13,6 @@
 #include <QTextBlock>
 #include <QTextBrowser>
 #include <QTextCursor>
-#include <QTimer>
 #include <QUrl>
 #include <QVBoxLayout>
 
@@ -77,6 +76,7 @@ void showUserGuide(QWidget* window) {
   browser->document()->setMarkdown(withPictures(wholeGuide()));  // which forgets pictures that were there
   addGuidePictures(*browser->document(), kPicture_px, dialog->devicePixelRatioF());
   browser->document()->markContentsDirty(0, browser->document()->characterCount());
+  browser->moveCursor(QTextCursor::Start);  // setMarkdown leaves it at the end, and the view follows it
   parts->insertWidget(0, makeContents(browser, parts));
   parts->setSizes({kContents_px, kWidth_px - kContents_px});
   parts->setStretchFactor(1, 1);
@@ -85,9 +85,6 @@ void showUserGuide(QWidget* window) {
   addCloseButton(dialog);
   dialog->resize(kWidth_px, kHeight_px);
   dialog->show();
-  // Pictures that grow while the text is laid out leave the view at its end.
-  browser->moveCursor(QTextCursor::Start);
-  QTimer::singleShot(0, browser, [browser] { browser->verticalScrollBar()->setValue(0); });
 }
 
 void showKeys(QWidget* window) {

@@ -16,9 +16,6 @@ namespace {
 
 constexpr std::string_view kAroundName = " \t\r\"'";
 constexpr std::string_view kUnusedName = "-";
-constexpr const char* kNoTimes =
-    "its header names no column of times, and samples without times cannot be calibrated";
-constexpr double kEpoch_ns = 1e17;  // as ns since 1970 it is 1973: such whole numbers can be nothing else
 constexpr std::size_t kMostListed = 8;
 constexpr std::size_t kFewestForRate = 10;
 constexpr double kSlowestImu_hz = 20.0, kFastestImu_hz = 20'000.0;
@@ -185,17 +182,17 @@ void chooseTimeUnit(std::span<const TableColumn> table, std::size_t rows, TextCo
     if (columns.type != StreamType::Imu || columns.time.size() > 1 || !known || rows < kFewestForRate) return;
     const std::int64_t likely_ns = guessUnit_ns(table[time.column], columns.type);
     const std::vector<double>& values = table[time.column].values;
-    const double rate_Hz =
+    const double rate_hz =
         static_cast<double>(values.size() - 1) /
         (1e-9 * static_cast<double>(time.unit_ns) * std::max(values.back() - values.front(), 1e-9));
-    const bool possible = rate_Hz >= kSlowestPossible_hz && rate_Hz <= kFastestPossible_hz;
+    const bool possible = rate_hz >= kSlowestPossible_hz && rate_hz <= kFastestPossible_hz;
     if (possible || likely_ns == time.unit_ns) return;
     columns.notes.push_back(
         fmt::format("The header says that times are in {}; then there are {:.4g} samples a second. In {} "
                     "there would be {:.4g}: "
                     "if so, correct the header, or name the columns in the session (columns).",
-                    timeUnitName(time.unit_ns), rate_Hz, timeUnitName(likely_ns),
-                    rate_Hz * static_cast<double>(time.unit_ns) / static_cast<double>(likely_ns)));
+                    timeUnitName(time.unit_ns), rate_hz, timeUnitName(likely_ns),
+                    rate_hz * static_cast<double>(time.unit_ns) / static_cast<double>(likely_ns)));
     return;
   }
   time.unit_ns = known ? guessUnit_ns(table[time.column], columns.type) : kSecond_ns;
@@ -283,10 +280,20 @@ std::string firstOf(const std::vector<std::string>& names) {
          (first.size() < all.size() ? fmt::format(" and {} more", all.size() - first.size()) : "");
 }
 
+bool namesImu(const TableHeader& header) {
+  return header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
+}
+bool namesPlaces(const TableHeader& header) {
+  return header.has(ColumnKind::X) && header.has(ColumnKind::Y);
+}
+bool lacksTimes(const TableHeader& header) {
+  return !header.has(ColumnKind::Time) && (namesImu(header) || namesPlaces(header));
+}
+
 std::string whatIsMissing(const TableHeader& header) {
-  const bool imu = header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
-  const bool places = header.has(ColumnKind::X) && header.has(ColumnKind::Y);
-  if (!header.has(ColumnKind::Time) && (imu || places)) return kNoTimes;
+  const bool imu = namesImu(header), places = namesPlaces(header);
+  if (lacksTimes(header))
+    return "its header names no column of times, and samples without times cannot be calibrated";
   if (imu)
     return fmt::format("its header names no {}",
                        header.has(ColumnKind::AngularRate) ? "accelerometer" : "gyroscope");
@@ -363,11 +370,11 @@ void applyHeader(const TableHeader& header, std::span<const TableColumn> table, 
                   columns);
   if (!header.namesTable()) {
     refuse(header, whatIsMissing(header), columns);
-    if (columns.problem == kNoTimes)
+    if (lacksTimes(header))
       columns.advice =
-          "Add a column of times (t_s, t_ms, t_us or t_ns), best those of the sensor; the number of a row "
-          "over the "
-          "rate of samples serves only where no row is missing";
+          "Add a column of times (t_s, t_ms, t_us or t_ns), best those of the sensor. The number of a row "
+          "over "
+          "the rate of samples serves only where no row is missing";
     return;
   }
   if (header.has(ColumnKind::AngularRate)) {
@@ -402,8 +409,8 @@ std::int64_t guessUnit_ns(const TableColumn& time, StreamType type) {
   if (steps.empty()) return guessTimeUnit_ns(time.numbers, values.size());
   const double step = medianOf(std::move(steps));
   for (const std::int64_t unit_ns : {std::int64_t{1}, kMicrosecond_ns, std::int64_t{1'000'000}, kSecond_ns}) {
-    const double rate_Hz = 1e9 / (step * static_cast<double>(unit_ns));
-    if (rate_Hz >= kSlowestImu_hz && rate_Hz < kFastestImu_hz) return unit_ns;
+    const double rate_hz = 1e9 / (step * static_cast<double>(unit_ns));
+    if (rate_hz >= kSlowestImu_hz && rate_hz < kFastestImu_hz) return unit_ns;
   }
   return guessTimeUnit_ns(time.numbers, values.size());
 }
