@@ -12,10 +12,13 @@
 namespace evical {
 namespace {
 
+constexpr double kLeastWhole = 0.05;  // of the views
+
 struct AxisCheck {
   const char* line;  // "row" or "column"
   const LatticeEnds& ends;
   std::vector<bool> seen;  // by line, in any view
+  bool whole = false;      // both outermost lines are there in views enough
 };
 
 std::vector<bool> circlesSeen(const BoardObservations& observations, const Board& board) {
@@ -23,6 +26,23 @@ std::vector<bool> circlesSeen(const BoardObservations& observations, const Board
   for (const BoardView& view : observations.views)
     for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
   return seen;
+}
+
+// Views in which both outermost lines are there, along rows or along columns. A board that ends earlier has none,
+// wherever on the session's lattice it was placed; a right board has some, however many bursts a read-out loses.
+int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double least_line) {
+  const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
+  const double least = std::max(2.0, least_line * in_line);
+  return static_cast<int>(
+      std::count_if(observations.views.begin(), observations.views.end(), [&](const BoardView& view) {
+        int first = 0, last = 0;
+        for (const CircleObservation& circle : view.circles) {
+          const int line = rows ? circle.circle / board.cols : circle.circle % board.cols;
+          first += line == 0;
+          last += line == lines - 1;
+        }
+        return std::min(first, last) >= least;
+      }));
 }
 
 bool contradicted(int against, int looked_at, const ExtentOptions& options) {
@@ -88,12 +108,18 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board) {
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
   if (observations.kind != CameraKind::Events) return;  // whose lattice alone may be laid wrongly
   const std::vector<bool> seen = circlesSeen(observations, board);
-  AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows))};
-  AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols))};
+  AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows)),
+                 false};
+  AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols)),
+                 false};
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (!seen[k]) continue;
     rows.seen[k / cols.seen.size()] = cols.seen[k % cols.seen.size()] = true;
   }
+  const double least_whole =
+      std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
+  rows.whole = wholeViews(observations, board, true, options.least_line) >= least_whole;
+  cols.whole = wholeViews(observations, board, false, options.least_line) >= least_whole;
   bool larger = false, smaller = false;
   std::string text;
   const auto say = [&](const std::string& more) { text += (text.empty() ? "" : ", and ") + more; };
@@ -102,7 +128,7 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
       larger = true;
       say(beyondText(*axis));
     }
-    if (contradicted(axis->ends.edge_missing, axis->ends.edge_in_view, options)) {
+    if (!axis->whole && contradicted(axis->ends.edge_missing, axis->ends.edge_in_view, options)) {
       smaller = true;
       say(missingText(*axis, observations.views.size()));
     }
