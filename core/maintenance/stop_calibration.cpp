@@ -1,7 +1,5 @@
 #include "core/maintenance/stop_calibration.h"
 
-#include "core/numerics/chi_squared.h"
-
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -21,9 +19,9 @@ constexpr std::array<const char*, kAccelerometerNumbers> kWords = {
     "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
     "scale z", "misalignment xy", "misalignment xz", "misalignment yz"};
 
+// Variances of a window's means about its stop's.
 struct StopNoise {
-  Eigen::Vector3d rate_variance = Eigen::Vector3d::Zero(),
-                  force_variance = Eigen::Vector3d::Zero();  // of a window
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
 };
 
 StopMean meanOf(std::span<const MeansWindow> windows, const StopRange& range) {
@@ -39,19 +37,19 @@ StopMean meanOf(std::span<const MeansWindow> windows, const StopRange& range) {
   return mean;
 }
 
-// How windows scatter about their stop's mean, over all stops, and more where neighbours hang together: then the
+// How windows scatter about their stop's mean, over these stops, and more where neighbours hang together: then the
 // variance of a mean falls more slowly.
 StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
-                  std::span<const StopMean> means) {
+                  std::span<const StopMean> means, const std::vector<std::size_t>& stops) {
   StopNoise noise;
   Eigen::Vector3d rate_pairs = Eigen::Vector3d::Zero(), force_pairs = Eigen::Vector3d::Zero();
   double freedom = 0.0, pairs = 0.0;
-  for (std::size_t s = 0; s < ranges.size(); ++s) {
+  for (const std::size_t s : stops) {
     for (std::size_t i = ranges[s].first; i <= ranges[s].last; ++i) {
       const Eigen::Vector3d rate = windows[i].rate_rad_s - means[s].rate_rad_s,
                             force = windows[i].force_m_s2 - means[s].force_m_s2;
-      noise.rate_variance += rate.cwiseAbs2();
-      noise.force_variance += force.cwiseAbs2();
+      noise.rate += rate.cwiseAbs2();
+      noise.force += force.cwiseAbs2();
       if (i == ranges[s].first) continue;
       rate_pairs += rate.cwiseProduct(windows[i - 1].rate_rad_s - means[s].rate_rad_s);
       force_pairs += force.cwiseProduct(windows[i - 1].force_m_s2 - means[s].force_m_s2);
@@ -60,10 +58,10 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
     freedom += means[s].windows - 1.0;
   }
   freedom = std::max(freedom, 1.0);
-  noise.rate_variance /= freedom;
-  noise.force_variance /= freedom;
+  noise.rate /= freedom;
+  noise.force /= freedom;
   // Taking the mean off makes neighbours of white noise look opposed by 1 / windows.
-  const double bias = static_cast<double>(ranges.size()) / std::max(pairs, 1.0);
+  const double bias = static_cast<double>(stops.size()) / std::max(pairs, 1.0);
   const auto inflate = [&](Eigen::Vector3d& variance, const Eigen::Vector3d& sum) {
     for (int axis = 0; axis < 3; ++axis) {
       const double alike = sum[axis] / std::max(pairs, 1.0) + bias * variance[axis];
@@ -73,9 +71,34 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
         variance[axis] *= (1.0 + share) / (1.0 - std::min(share, 0.9));
     }
   };
-  inflate(noise.rate_variance, rate_pairs);
-  inflate(noise.force_variance, force_pairs);
+  inflate(noise.rate, rate_pairs);
+  inflate(noise.force, force_pairs);
+  constexpr double kLeastVariance = 1e-12;
+  noise.force = noise.force.cwiseMax(kLeastVariance);
   return noise;
+}
+
+// By stop. Those that a hand holds are more restless than those on a table, by the gyroscope: each kind has its own noise.
+std::vector<StopNoise> noisesOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
+                                std::span<const StopMean> means) {
+  constexpr double kByHand = 4.0;  // times the variance of the quietest stop
+  std::vector<double> restless;
+  for (const StopRange& range : ranges) {
+    double sum = 0.0;
+    for (std::size_t i = range.first; i <= range.last; ++i) sum += windows[i].rate_variance;
+    restless.push_back(sum / static_cast<double>(range.count()));
+  }
+  const double quietest = *std::min_element(restless.begin(), restless.end());
+  std::array<std::vector<std::size_t>, 2> kinds;
+  for (std::size_t s = 0; s < ranges.size(); ++s)
+    kinds[restless[s] > kByHand * quietest ? 1 : 0].push_back(s);
+  std::vector<StopNoise> noises(ranges.size());
+  for (const std::vector<std::size_t>& stops : kinds) {
+    if (stops.empty()) continue;
+    const StopNoise noise = noiseOf(windows, ranges, means, stops);
+    for (const std::size_t s : stops) noises[s] = noise;
+  }
+  return noises;
 }
 
 // Zero when |M^-1 (f - b)| is gravity's norm; its row by the nine numbers, its sigma.
@@ -84,8 +107,8 @@ struct StopResidual {
   AccelerometerVector row;
 };
 
-StopResidual residualOf(const StopMean& stop, const Eigen::Vector3d& window_variance,
-                        const AccelerometerVector& numbers, double gravity_m_s2) {
+StopResidual residualOf(const StopMean& stop, const StopNoise& noise, const AccelerometerVector& numbers,
+                        double gravity_m_s2) {
   ImuState imu;
   setAccelerometerNumbers(numbers, imu);
   const Eigen::Matrix3d inverse = imu.accelerometer_mapping.inverse();
@@ -93,7 +116,7 @@ StopResidual residualOf(const StopMean& stop, const Eigen::Vector3d& window_vari
   const Eigen::Vector3d along = inverse.transpose() * force.normalized();
   StopResidual residual;
   residual.value = force.norm() - gravity_m_s2;
-  residual.sigma = std::sqrt(along.cwiseAbs2().dot(window_variance) / stop.windows);
+  residual.sigma = std::sqrt(along.cwiseAbs2().dot(noise.force) / stop.windows);
   residual.row.head<3>() = -along;
   for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
     residual.row[3 + static_cast<Eigen::Index>(e)] =
@@ -113,12 +136,12 @@ struct NormalEquations {
   AccelerometerVector score = AccelerometerVector::Zero();
 };
 
-NormalEquations equationsAt(const StopCalibration& found, const Eigen::Vector3d& variance,
+NormalEquations equationsAt(const StopCalibration& found, const std::vector<StopNoise>& noises,
                             const AccelerometerVector& numbers, double gravity_m_s2) {
   NormalEquations sum;
   for (std::size_t s = 0; s < found.stops.size(); ++s) {
     if (found.used[s] == 0) continue;
-    const StopResidual r = residualOf(found.stops[s], variance, numbers, gravity_m_s2);
+    const StopResidual r = residualOf(found.stops[s], noises[s], numbers, gravity_m_s2);
     const double weight = 1.0 / (r.sigma * r.sigma);
     sum.information += weight * r.row * r.row.transpose();
     sum.score -= weight * r.value * r.row;
@@ -126,12 +149,12 @@ NormalEquations equationsAt(const StopCalibration& found, const Eigen::Vector3d&
   return sum;
 }
 
-void solve(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2) {
+void solve(StopCalibration& found, const std::vector<StopNoise>& noises, double gravity_m_s2) {
   constexpr int kSteps = 10;
   const AccelerometerVector open = openInformation();
   found.now = found.before;
   for (int step = 0; step < kSteps; ++step) {
-    const NormalEquations sum = equationsAt(found, variance, found.now, gravity_m_s2);
+    const NormalEquations sum = equationsAt(found, noises, found.now, gravity_m_s2);
     const AccelerometerMatrix whole = sum.information + AccelerometerMatrix(open.asDiagonal());
     const Eigen::LDLT<AccelerometerMatrix> solver(whole);
     found.covariance = solver.solve(AccelerometerMatrix::Identity());
@@ -140,7 +163,7 @@ void solve(StopCalibration& found, const Eigen::Vector3d& variance, double gravi
     if (change.cwiseAbs().maxCoeff() < 1e-10) break;
   }
   for (std::size_t s = 0; s < found.stops.size(); ++s) {
-    const StopResidual r = residualOf(found.stops[s], variance, found.now, gravity_m_s2);
+    const StopResidual r = residualOf(found.stops[s], noises[s], found.now, gravity_m_s2);
     found.residuals_m_s2[s] = r.value;
     found.sigmas_m_s2[s] = r.sigma;
   }
@@ -165,14 +188,12 @@ Misfit misfitOf(const StopCalibration& found) {
   }
   const double freedom = count - determined(found);
   if (freedom < 0.9) return {};
-  // Of a few stops the RMS scatters; only what is no chance widens sigmas.
-  constexpr double kByChance = 0.01;
-  const bool beyond = sum > chiSquaredLimit(kByChance, static_cast<int>(std::lround(freedom)));
-  return {std::sqrt(sum / freedom), beyond ? sum / freedom : 1.0};
+  // What stops differ by, rather than what each is still by, is how well they tell gravity: hands pull a little.
+  return {std::sqrt(sum / freedom), std::max(sum / freedom, 1.0)};
 }
 
 // A ride at a steady pull looks like a stop. One that the others contradict goes, while most stay.
-void dropOutliers(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2,
+void dropOutliers(StopCalibration& found, const std::vector<StopNoise>& noises, double gravity_m_s2,
                   const MaintenanceOptions& options) {
   const auto most = static_cast<int>(options.left_out_stops * static_cast<double>(found.stops.size()));
   for (int dropped = 0; dropped < most; ++dropped) {
@@ -187,7 +208,7 @@ void dropOutliers(StopCalibration& found, const Eigen::Vector3d& variance, doubl
     }
     if (worst == found.stops.size()) return;
     found.used[worst] = 0;
-    solve(found, variance, gravity_m_s2);
+    solve(found, noises, gravity_m_s2);
   }
 }
 
@@ -212,20 +233,46 @@ void nameWeakest(StopCalibration& found) {
 }
 
 // Stops are as different as the bias walks, whatever a single one's noise.
-void setGyroscopeBias(StopCalibration& found, const Eigen::Vector3d& window_variance) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum;
+void setGyroscopeBias(StopCalibration& found, const std::vector<StopNoise>& noises) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum, by_noise = sum;
   double windows = 0.0;
   for (const StopMean& stop : found.stops) {
     sum += stop.windows * stop.rate_rad_s;
     windows += stop.windows;
   }
   found.gyroscope_bias_rad_s = sum / windows;
-  for (const StopMean& stop : found.stops)
+  for (std::size_t s = 0; s < found.stops.size(); ++s) {
+    const StopMean& stop = found.stops[s];
     squares += (stop.windows / windows) * (stop.rate_rad_s - found.gyroscope_bias_rad_s).cwiseAbs2();
+    by_noise += stop.windows / (windows * windows) * noises[s].rate;
+  }
   const auto count = static_cast<double>(found.stops.size());
-  const Eigen::Vector3d by_noise = window_variance / windows,
-                        by_scatter = squares / std::max(count - 1.0, 1.0);
+  const Eigen::Vector3d by_scatter = squares / std::max(count - 1.0, 1.0);
   found.gyroscope_bias_sigma_rad_s = by_noise.cwiseMax(by_scatter).cwiseSqrt();
+}
+
+StopCalibration calibrate(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
+                          const ImuState& before, double gravity_m_s2, const MaintenanceOptions& options) {
+  StopCalibration found;
+  if (ranges.empty()) return found;
+  for (const StopRange& range : ranges) found.stops.push_back(meanOf(windows, range));
+  const std::vector<StopNoise> noises = noisesOf(windows, ranges, found.stops);
+  found.used.assign(found.stops.size(), 1);
+  found.residuals_m_s2.resize(found.stops.size());
+  found.sigmas_m_s2.resize(found.stops.size());
+  found.before = accelerometerNumbers(before);
+  solve(found, noises, gravity_m_s2);
+  dropOutliers(found, noises, gravity_m_s2, options);
+  const Misfit misfit = misfitOf(found);
+  found.misfit = misfit.rms;
+  const NormalEquations at_before = equationsAt(found, noises, found.before, gravity_m_s2);
+  // What the stops are further from each other than their noise lets them be is in all of them.
+  found.information = at_before.information / misfit.inflation;
+  found.score = at_before.score / misfit.inflation;
+  found.covariance *= misfit.inflation;
+  nameWeakest(found);
+  setGyroscopeBias(found, noises);
+  return found;
 }
 
 }  // namespace
@@ -259,31 +306,20 @@ AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const Ma
   return variances.cwiseMax(1e-12);
 }
 
-StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
-                                   const ImuState& before, double gravity_m_s2,
-                                   const MaintenanceOptions& options) {
-  StopCalibration found;
-  if (ranges.empty()) return found;
-  for (const StopRange& range : ranges) found.stops.push_back(meanOf(windows, range));
-  const StopNoise noise = noiseOf(windows, ranges, found.stops);
-  constexpr double kLeastVariance = 1e-12;
-  const Eigen::Vector3d variance = noise.force_variance.cwiseMax(kLeastVariance);
-  found.used.assign(found.stops.size(), 1);
-  found.residuals_m_s2.resize(found.stops.size());
-  found.sigmas_m_s2.resize(found.stops.size());
-  found.before = accelerometerNumbers(before);
-  solve(found, variance, gravity_m_s2);
-  dropOutliers(found, variance, gravity_m_s2, options);
-  const Misfit misfit = misfitOf(found);
-  found.misfit = misfit.rms;
-  const NormalEquations at_before = equationsAt(found, variance, found.before, gravity_m_s2);
-  // What the stops are further from each other than their noise lets them be is in all of them.
-  found.information = at_before.information / misfit.inflation;
-  found.score = at_before.score / misfit.inflation;
-  found.covariance *= misfit.inflation;
-  nameWeakest(found);
-  setGyroscopeBias(found, noise.rate_variance);
-  return found;
+StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, const ImuState& before,
+                                   double gravity_m_s2, const MaintenanceOptions& options) {
+  constexpr std::array kThresholds = {1.0, 1.5, 2.0, 3.0};  // of options.stop_above_quietest
+  StopCalibration best;
+  std::ptrdiff_t most = 0;
+  for (const double times : kThresholds) {
+    const std::vector<StopRange> ranges = findStops(windows, times * options.stop_above_quietest, options);
+    StopCalibration found = calibrate(windows, ranges, before, gravity_m_s2, options);
+    const std::ptrdiff_t used = std::count(found.used.begin(), found.used.end(), 1);
+    if (used <= most) continue;
+    most = used;
+    best = std::move(found);
+  }
+  return best;
 }
 
 }  // namespace evical

@@ -53,9 +53,9 @@ struct StopCalibration {
   Eigen::Vector3d gyroscope_bias_rad_s, gyroscope_bias_sigma_rad_s;
 };
 
-// Nothing to calibrate without stops: then `stops` is empty and all else meaningless.
-StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
-                                   const ImuState& before, double gravity_m_s2,
-                                   const MaintenanceOptions& options);
+// Tries several thresholds of stillness (D. Tedaldi et al., ICRA 2014), and takes the first of those by which the most stops
+// agree. Nothing to calibrate without stops: then `stops` is empty and all else meaningless.
+StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, const ImuState& before,
+                                   double gravity_m_s2, const MaintenanceOptions& options);
 
 }  // namespace evical

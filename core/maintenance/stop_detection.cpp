@@ -10,36 +10,51 @@ namespace {
 
 constexpr int kFewest = 4;  // samples in a window
 
-double lowQuantile(std::vector<double> values) {
+bool hasBoth(const MeansWindow& window) {
+  return window.samples >= kFewest && window.forces >= kFewest;
+}
+
+// Means over the windows within half a second: one restless quarter of a second does not end a stop.
+std::vector<double> smoothed(std::span<const MeansWindow> windows, double MeansWindow::*variance) {
+  constexpr std::ptrdiff_t kBeside = 2;
+  std::vector<double> means;
+  const auto count = static_cast<std::ptrdiff_t>(windows.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::ptrdiff_t begin = std::max<std::ptrdiff_t>(i - kBeside, 0),
+                         end = std::min(i + kBeside + 1, count);
+    double sum = 0.0;
+    for (std::ptrdiff_t k = begin; k < end; ++k) sum += windows[static_cast<std::size_t>(k)].*variance;
+    means.push_back(sum / static_cast<double>(end - begin));
+  }
+  return means;
+}
+
+// Of the windows that have samples enough.
+double lowQuantile(std::span<const MeansWindow> windows, const std::vector<double>& variances) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < windows.size(); ++i)
+    if (hasBoth(windows[i])) values.push_back(variances[i]);
+  if (values.empty()) return 0.0;
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 10);
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
 
-// What still windows are like in this log.
-struct Stillness {
-  double rate_variance = 0.0, force_variance = 0.0;
-
-  bool of(const MeansWindow& window) const {
-    return window.samples >= kFewest && window.rate_variance <= rate_variance &&
-           window.force_variance <= force_variance;
-  }
-};
-
-Stillness stillnessOf(std::span<const MeansWindow> windows, const MaintenanceOptions& options) {
-  std::vector<double> rates, forces;
-  for (const MeansWindow& window : windows) {
-    if (window.samples < kFewest) continue;
-    rates.push_back(window.rate_variance);
-    forces.push_back(window.force_variance);
-  }
-  if (rates.empty()) return {};
+// Which windows are still: the accelerometer decides, against the log's own quietest tenth. A hand that holds an IMU still turns
+// it ten times as restlessly as a table does, so the gyroscope has an absolute limit only.
+std::vector<bool> stillWindows(std::span<const MeansWindow> windows, double above_quietest,
+                               const MaintenanceOptions& options) {
   // Of quantised numbers a window may have no variance at all.
   constexpr double kLeast = 1e-10;
-  const auto limit = [&](const std::vector<double>& variances, double most) {
-    return std::min(options.stop_above_quietest * std::max(lowQuantile(variances), kLeast), most * most);
-  };
-  return {limit(rates, options.stop_rate_rad_s), limit(forces, options.stop_force_m_s2)};
+  const std::vector<double> forces = smoothed(windows, &MeansWindow::force_variance),
+                            rates = smoothed(windows, &MeansWindow::rate_variance);
+  const double most_force = std::min(above_quietest * std::max(lowQuantile(windows, forces), kLeast),
+                                     options.stop_force_m_s2 * options.stop_force_m_s2);
+  const double most_rate = options.stop_rate_rad_s * options.stop_rate_rad_s;
+  std::vector<bool> still;
+  for (std::size_t i = 0; i < windows.size(); ++i)
+    still.push_back(hasBoth(windows[i]) && forces[i] <= most_force && rates[i] <= most_rate);
+  return still;
 }
 
 struct RunMeans {
@@ -53,7 +68,7 @@ struct RunMeans {
   }
   bool holds(const MeansWindow& window, double still_rate, double still_force) const {
     const double rate_sigma = std::sqrt(window.rate_variance / window.samples);
-    const double force_sigma = std::sqrt(window.force_variance / window.samples);
+    const double force_sigma = std::sqrt(window.force_variance / window.forces);
     return count == 0.0 ||
            ((window.rate_rad_s - rate).cwiseAbs().maxCoeff() < still_rate + 5.0 * rate_sigma &&
             (window.force_m_s2 - force).cwiseAbs().maxCoeff() < still_force + 5.0 * force_sigma);
@@ -87,23 +102,28 @@ void WindowMeans::add(double time_s, const ImuSample& sample) {
     rate_origin_ = sample.angular_rate_rad_s;
     force_origin_ = sample.specific_force_m_s2;
   }
-  const Eigen::Vector3d rate = sample.angular_rate_rad_s - rate_origin_,
-                        force = sample.specific_force_m_s2 - force_origin_;
-  ++current_.samples;
-  current_.rate_rad_s += rate;
-  current_.force_m_s2 += force;
-  current_.rate_variance += rate.squaredNorm();
-  current_.force_variance += force.squaredNorm();
+  if (sample.measured_by != MeasuredBy::Accelerometer) {
+    const Eigen::Vector3d rate = sample.angular_rate_rad_s - rate_origin_;
+    ++current_.samples;
+    current_.rate_rad_s += rate;
+    current_.rate_variance += rate.squaredNorm();
+  }
+  if (sample.measured_by != MeasuredBy::Gyroscope) {
+    const Eigen::Vector3d force = sample.specific_force_m_s2 - force_origin_;
+    ++current_.forces;
+    current_.force_m_s2 += force;
+    current_.force_variance += force.squaredNorm();
+  }
 }
 
 void WindowMeans::close() {
   open_ = false;
-  const double n = current_.samples;
-  current_.rate_rad_s /= n;
-  current_.force_m_s2 /= n;
-  const double freedom = 3.0 * std::max(n - 1.0, 1.0);
-  current_.rate_variance = (current_.rate_variance - n * current_.rate_rad_s.squaredNorm()) / freedom;
-  current_.force_variance = (current_.force_variance - n * current_.force_m_s2.squaredNorm()) / freedom;
+  const auto toMean = [](double count, Eigen::Vector3d& sum, double& squares) {
+    sum /= std::max(count, 1.0);
+    squares = (squares - count * sum.squaredNorm()) / (3.0 * std::max(count - 1.0, 1.0));
+  };
+  toMean(current_.samples, current_.rate_rad_s, current_.rate_variance);
+  toMean(current_.forces, current_.force_m_s2, current_.force_variance);
   current_.rate_rad_s += rate_origin_;
   current_.force_m_s2 += force_origin_;
   windows_.push_back(current_);
@@ -113,16 +133,18 @@ void WindowMeans::finish() {
   if (open_) close();
 }
 
-std::vector<StopRange> findStops(std::span<const MeansWindow> windows, const MaintenanceOptions& options) {
-  const Stillness still = stillnessOf(windows, options);
+std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
+                                 const MaintenanceOptions& options) {
+  constexpr double kWithinStop = 4.0;  // times what means of whole stops may differ by: hands sway
+  const std::vector<bool> still = stillWindows(windows, above_quietest, options);
   const double still_rate = options.still_rate_deg_s * kRadPerDeg;
   std::vector<StopRange> stops;
   const auto fewest = static_cast<std::size_t>(std::ceil(options.shortest_stop_s / WindowMeans::kLength_s));
   for (std::size_t begin = 0; begin < windows.size();) {
     RunMeans means;
     std::size_t end = begin;
-    for (; end < windows.size() && still.of(windows[end]); ++end) {
-      if (!means.holds(windows[end], still_rate, options.still_force_m_s2)) break;
+    for (; end < windows.size() && still[end]; ++end) {
+      if (!means.holds(windows[end], kWithinStop * still_rate, options.still_force_m_s2)) break;
       if (end > begin &&
           windows[end].time_s - windows[end - 1].time_s > WindowMeans::kLength_s + options.gap_s)
         break;
@@ -141,7 +163,7 @@ double rateScale(std::span<const MeansWindow> windows) {
   double turned = 0.0, said = 0.0, changed = 0.0, way = 0.0;
   for (std::size_t i = 1; i + 1 < windows.size(); ++i) {
     const double span_s = windows[i + 1].time_s - windows[i - 1].time_s;
-    if (span_s > 3.0 * WindowMeans::kLength_s || windows[i].samples < kFewest) continue;
+    if (span_s > 3.0 * WindowMeans::kLength_s || !hasBoth(windows[i])) continue;
     const Eigen::Vector3d change = windows[i + 1].force_m_s2 - windows[i - 1].force_m_s2;
     const Eigen::Vector3d expected = -span_s * windows[i].rate_rad_s.cross(windows[i].force_m_s2);
     turned += change.dot(expected);

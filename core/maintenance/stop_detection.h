@@ -14,8 +14,8 @@ namespace evical {
 
 // Means over a quarter of a second: all that stops need, so that memory grows by a megabyte an hour.
 struct MeansWindow {
-  double time_s = 0.0;  // its begin
-  int samples = 0;
+  double time_s = 0.0;          // its begin
+  int samples = 0, forces = 0;  // of the gyroscope, of the accelerometer
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
   double rate_variance = 0.0, force_variance = 0.0;  // within it, per axis
 };
@@ -43,7 +43,9 @@ struct StopRange {
   std::size_t first = 0, last = 0;
   std::size_t count() const { return last - first + 1; }
 };
-std::vector<StopRange> findStops(std::span<const MeansWindow> windows, const MaintenanceOptions& options);
+// `above_quietest`: how many times the accelerometer's variance in the log's quietest tenth counts as still.
+std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
+                                 const MaintenanceOptions& options);
 
 // How gravity turns in the accelerometer against how the gyroscope says that it turns: near 1, near 0.017 where rates
 // are in deg/s and called rad/s. 0 where too little turns.

@@ -24,8 +24,7 @@ WindowMeans meansOf(const DriveScenario& scenario, std::size_t imu) {
 
 StopCalibration stopsOf(const DriveScenario& scenario, const MaintenanceOptions& options) {
   const WindowMeans means = meansOf(scenario);
-  return calibrateFromStops(means.windows(), findStops(means.windows(), options), scenario.imus.front(),
-                            scenario.gravity_m_s2, options);
+  return calibrateFromStops(means.windows(), scenario.imus.front(), scenario.gravity_m_s2, options);
 }
 
 std::vector<PairWindow> pairWindows(const DriveScenario& scenario) {
