@@ -11,6 +11,10 @@ constexpr std::int64_t kLargestWrapped_us = kLatestTime_ns / kMicrosecond_ns - 4
 constexpr double kAcceleration_per_g = 8192.0, kRate_per_deg_s = 65.5;
 constexpr std::uint32_t kImuMask = 0x8000'0C00;
 
+std::int16_t wordOf(std::uint32_t address) {
+  return static_cast<std::int16_t>(address >> 12 & 0xFFFF);
+}
+
 }  // namespace
 
 std::uint32_t bigEndian32(const char* bytes) {
@@ -21,6 +25,14 @@ std::uint32_t bigEndian32(const char* bytes) {
 
 bool isDavisImuWord(std::uint32_t address) {
   return (address & kImuMask) == kImuMask;
+}
+
+unsigned davisImuCode(std::uint32_t address) {
+  return address >> 28 & 7;
+}
+
+double davisAcceleration_g(std::uint32_t address) {
+  return wordOf(address) / kAcceleration_per_g;
 }
 
 // Bit 10: an edge at the external input; bit 31: a pixel's brightness, or the IMU.
@@ -125,21 +137,23 @@ void Aedat2Decoder::addEvent(unsigned x, unsigned y, bool brighter, std::int64_t
 // Seven follow one another: the acceleration's axes, the temperature, the gyroscope's axes, as the chip itself
 // has them.
 void Aedat2Decoder::addImuWord(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte) {
-  const unsigned code = address >> 28 & 7;
+  const unsigned code = davisImuCode(address);
   if (code != next_imu_word_ && code != 0) {
     findings_.unknown.add(byte);
     next_imu_word_ = 0;
     return;
   }
-  imu_words_[code] = static_cast<std::int16_t>(address >> 12 & 0xFFFF);
+  imu_words_[code] = wordOf(address);
   next_imu_word_ = code + 1;
   if (next_imu_word_ < imu_words_.size()) return;
   next_imu_word_ = 0;
   RawImuSample sample;
   sample.time_ns = time_ns;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    sample.specific_force[axis] = imu_words_[static_cast<std::size_t>(axis)] / kAcceleration_per_g;
-    sample.angular_rate[axis] = imu_words_[static_cast<std::size_t>(axis) + 4] / kRate_per_deg_s;
+    sample.specific_force[axis] =
+        imu_ranges_ * imu_words_[static_cast<std::size_t>(axis)] / kAcceleration_per_g;
+    sample.angular_rate[axis] =
+        imu_ranges_ * imu_words_[static_cast<std::size_t>(axis) + 4] / kRate_per_deg_s;
   }
   imu_samples_.push_back(sample);
 }

@@ -13,8 +13,9 @@ enum class AddressLayout { Dvs128, Davis };
 
 class Aedat2Decoder : public BlockDecoder {
  public:
-  Aedat2Decoder(AddressLayout layout, const Resolution& size_px)
-      : layout_(layout), size_px_(size_px), aps_(size_px) {}
+  // `imu_ranges`: the IMU's full scales as multiples of 4 g and 500 deg/s.
+  Aedat2Decoder(AddressLayout layout, const Resolution& size_px, double imu_ranges = 1.0)
+      : layout_(layout), size_px_(size_px), imu_ranges_(imu_ranges), aps_(size_px) {}
 
   std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) override;
   std::vector<Frame>* frames() override { return &aps_.frames(); }
@@ -32,6 +33,7 @@ class Aedat2Decoder : public BlockDecoder {
 
   AddressLayout layout_;
   Resolution size_px_;
+  double imu_ranges_;
   ApsFrames aps_;
   std::uint64_t frame_byte_ = 0;  // where the frame begins that is not whole yet
   bool started_ = false;
@@ -45,6 +47,10 @@ inline constexpr std::size_t kAedat2Record_bytes = 8;
 std::uint32_t bigEndian32(const char* bytes);
 
 bool isDavisImuWord(std::uint32_t address);
+// The word's number: 0 to 2 are the acceleration's x, y and z.
+unsigned davisImuCode(std::uint32_t address);
+// An acceleration's, at a full scale of 4 g.
+double davisAcceleration_g(std::uint32_t address);
 // Places of an event of a DAVIS as the address has them: from the bottom right.
 bool isDavisEvent(std::uint32_t address);
 unsigned davisX(std::uint32_t address);

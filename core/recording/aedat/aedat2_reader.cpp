@@ -1,6 +1,7 @@
 #include "core/recording/aedat/aedat2_reader.h"
 
 #include "core/base/error.h"
+#include "core/numerics/robust.h"
 #include "core/recording/aedat/aedat2_decoder.h"
 #include "core/recording/aedat/chips.h"
 #include "core/recording/block_reader.h"
@@ -8,9 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -68,17 +72,32 @@ std::string bytesAt(std::ifstream& file, std::uint64_t offset, std::size_t most)
 struct Look {
   bool wide = false;  // most addresses have more bits than a DVS128's
   bool imu = false, frames = false;
-  Resolution reach_px;  // of a DAVIS's events
+  Resolution reach_px;                // of a DAVIS's events
+  std::vector<double> accelerations;  // norms, at a full scale of 4 g
 };
+
+// The full scales that the median acceleration, gravity, supports: jAER sets 4 g and 500 deg/s, and for some of a DAVIS240C 8 g and
+// 1000 deg/s.
+double imuRanges(const Look& look) {
+  constexpr double kNear_g = 0.1;
+  return !look.accelerations.empty() && std::abs(medianOf(look.accelerations) - 0.5) < kNear_g ? 2.0 : 1.0;
+}
 
 Look lookAt(std::string_view bytes) {
   Look look;
   std::size_t wide = 0;
+  std::array<double, 3> force_g{};
   for (std::size_t at = 0; at + aedat::kAedat2Record_bytes <= bytes.size();
        at += aedat::kAedat2Record_bytes) {
     const std::uint32_t address = aedat::bigEndian32(bytes.data() + at);
     if (address >> 16 != 0) ++wide;
-    look.imu = look.imu || aedat::isDavisImuWord(address);
+    if (aedat::isDavisImuWord(address)) {
+      look.imu = true;
+      const unsigned code = aedat::davisImuCode(address);
+      if (code < force_g.size()) force_g[code] = aedat::davisAcceleration_g(address);
+      if (code + 1 == force_g.size())
+        look.accelerations.push_back(std::hypot(force_g[0], force_g[1], force_g[2]));
+    }
     look.frames = look.frames || aedat::isApsSample(address);
     if (!aedat::isDavisEvent(address)) continue;
     look.reach_px.width_px = std::max(look.reach_px.width_px, static_cast<int>(aedat::davisX(address)) + 1);
@@ -135,14 +154,18 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
                    "Readable are those of DVS128 and DAVIS sensors; convert it with jAER or DV");
   }
   const AddressLayout layout = chip.starts_with("DVS128") ? AddressLayout::Dvs128 : AddressLayout::Davis;
+  const double ranges = imuRanges(look);
   format.streams.push_back(aedat2Stream("events", StreamType::Events, chip));
   format.streams.back().resolution_px = size_px;
   if (layout == AddressLayout::Davis && look.imu) {
     format.streams.push_back(aedat2Stream("imu", StreamType::Imu, "MPU-6150"));
     format.notes.push_back(
         {"imu", FaultKind::Guess, 0.0,
-         "The numbers are taken for those of the full scales 4 g and 500 deg/s, which jAER "
-         "sets; at rest the norm of the acceleration must be 1 g."});
+         fmt::format(
+             "The numbers are taken for those of the full scales {:g} g and {:g} deg/s, which jAER "
+             "sets{}; at rest the norm of the acceleration must be 1 g.",
+             4.0 * ranges, 500.0 * ranges,
+             ranges == 1.0 ? "" : " for some sensors, since gravity is half as large by its usual ones")});
   }
   if (layout == AddressLayout::Davis && look.frames) {
     format.streams.push_back(aedat2Stream("frames", StreamType::Frames, chip));
@@ -150,7 +173,7 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
   }
   format.streams.push_back(aedat2Stream("triggers", StreamType::Triggers, chip));
   return std::make_unique<BlockReader>(path, std::move(format),
-                                       std::make_unique<aedat::Aedat2Decoder>(layout, size_px));
+                                       std::make_unique<aedat::Aedat2Decoder>(layout, size_px, ranges));
 }
 
 }  // namespace evical

@@ -1,5 +1,6 @@
 // AEDAT 2.0: addresses of each chip, the IMU between them, times that wrap, and nine real recordings.
 #include "core/base/error.h"
+#include "core/numerics/angles.h"
 #include "tests/core/recording/aedat/aedat2_builder.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/test_program.h"
@@ -17,6 +18,7 @@ class TestAedat2 : public QObject {
   void davis_isDecoded();
   void unnamedDavis_isGuessedBySize();
   void imuSamples_standBetweenTheEvents();
+  void rangesOfTheImu_areThoseThatGravitySupports();
   void brokenImuSamples_areLeftOut();
   void pixelValuesAndEdges_areNoEvents();
   void pixelValues_makeFrames();
@@ -121,6 +123,28 @@ void TestAedat2::imuSamples_standBetweenTheEvents() {
   const Contents contents = readAll(*only_imu);
   QCOMPARE(contents.eventCount(), 0u);
   QCOMPARE(contents.sampleCount(), 10u);
+}
+
+// jAER sets 8 g and 1000 deg/s for some: at the usual ranges gravity is 0.50 g then.
+void TestAedat2::rangesOfTheImu_areThoseThatGravitySupports() {
+  for (const double ranges : {1.0, 2.0}) {
+    std::string bytes = aedat2Header("DAVIS240C");
+    for (int k = 0; k < 100; ++k) {
+      const auto one_g = static_cast<std::int16_t>(8192 / ranges),
+                 rate = static_cast<std::int16_t>(655 / ranges);
+      bytes += aedat2Imu({0, static_cast<std::int16_t>(10 * (k % 3) - one_g), 20, 77, rate, 0,
+                          static_cast<std::int16_t>(-rate)},
+                         1000 * k);
+    }
+    const Contents contents = readAll(scratch_.write("ranges.aedat", bytes));
+    const ImuSample& sample = contents.imu.begin()->second.at(50);
+    QVERIFY2(std::abs(sample.specific_force_m_s2.norm() / kStandardGravity_m_s2 - 1.0) < 0.01,
+             qPrintable(QString::number(sample.specific_force_m_s2.norm())));
+    QVERIFY(std::abs(kDegPerRad * sample.angular_rate_rad_s.x() - 10.0) < 0.1);
+    QVERIFY(std::any_of(contents.faults.begin(), contents.faults.end(), [&](const RecordingFault& fault) {
+      return fault.text.find(ranges == 1.0 ? "4 g and 500 deg/s" : "8 g and 1000 deg/s") != std::string::npos;
+    }));
+  }
 }
 
 void TestAedat2::brokenImuSamples_areLeftOut() {
