@@ -83,14 +83,22 @@ CameraIntrinsics readKalibrOmni(const YamlNode& map) {
   return camera;
 }
 
+// The first of these keys that the map has. Without any, the error names the first one.
+YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
+  for (const char* const key : keys)
+    if (const auto node = map.find(key)) return *node;
+  return map[*keys.begin()];
+}
+
 CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
   if (const YamlNode model = map["distortion_model"]; model.text() == "fov")
     throw model.error("is the fov model, which Evical does not have",
                       "Calibrate this camera again with radtan or equidistant");
-  const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
+  const std::size_t distortion =
+      map["distortion_model"].choice({"radtan", "equidistant", "none", "radial-tangential"});
   const CameraModel model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
   CameraIntrinsics camera = kalibrLens(map["intrinsics"], model, 0);
-  if (distortion != 2) setDistortion(map["distortion_coeffs"], camera);
+  if (distortion != 2) setDistortion(anyOf(map, {"distortion_coeffs", "distortion_coefficients"}), camera);
   return camera;
 }
 
@@ -99,7 +107,8 @@ CameraIntrinsics readKalibrSphere(const YamlNode& map, CameraModel model) {
   return kalibrLens(map["intrinsics"], model, 2);
 }
 
-// Keys that Kalibr adds for other purposes (T_cam_imu, rostopic, ...) are left alone.
+// Also a camera of EuRoC or Kimera, which have Kalibr's keys but for two. Keys for other purposes (T_cam_imu, rostopic, ...)
+// are left alone.
 CameraIntrinsics readKalibr(const YamlNode& map) {
   const std::size_t kind = map["camera_model"].choice({"pinhole", "ds", "eucm", "omni"});
   CameraIntrinsics camera =
@@ -108,13 +117,6 @@ CameraIntrinsics readKalibr(const YamlNode& map) {
                   : readKalibrSphere(map, kind == 1 ? CameraModel::DoubleSphere : CameraModel::Eucm);
   if (const auto node = map.find("resolution")) camera.resolution_px = resolution(*node);
   return camera;
-}
-
-// The first of these keys that the map has. Without any, the error names the first one.
-YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
-  for (const char* const key : keys)
-    if (const auto node = map.find(key)) return *node;
-  return map[*keys.begin()];
 }
 
 // OpenCV's matrix {rows, cols, data}, or the numbers alone.

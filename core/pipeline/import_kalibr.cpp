@@ -1,3 +1,4 @@
+#include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/import_sources.h"
 #include "core/pipeline/session_guess.h"
@@ -61,9 +62,24 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
                     1e3 * board.radius_m));
 }
 
-void readImu(const YamlNode& map, const std::string& key, ImportedSession& imported) {
+// Files of Kimera and EuRoC name no topic: then the recording's only IMU is meant.
+std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
+  std::vector<std::string> streams;
+  if (!request.recording.empty())
+    for (const StreamInfo& stream : openRecording(request.recording)->streams())
+      if (stream.type == StreamType::Imu) streams.push_back(stream.name);
+  if (streams.size() == 1) return streams.front();
+  throw map.error("has no rostopic",
+                  streams.empty()
+                      ? "Add rostopic: with the IMU's topic, or give --recording FILE with one IMU"
+                      : "Add rostopic: with one of " + joined(streams));
+}
+
+void readImu(const YamlNode& map, const std::string& key, const ImportRequest& request,
+             ImportedSession& imported) {
   SessionImu imu;
-  imu.stream = map["rostopic"].text();
+  const auto topic = map.find("rostopic");
+  imu.stream = topic ? topic->text() : onlyImuOf(map, request);
   imu.name = key.empty() ? sensorName(imu.stream, true, imported.session) : key;
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
@@ -78,9 +94,9 @@ void readImu(const YamlNode& map, const std::string& key, ImportedSession& impor
   imported.session.imus.push_back(std::move(imu));
 }
 
-void readImus(const YamlNode& root, ImportedSession& imported) {
-  if (!root.has("imu0")) return readImu(root, "", imported);
-  for (const std::string& key : root.keys()) readImu(root[key], key, imported);
+void readImus(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
+  if (!root.has("imu0")) return readImu(root, "", request, imported);
+  for (const std::string& key : root.keys()) readImu(root[key], key, request, imported);
 }
 
 void readCameras(const YamlNode& root, ImportedSession& imported) {
@@ -129,7 +145,7 @@ void addRecordedCameras(const ImportRequest& request, ImportedSession& imported)
 
 void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest& request,
                   ImportedSession& imported) {
-  std::array<bool, 5> seen{};
+  std::array<bool, 6> seen{};
   for (const ImportSource& source : sources) {
     bool& before = seen.at(static_cast<std::size_t>(source.kind));
     if (before && source.kind != ImportKind::KalibrImu)
@@ -137,9 +153,9 @@ void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest&
                      "Give one of each kind");
     before = true;
     if (source.kind == ImportKind::KalibrTarget) readTarget(source.root, request, imported);
-    if (source.kind == ImportKind::KalibrImu) readImus(source.root, imported);
+    if (source.kind == ImportKind::KalibrImu) readImus(source.root, request, imported);
     if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, imported);
-    if (source.kind == ImportKind::Intrinsics)
+    if (source.kind == ImportKind::Intrinsics || source.kind == ImportKind::LensFile)
       throw badInput(source.path.string(), "holds intrinsics alone, without the name of a stream",
                      "Give Kalibr's camchain, or import this file by itself");
   }

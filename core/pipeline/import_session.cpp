@@ -2,6 +2,7 @@
 
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/camera_model.h"
 #include "core/pipeline/import_sources.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ namespace {
 
 const char* programOf(ImportKind kind) {
   if (kind == ImportKind::EkalibrConfiguration) return "ekalibr";
+  if (kind == ImportKind::LensFile) return "";
   return kind == ImportKind::Intrinsics ? "ros" : "kalibr";
 }
 
@@ -54,7 +56,8 @@ void setRecording(const ImportRequest& request, ImportedSession& imported) {
 
 bool intrinsicsAlone(const std::vector<ImportSource>& sources) {
   return std::all_of(sources.begin(), sources.end(), [](const ImportSource& source) {
-    return source.kind == ImportKind::Intrinsics || source.kind == ImportKind::KalibrCamchain;
+    return source.kind == ImportKind::Intrinsics || source.kind == ImportKind::KalibrCamchain ||
+           source.kind == ImportKind::LensFile;
   });
 }
 
@@ -63,10 +66,46 @@ struct ImportedIntrinsics {
   CameraIntrinsics intrinsics;
 };
 
+// Names are the file's own where it has some, and paths can hold them.
+void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
+  const std::vector<ReadCamera>& found = file.read.cameras;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::string name = found[i].name;
+    std::replace(name.begin(), name.end(), '/', '_');
+    name.erase(0, std::min(name.find_first_not_of("_."), name.size()));
+    if (name.empty()) name = found.size() > 1 ? fmt::format("cam{}", i) : file.read.path.stem().string();
+    CameraIntrinsics lens = *found[i].lens;
+    CameraIntrinsics checked = lens;
+    constexpr int kMost_px = 30000;  // a resolution that the file does not say the recording will
+    if (!checked.resolution_px.known()) checked.resolution_px = {kMost_px, kMost_px};
+    validate(checked, fmt::format("{}: {}", file.read.path.string(), name));
+    cameras.push_back({name, lens});
+  }
+}
+
+// What beyond the lens is in it, and is left out.
+void noteLeftOut(const LensFile& file, std::vector<std::string>& notes) {
+  const std::string name = file.read.path.filename().string();
+  const auto any = [&](const auto& has) {
+    return std::any_of(file.read.cameras.begin(), file.read.cameras.end(), has);
+  };
+  std::vector<std::string> left_out;
+  if (any([](const ReadCamera& camera) { return camera.frame_from_camera.has_value(); }))
+    left_out.emplace_back("poses");
+  if (any([](const ReadCamera& camera) { return camera.time_offset_s.has_value(); }))
+    left_out.emplace_back("time offsets");
+  if (!file.read.imus.empty()) left_out.emplace_back("IMU parameters");
+  notes.push_back(fmt::format("{}: read as {}", name, file.layout));
+  if (!left_out.empty())
+    notes.push_back(fmt::format("{}: {} are left out and estimated anew", name, joined(left_out)));
+}
+
 std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
   std::vector<ImportedIntrinsics> cameras;
   for (const ImportSource& source : sources) {
-    if (source.kind == ImportKind::Intrinsics) {
+    if (source.kind == ImportKind::LensFile) {
+      addLenses(*source.lenses, cameras);
+    } else if (source.kind == ImportKind::Intrinsics) {
       const std::string name = source.path.stem().string();
       cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
     } else {
@@ -80,6 +119,7 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
 // What a camchain knows beyond the lens is an estimate, and becomes no prior unasked.
 void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
   for (const ImportSource& source : sources) {
+    if (source.kind == ImportKind::LensFile) noteLeftOut(*source.lenses, notes);
     if (source.kind == ImportKind::Intrinsics)
       for (const std::string& note : leftOutOf(source.root))
         notes.push_back(fmt::format("{}: {}", source.path.filename().string(), note));

@@ -4,25 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace evical {
-namespace {
-
-// What a file seems to be that is not imported.
-std::string likely(const YamlNode& root) {
-  if (!root.isMap()) return {};
-  if (root.has("value0")) return "basalt's calibration";
-  if (root.has("label") && root.has("cameras")) return "a camera rig of SVO or Ultimate SLAM";
-  if (root.has("model_type")) return "a camera of camodocal, as VINS has it";
-  if (root.has("intrinsics") && root.has("extrinsics")) return "DSEC's cam_to_cam.yaml";
-  if (root.has("evical_session")) return "a session already";
-  return {};
-}
-
-}  // namespace
 
 ImportSource recogniseSource(const std::filesystem::path& path) {
+  if (auto lenses = readLensFile(path))
+    return {path, YamlNode::parse("{}", path.string()), ImportKind::LensFile, std::move(lenses)};
   const YamlNode root = loadIntrinsics(path);
   const auto as = [&](ImportKind kind) { return ImportSource{path, root, kind}; };
   if (root.isMap()) {
@@ -32,12 +18,11 @@ ImportSource recogniseSource(const std::filesystem::path& path) {
     if (root.has("imu0") || root.has("accelerometer_noise_density")) return as(ImportKind::KalibrImu);
     if (isLens(root)) return as(ImportKind::Intrinsics);
   }
-  const std::string seems = likely(root);
-  throw root.error(seems.empty() ? "is of no layout that can be imported"
-                                 : fmt::format("is {}, which cannot be imported yet", seems),
-                   "Give an eKalibr configuration; Kalibr's target, imu and camchain files; or intrinsics of "
-                   "Kalibr, ROS (camera_info, "
-                   "ost.txt), eKalibr or an OAK");
+  throw root.error(
+      root.isMap() && root.has("evical_session") ? "is a session already"
+                                                 : "is of no layout that can be imported",
+      "Give an eKalibr configuration; Kalibr's target, imu and camchain files; or intrinsics of " +
+          lensLayouts());
 }
 
 std::string sensorName(const std::string& topic, bool imu, const Session& session) {

@@ -3,18 +3,22 @@
 
 #include "core/base/yaml_node.h"
 #include "core/pipeline/import_session.h"
+#include "core/report/export/read_back/lens_files.h"
+
+#include <optional>
 
 #include <string>
 #include <vector>
 
 namespace evical {
 
-enum class ImportKind { EkalibrConfiguration, KalibrTarget, KalibrImu, KalibrCamchain, Intrinsics };
+enum class ImportKind { EkalibrConfiguration, KalibrTarget, KalibrImu, KalibrCamchain, Intrinsics, LensFile };
 
 struct ImportSource {
   std::filesystem::path path;
-  YamlNode root;
+  YamlNode root;  // empty of lens files
   ImportKind kind;
+  std::optional<LensFile> lenses = {};
 };
 
 // Throws CalibrationError (BadInput) where the content is none of these.

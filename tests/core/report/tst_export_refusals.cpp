@@ -13,6 +13,12 @@ using namespace evical::test;
 class TestExportRefusals : public QObject {
   Q_OBJECT
 
+  static RigKind fisheye() {
+    RigKind kind;
+    kind.fisheye = true;
+    return kind;
+  }
+
  private slots:
   void withoutNoise_notesSaySo() {
     NamedResult result = rig({});
@@ -46,6 +52,27 @@ class TestExportRefusals : public QObject {
     own.uncertainty.cameras[0].time_offset_drift_std_ppm = 20.0;
     for (const std::string& each : exportTo(result, target.toStdString()).notes)
       QVERIFY(each.find("drifts") == std::string::npos);
+  }
+
+  // Of lenses that see beyond what a program knows no number of pixels is said.
+  void lensThatSeesTooFar_isRefusedInWords() {
+    NamedResult result = rig(fisheye());
+    for (CameraState& camera : test::ownResult(result).state.cameras) {
+      CameraIntrinsics lens = *camera.lens.inUse();
+      lens.focal_length_px *= 0.4;  // 240 degrees across the image
+      camera.lens = givenLens(lens);
+    }
+    for (const char* const target : {"dsec", "m3ed"}) try {
+        exportTo(result, target);
+        QFAIL("it was exported");
+      } catch (const CalibrationError& error) {
+        QVERIFY2(!QString(error.what()).contains("inf "), error.what());
+      }
+  }
+
+  void equidistantLens_isNoInputOfEkalibr() {
+    QVERIFY(hasNote(exportTo(rig(fisheye()), "ekalibr"), "takes none as input"));
+    QVERIFY(!hasNote(exportTo(rig({}), "ekalibr"), "takes none as input"));
   }
 
   void rollingShutter_isSaid() {

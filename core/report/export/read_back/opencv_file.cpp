@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace evical {
@@ -73,6 +74,30 @@ Eigen::MatrixXd OpencvNode::matrix(int rows, int cols, int kind) const {
     for (int col = 0; col < cols; ++col) matrix(row, col) = real.at<double>(row, col);
   if (!matrix.allFinite()) fail("has numbers that are none");
   return matrix;
+}
+
+std::vector<double> OpencvNode::matrixNumbers() const {
+  if (node_.isSeq()) return numbers(node_.size());
+  cv::Mat read;
+  try {
+    read = node_.mat();
+  } catch (const cv::Exception& error) {
+    fail("is no matrix to OpenCV: " + std::string(error.what()));
+  }
+  if (read.empty() || read.channels() != 1) fail("is no matrix of numbers");
+  cv::Mat real;
+  read.convertTo(real, CV_64F);
+  const std::vector<double> values = real.reshape(1, 1);
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
+    fail("has numbers that are none");
+  return values;
+}
+
+std::vector<std::string> OpencvNode::keys() const {
+  std::vector<std::string> names;
+  if (node_.isMap())
+    for (const cv::FileNode& item : node_) names.push_back(item.name());
+  return names;
 }
 
 std::string OpencvNode::place() const {

@@ -22,11 +22,14 @@ class OpencvNode {
   double number() const;  // an int or a real one
   int integer() const;    // an int only
   std::string text() const;
+  bool isText() const { return node_.isString(); }
   std::size_t size() const { return node_.size(); }                // of a list
   std::vector<double> numbers(std::size_t count) const;            // of a list
   Eigen::MatrixXd rows(std::size_t rows, std::size_t cols) const;  // of a list of lists
   // Of !!opencv-matrix; `kind` CV_32F or CV_64F, or -1 where the program takes both.
   Eigen::MatrixXd matrix(int rows, int cols, int kind) const;
+  std::vector<double> matrixNumbers() const;  // row by row, whatever its shape
+  std::vector<std::string> keys() const;      // of a map; none of anything else
 
   std::string place() const;  // "vins.yaml: acc_n"
   [[noreturn]] void fail(const std::string& problem) const;

@@ -8,8 +8,11 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -25,16 +28,24 @@ RigidTransform basaltPoseOf(const JsonNode& node) {
 
 CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) {
   const std::string type = node["camera_type"].text();
-  if (type != "kb4" && type != "ds" && type != "eucm") node["camera_type"].fail("must be kb4, ds or eucm");
-  const CameraModel model = type == "kb4"  ? CameraModel::PinholeEquidistant
-                            : type == "ds" ? CameraModel::DoubleSphere
-                                           : CameraModel::Eucm;
+  constexpr std::array kTypes = {
+      std::pair{"kb4", CameraModel::PinholeEquidistant}, std::pair{"ds", CameraModel::DoubleSphere},
+      std::pair{"eucm", CameraModel::Eucm}, std::pair{"pinhole", CameraModel::PinholeRadtan},
+      std::pair{"pinhole-radtan8", CameraModel::PinholeRadtan}};
+  const auto known =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& each) { return type == each.first; });
+  if (known == kTypes.end())
+    node["camera_type"].fail("is '" + type + "', and Evical has kb4, ds, eucm, pinhole and pinhole-radtan8");
+  const CameraModel model = known->second;
   const JsonNode numbers = node["intrinsics"];
   std::vector<double> k, distortion;
   for (const char* key : {"fx", "fy", "cx", "cy"}) k.push_back(numbers[key].number());
   const auto names = distortionNames(model);
   for (std::size_t i = 0; i < static_cast<std::size_t>(coefficientCount(model)); ++i)
-    distortion.push_back(numbers[names[i]].number());
+    distortion.push_back(type == "pinhole" ? 0.0 : numbers[names[i]].number());
+  for (const char* key : {"k4", "k5", "k6"})
+    if (type == "pinhole-radtan8" && numbers[key].number() != 0.0)
+      numbers[key].fail("is not 0: the lens is rational, and Evical has three radial coefficients at most");
   const std::vector<JsonNode> size = resolution.items();
   if (size.size() != 2) resolution.fail("must have two numbers");
   return lensFrom(model, k, distortion,
@@ -68,9 +79,8 @@ ReadImu basaltImuOf(const JsonNode& value) {
   return imu;
 }
 
-ReadFile basaltFile(const std::filesystem::path& path) {
+ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& value) {
   ReadFile file{path};
-  const JsonNode value = JsonNode::load(file.path)["value0"];
   const std::vector<JsonNode> poses = value["T_imu_cam"].items(), lenses = value["intrinsics"].items(),
                               sizes = value["resolution"].items();
   if (lenses.size() != poses.size() || sizes.size() != poses.size())
@@ -79,16 +89,33 @@ ReadFile basaltFile(const std::filesystem::path& path) {
     ReadCamera camera;
     camera.lens = basaltLensOf(lenses[i], sizes[i]);
     camera.frame_from_camera = basaltPoseOf(poses[i]);
-    if (i == 0) camera.time_offset_s = 1e-9 * static_cast<double>(value["cam_time_offset_ns"].integer());
     file.cameras.push_back(camera);
   }
   file.time_step_s = 1e-9;
+  return file;
+}
+
+ReadFile basaltFile(const std::filesystem::path& path) {
+  const JsonNode value = JsonNode::load(path)["value0"];
+  ReadFile file = basaltCamerasOf(path, value);
+  if (!file.cameras.empty())
+    file.cameras.front().time_offset_s = 1e-9 * static_cast<double>(value["cam_time_offset_ns"].integer());
   file.imus = {basaltImuOf(value)};
   value["vignette"].items();
   return file;
 }
 
 }  // namespace
+
+ReadFile readBasaltFile(const std::filesystem::path& path) {
+  const JsonNode value = JsonNode::load(path)["value0"];
+  ReadFile file = basaltCamerasOf(path, value);
+  if (!value.has("camera_names")) return file;
+  const std::vector<JsonNode> names = value["camera_names"].items();
+  for (std::size_t i = 0; i < std::min(names.size(), file.cameras.size()); ++i)
+    file.cameras[i].name = names[i].text();
+  return file;
+}
 
 ReadBack readBasalt(const std::filesystem::path& folder) {
   ReadBack read;

@@ -46,8 +46,7 @@ CameraLines dmVioLinesOf(const std::filesystem::path& path) {
   return read;
 }
 
-ReadFile readDmVioCamera(const std::filesystem::path& path) {
-  CameraLines read = dmVioLinesOf(path);
+CameraIntrinsics dsoLensOf(CameraLines read) {
   const std::size_t name_end = read.lines[0].find(' ');
   const std::string name = read.lines[0].substr(0, name_end);
   if (name != "RadTan" && name != "EquiDistant")
@@ -55,6 +54,13 @@ ReadFile readDmVioCamera(const std::filesystem::path& path) {
   read.lines[0].erase(0, name_end);
   const std::vector<double> p = read.numbers(0, 8);
   if (p[2] < 1.0 && p[3] < 1.0) throw badInput(read.place(0), "is taken for shares of the image's size");
+  return lensFrom(name == "RadTan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
+                  {p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, read.resolution(1));
+}
+
+ReadFile readDmVioCamera(const std::filesystem::path& path) {
+  const CameraLines read = dmVioLinesOf(path);
+  const CameraIntrinsics lens = dsoLensOf(read);
   const std::vector<double> rectified = read.numbers(2, 5);
   if (rectified[2] > 1.0 || rectified[3] > 1.0)
     throw badInput(read.place(2), "needs to be relative to the image's size");
@@ -63,8 +69,7 @@ ReadFile readDmVioCamera(const std::filesystem::path& path) {
   if (size.width_px % kPyramid_px != 0 || size.height_px % kPyramid_px != 0)
     throw badInput(read.place(3), "has no three levels of a pyramid");
   ReadCamera camera;
-  camera.lens = lensFrom(name == "RadTan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
-                         {p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, read.resolution(1));
+  camera.lens = lens;
   return {path, {camera}};
 }
 
@@ -87,6 +92,12 @@ ReadFile readNoise(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+ReadFile readDsoCameraFile(const std::filesystem::path& path) {
+  ReadFile file{path, {ReadCamera{}}};
+  file.cameras.front().lens = dsoLensOf(dmVioLinesOf(path));
+  return file;
+}
 
 ReadBack readDmVio(const std::filesystem::path& folder) {
   ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};

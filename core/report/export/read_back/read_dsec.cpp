@@ -60,6 +60,13 @@ void checkPair(const YamlNode& root, std::size_t left, std::size_t right,
     throw node.error("does not give back a point from its disparity");
 }
 
+CameraIntrinsics dsecLensOf(const YamlNode& camera) {
+  const YamlNode model = camera["distortion_model"];
+  const bool equidistant = model.choice({"radtan", "equidistant"}) == 1;
+  return lensFrom(equidistant ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
+                  camera["camera_matrix"].reals(4), camera["distortion_coeffs"].reals(4), dsecSizeOf(camera));
+}
+
 ReadCamera dsecCameraOf(const YamlNode& root, std::size_t place) {
   const YamlNode own = root["intrinsics"][fmt::format("cam{}", place)],
                  level = root["intrinsics"][fmt::format("camRect{}", place)];
@@ -71,12 +78,24 @@ ReadCamera dsecCameraOf(const YamlNode& root, std::size_t place) {
   static_cast<void>(turnOfRow(root["extrinsics"], place));
   ReadCamera camera;
   camera.name = own["camera_name"].text();
-  camera.lens = lensFrom(CameraModel::PinholeRadtan, own["camera_matrix"].reals(4),
-                         own["distortion_coeffs"].reals(4), dsecSizeOf(own));
+  camera.lens = dsecLensOf(own);
   return camera;
 }
 
 }  // namespace
+
+ReadFile readDsecFile(const std::filesystem::path& path) {
+  ReadFile file{path};
+  const YamlNode cameras = YamlNode::load(path)["intrinsics"];
+  for (const std::string& key : cameras.keys()) {
+    if (!key.starts_with("cam") || key.find_first_not_of("0123456789", 3) != std::string::npos) continue;
+    ReadCamera& camera = file.cameras.emplace_back();
+    camera.name = key;
+    camera.lens = dsecLensOf(cameras[key]);
+    camera.frame_from_camera = RigidTransform{};
+  }
+  return file;
+}
 
 ReadBack readDsec(const std::filesystem::path& folder) {
   constexpr std::size_t kPlaces = 4;

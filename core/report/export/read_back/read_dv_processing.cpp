@@ -26,15 +26,18 @@ RigidTransform dvProcessingPoseOf(const JsonNode& sensor) {
   return rigidFrom(matrixFrom(floats(node, 16), 4, 4), node.place());
 }
 
-ReadCamera dvProcessingCameraOf(const JsonNode& node) {
+void askDvProcessingCameraForOwnKeys(const JsonNode& node) {
   node["name"].treeText();
   node["position"].treeText();
   const std::string master = node["master"].treeText();
   if (master != "true" && master != "false") node["master"].fail("must be true or false");
-  if (node.has("metadata"))
-    for (const char* key :
-         {"patternType", "patternSize", "patternSpacing", "calibrationTime", "quality", "comment"})
-      node["metadata"][key].treeText();
+  if (!node.has("metadata")) return;
+  for (const char* key :
+       {"patternType", "patternSize", "patternSpacing", "calibrationTime", "quality", "comment"})
+    node["metadata"][key].treeText();
+}
+
+ReadCamera dvProcessingCameraOf(const JsonNode& node) {
   const std::string model = node["distortionModel"].treeText();
   const bool radtan = model == "radialTangential";
   if (!radtan && model != "equidistant")
@@ -83,6 +86,18 @@ void checkStereo(const JsonNode& node, const std::vector<std::string>& names) {
 
 }  // namespace
 
+ReadFile readDvProcessingFile(const std::filesystem::path& path) {
+  ReadFile file{path};
+  const JsonNode root = JsonNode::load(path);
+  for (const auto& [key, node] : root["cameras"].entries()) {
+    ReadCamera camera = dvProcessingCameraOf(node);
+    camera.name = node.has("name") ? node["name"].treeText() : key;
+    if (node.has("transformationToC0")) camera.frame_from_camera = inverse(dvProcessingPoseOf(node));
+    file.cameras.push_back(std::move(camera));
+  }
+  return file;
+}
+
 ReadBack readDvProcessing(const std::filesystem::path& folder) {
   ReadFile file{folder / "calibration.json"};
   const JsonNode root = JsonNode::load(file.path);
@@ -91,6 +106,7 @@ ReadBack readDvProcessing(const std::filesystem::path& folder) {
   file.about_first_camera = true;
   std::vector<std::string> names;
   for (const auto& [key, node] : root["cameras"].entries()) {
+    askDvProcessingCameraForOwnKeys(node);
     file.cameras.push_back(dvProcessingCameraOf(node));
     file.cameras.back().frame_from_camera =
         inverse(dvProcessingPoseOf(node));  // camera 0 to this one, in the file

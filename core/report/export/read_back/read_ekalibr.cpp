@@ -135,6 +135,10 @@ ReadFile readParameters(const std::filesystem::path& path) {
 
 }  // namespace
 
+ReadFile readEkalibrFile(const std::filesystem::path& path) {
+  return readParameters(path);
+}
+
 ReadBack readEkalibr(const std::filesystem::path& folder) {
   ReadBack read;
   read.files.push_back(readParameters(folder / "ekalibr_param.yaml"));

@@ -10,7 +10,10 @@
 #include <Eigen/LU>
 #include <opencv2/core.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <system_error>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -81,7 +84,87 @@ PairAsRead readOpencvPair(const std::filesystem::path& folder) {
   return pair;
 }
 
+// The names that programs give a camera's matrices, size and fisheye.
+struct OpencvKeys {
+  const char *k, *d, *xi;
+};
+constexpr OpencvKeys kOpencvKeys[] = {{"camera_matrix", "distortion_coefficients", "xi"},
+                                      {"cameraMatrix", "distCoeffs", "xi"},
+                                      {"Camera_Matrix", "Distortion_Coefficients", "xi"},
+                                      {"K", "D", "xi"},
+                                      {"M1", "D1", "xi1"},
+                                      {"M2", "D2", "xi2"}};
+
+Resolution opencvSizeOf(const OpencvNode& node) {
+  for (const auto& [width, height] : {std::pair{"image_width", "image_height"},
+                                      std::pair{"image_Width", "image_Height"}, std::pair{"width", "height"}})
+    if (node.has(width) && node.has(height))
+      return {static_cast<int>(node[width].number()), static_cast<int>(node[height].number())};
+  for (const char* key : {"image_size", "imageSize", "resolution"}) {
+    if (!node.has(key)) continue;
+    const std::vector<double> size = node[key].numbers(2);
+    return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  }
+  return {};
+}
+
+bool saysFisheye(const OpencvNode& node) {
+  for (const char* key : {"fisheye_model", "use_fisheye_model", "fisheye"})
+    if (node.has(key)) {
+      const std::vector<std::string> yes{"1", "true", "True"};
+      return node[key].isText() ? std::ranges::find(yes, node[key].text()) != yes.end()
+                                : node[key].number() != 0.0;
+    }
+  return false;
+}
+
+// Whatever shape the coefficients have: k1 k2 p1 p2, k3, and the rational model's, which must be 0.
+CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, Resolution size) {
+  const std::vector<double> k = node[keys.k].matrixNumbers();
+  if (k.size() != 9) node[keys.k].fail("is no 3 x 3 matrix");
+  constexpr double kNoSkew_px = 1e-3;
+  if (std::abs(k[1]) > kNoSkew_px) node[keys.k].fail("has a skew, which no lens of Evical has");
+  const std::vector<double> intrinsics{k[0], k[4], k[2], k[5]};
+  std::vector<double> d = node[keys.d].matrixNumbers();
+  constexpr std::size_t kRadtan = 5, kFisheye = 4;
+  if (node.has(keys.xi)) {
+    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers beside xi");
+    d.insert(d.begin(), node[keys.xi].matrixNumbers().front());
+    return lensFrom(CameraModel::OmniRadtan, intrinsics, d, size);
+  }
+  if (saysFisheye(node)) {
+    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers of a fisheye");
+    return lensFrom(CameraModel::PinholeEquidistant, intrinsics, d, size);
+  }
+  if (d.size() == kFisheye && std::string(keys.k) == "K")
+    node[keys.d].fail("may be of either model: add fisheye_model: 1 or 0");
+  if (d.size() < kFisheye) node[keys.d].fail("must have four or five numbers");
+  if (std::any_of(d.begin() + static_cast<std::ptrdiff_t>(std::min(d.size(), kRadtan)), d.end(),
+                  [](double each) { return each != 0.0; }))
+    node[keys.d].fail("is of a rational lens, and Evical has three radial coefficients at most");
+  return lensFrom(CameraModel::PinholeRadtan, intrinsics, d, size);
+}
+
+void addOpencvCameras(const OpencvNode& node, const std::string& name, ReadFile& file) {
+  for (const OpencvKeys& keys : kOpencvKeys) {
+    if (!node.has(keys.k) || !node.has(keys.d)) continue;
+    ReadCamera& camera = file.cameras.emplace_back();
+    camera.name = name.empty() && keys.k[0] == 'M' ? keys.k : name;
+    camera.lens = opencvLensAt(node, keys, opencvSizeOf(node));
+  }
+}
+
 }  // namespace
+
+// At the root, or below the camera's name, as DV writes it.
+ReadFile readOpencvFile(const std::filesystem::path& path) {
+  const OpencvFile opened(path);
+  ReadFile file{path};
+  addOpencvCameras(opened.root(), "", file);
+  for (const std::string& key : opened.root().keys())
+    if (!opened[key].keys().empty()) addOpencvCameras(opened[key], key, file);
+  return file;
+}
 
 ReadBack readOpenCv(const std::filesystem::path& folder) {
   ReadBack read;

@@ -5,7 +5,6 @@
 #include "core/report/export/read_back/read_numbers.h"
 #include "core/report/export/read_back/readers.h"
 
-#include <fmt/format.h>
 #include <opencv2/core.hpp>
 
 namespace evical {
@@ -15,27 +14,25 @@ double orbSlam3AsFloat(const OpencvNode& node) {
   return static_cast<double>(static_cast<float>(node.number()));
 }
 
-std::vector<double> orbSlam3NumbersOf(const OpencvFile& file, int camera,
+std::vector<double> orbSlam3NumbersOf(const OpencvFile& file, const std::string& camera,
                                       std::initializer_list<const char*> keys) {
   std::vector<double> values;
-  for (const char* key : keys)
-    values.push_back(orbSlam3AsFloat(file[fmt::format("Camera{}.{}", camera, key)]));
+  for (const char* key : keys) values.push_back(orbSlam3AsFloat(file[camera + "." + key]));
   return values;
 }
 
-CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, int camera, bool stereo) {
-  const std::string type = file["Camera.type"].text();
-  const Resolution size{file["Camera.width"].integer(), file["Camera.height"].integer()};
+// `camera`: "Camera1", "Camera2", or "Camera" of its forerunners' files, which need not name the type.
+CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, const std::string& camera, Resolution size) {
+  const bool is_named = camera != "Camera" || file.has("Camera.type");
+  const std::string type = is_named ? file["Camera.type"].text() : "PinHole";
   const std::vector<double> k = orbSlam3NumbersOf(file, camera, {"fx", "fy", "cx", "cy"});
   if (type == "KannalaBrandt8") {
-    for (const char* key : {"overlappingBegin", "overlappingEnd"})
-      if (stereo) file[fmt::format("Camera{}.{}", camera, key)].integer();
     return lensFrom(CameraModel::PinholeEquidistant, k,
                     orbSlam3NumbersOf(file, camera, {"k1", "k2", "k3", "k4"}), size);
   }
   if (type != "PinHole") file["Camera.type"].fail("must be PinHole or KannalaBrandt8");
   std::vector<double> distortion = orbSlam3NumbersOf(file, camera, {"k1", "k2", "p1", "p2"});
-  const std::string third = fmt::format("Camera{}.k3", camera);
+  const std::string third = camera + ".k3";
   if (file.has(third)) distortion.push_back(orbSlam3AsFloat(file[third]));
   return lensFrom(CameraModel::PinholeRadtan, k, distortion, size);
 }
@@ -65,7 +62,25 @@ ReadImu orbSlam3ImuOf(const OpencvFile& file) {
   return imu;
 }
 
+Resolution orbSlam3SizeOf(const OpencvFile& file) {
+  return {file["Camera.width"].integer(), file["Camera.height"].integer()};
+}
+
 }  // namespace
+
+ReadFile readOrbSlam3File(const std::filesystem::path& path) {
+  const OpencvFile file(path);
+  ReadFile read{path};
+  const Resolution size = file.has("Camera.width") ? orbSlam3SizeOf(file) : Resolution{};
+  for (const char* camera : {"Camera", "Camera1", "Camera2"}) {
+    if (!file.has(std::string(camera) + ".fx")) continue;
+    ReadCamera& found = read.cameras.emplace_back();
+    found.name = camera;
+    found.lens = orbSlam3LensOf(file, camera, size);
+    if (file.has("IMU.T_b_c1") || file.has("Tbc")) found.frame_from_camera = RigidTransform{};
+  }
+  return read;
+}
 
 ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "settings.yaml";
@@ -81,8 +96,13 @@ ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   // Which of its modes there are data for.
   const bool stereo = file.has("Camera2.fx"), inertial = file.has("IMU.NoiseGyro");
   settings.about_first_camera = !inertial;
+  const Resolution size = orbSlam3SizeOf(file);
+  if (stereo && file["Camera.type"].text() == "KannalaBrandt8")
+    for (const char* camera : {"Camera1", "Camera2"})
+      for (const char* key : {".overlappingBegin", ".overlappingEnd"})
+        file[std::string(camera) + key].integer();
   ReadCamera first;
-  first.lens = orbSlam3LensOf(file, 1, stereo);
+  first.lens = orbSlam3LensOf(file, "Camera1", size);
   first.frame_from_camera = RigidTransform{};
   if (inertial) {
     first.frame_from_camera = orbSlam3PoseOf(file, "IMU.T_b_c1");
@@ -92,7 +112,7 @@ ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   if (stereo) {
     file["Stereo.ThDepth"].number();
     ReadCamera second;
-    second.lens = orbSlam3LensOf(file, 2, stereo);
+    second.lens = orbSlam3LensOf(file, "Camera2", size);
     second.frame_from_camera = *first.frame_from_camera * orbSlam3PoseOf(file, "Stereo.T_c1_c2");
     settings.cameras.push_back(second);
   }

@@ -23,11 +23,11 @@ std::vector<double> columnOf(const YamlNode& node) {
 CameraIntrinsics svoLensOf(const YamlNode& camera) {
   camera["type"].choice({"pinhole"});
   const YamlNode distortion = camera["distortion"];
-  const bool radtan = distortion["type"].choice({"radial-tangential", "equidistant"}) == 0;
+  const std::size_t type = distortion["type"].choice({"radial-tangential", "equidistant", "none"});
   constexpr int kLargest_px = 100000;
   return lensFrom(
-      radtan ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant, columnOf(camera["intrinsics"]),
-      columnOf(distortion["parameters"]),
+      type == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
+      columnOf(camera["intrinsics"]), type == 2 ? std::vector<double>(4) : columnOf(distortion["parameters"]),
       {camera["image_width"].integer(1, kLargest_px), camera["image_height"].integer(1, kLargest_px)});
 }
 
@@ -79,6 +79,15 @@ std::map<std::string, double> flagsOf(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+ReadFile readSvoFile(const std::filesystem::path& path) {
+  const YamlNode root = YamlNode::load(path);
+  ReadFile file = readRig(path, root);
+  const std::vector<YamlNode> entries = root["cameras"].items();
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    file.cameras[i].name = entries[i]["camera"]["label"].text();
+  return file;
+}
 
 ReadBack readSvo(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "calib.yaml";

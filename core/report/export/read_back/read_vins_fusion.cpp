@@ -27,11 +27,9 @@ std::string vinsFusionModelOf(const OpencvFile& file) {
   return name;
 }
 
-ReadFile readVinsFusionCamera(const std::filesystem::path& path, std::size_t number) {
-  const OpencvFile file(path);
+ReadCamera vinsFusionCameraOf(const OpencvFile& file) {
   const std::string model = vinsFusionModelOf(file);
   const Resolution size{file["image_width"].integer(), file["image_height"].integer()};
-  file["camera_name"].text();
   const OpencvNode projection = file["projection_parameters"];
   ReadCamera camera;
   if (model == "KANNALA_BRANDT") {
@@ -51,9 +49,15 @@ ReadFile readVinsFusionCamera(const std::filesystem::path& path, std::size_t num
   } else {
     file["model_type"].fail("must be PINHOLE, KANNALA_BRANDT or MEI");
   }
+  return camera;
+}
+
+ReadFile readVinsFusionCamera(const std::filesystem::path& path, std::size_t number) {
+  const OpencvFile file(path);
+  file["camera_name"].text();
   ReadFile read{path};
   read.cameras.resize(number + 1);  // cameras before it are in files of their own
-  read.cameras[number] = camera;
+  read.cameras[number] = vinsFusionCameraOf(file);
   return read;
 }
 
@@ -77,6 +81,10 @@ void askVinsFusionForOwnKeys(const OpencvFile& file) {
 }
 
 }  // namespace
+
+ReadFile readVinsCameraFile(const std::filesystem::path& path) {
+  return {path, {vinsFusionCameraOf(OpencvFile(path))}};
+}
 
 ReadBack readVinsFusion(const std::filesystem::path& folder) {
   ReadBack read;

@@ -30,4 +30,15 @@ ReadBack readEvimo2(const std::filesystem::path& folder);
 ReadBack readTumVie(const std::filesystem::path& folder);
 ReadBack readNumpy(const std::filesystem::path& folder);
 
+// Cameras of a single file, for import: the same layouts, without the keys that only the program itself asks for.
+ReadFile readBasaltFile(const std::filesystem::path& file);
+ReadFile readDvProcessingFile(const std::filesystem::path& file);
+ReadFile readVinsCameraFile(const std::filesystem::path& file);
+ReadFile readOrbSlam3File(const std::filesystem::path& file);
+ReadFile readSvoFile(const std::filesystem::path& file);
+ReadFile readDsecFile(const std::filesystem::path& file);
+ReadFile readEkalibrFile(const std::filesystem::path& file);
+ReadFile readDsoCameraFile(const std::filesystem::path& file);
+ReadFile readOpencvFile(const std::filesystem::path& file);
+
 }  // namespace evical
