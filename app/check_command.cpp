@@ -8,6 +8,7 @@
 #include "core/base/new_folder.h"
 #include "core/pipeline/check_calibration.h"
 #include "core/pipeline/check_files.h"
+#include "core/pipeline/check_options.h"
 #include "core/report/check_report.h"
 
 #include <fmt/format.h>
@@ -57,7 +58,11 @@ CheckInput inputFrom(const CheckArguments& arguments) {
     if (!arguments.stabilities[k].empty())
       setInSession(input.session, kStabilities[k].option, arguments.stabilities[k]);
   applySettings(arguments.settings, input.session);
-  if (arguments.no_board) input.session.options.check.no_board = true;
+  if (arguments.no_board) {
+    CheckOptions options = *input.session.options.check;
+    options.no_board = true;
+    input.session.options.check = options;
+  }
   if (arguments.threads > 0) input.session.options.optimisation.threads = arguments.threads;
   return input;
 }

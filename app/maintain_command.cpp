@@ -5,6 +5,7 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/pipeline/calibration_options.h"
 #include "core/pipeline/maintain_files.h"
 #include "core/pipeline/maintain_imus.h"
@@ -60,11 +61,15 @@ MaintainInput inputFrom(const MaintainArguments& arguments) {
   for (const std::string& setting : arguments.settings) {
     const auto [name, value] = splitAtEquals("--set", setting);
     setOption(options, name, value);
+    if (!name.starts_with("maintain."))
+      throw badInput("--set " + name,
+                     "has no effect here: `evical maintain` takes the options of the group maintain",
+                     "Remove it; `evical options maintain` lists those that it takes");
   }
   validate(options);
   const std::vector<std::filesystem::path> logs(arguments.logs.begin(), arguments.logs.end());
   MaintainInput input = readMaintainInput(logs, arguments.result);
-  input.options = options.maintain;
+  input.options = *options.maintain;
   for (const std::string& imu : arguments.imus) input.settings.streams.insert(splitAtEquals("--imu", imu));
   input.settings.acceleration_unit =
       unitFrom<AccelerationUnit>(arguments.acceleration_unit, kAccelerationUnits);

@@ -1,6 +1,10 @@
 #include "core/pipeline/calibration_options.h"
 
 #include "core/base/option_table.h"
+#include "core/egomotion/egomotion_options.h"
+#include "core/frontend/edge_slopes.h"
+#include "core/maintenance/maintenance_options.h"
+#include "core/pipeline/check_options.h"
 
 #include <iterator>
 #include <type_traits>
@@ -12,6 +16,18 @@ namespace {
 template <class Part, class Options>
 auto& partOf(Options& options) {
   return static_cast<std::conditional_t<std::is_const_v<Options>, const Part, Part>&>(options);
+}
+
+// Those that are held apart: what the visitor changes is put back.
+template <class Options, class Visitor>
+void visitShared(const char* name, const char* help, const SharedOptions<Options>& shared, Visitor&& visit) {
+  visit(name, help, *shared);
+}
+template <class Options, class Visitor>
+void visitShared(const char* name, const char* help, SharedOptions<Options>& shared, Visitor&& visit) {
+  Options options = *shared;
+  visit(name, help, options);
+  if (options != *shared) shared = options;
 }
 
 // The one list of groups: visit(name, help, options of the group).
@@ -40,10 +56,13 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("optimisation.verdict", "Uncertainty, and what makes a result doubtful",
         partOf<VerdictOptions>(all.optimisation));
   visit("report", "What is worked out for the report only", all.report);
-  visit("check", "Whether an old calibration still holds", all.check);
-  visit("edge_slopes", "Without a board: how fast edges move, whatever they belong to", all.edge_slopes);
-  visit("egomotion", "Without a board: how the camera turns, beside the gyroscope", all.egomotion);
-  visit("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain);
+  visitShared("check", "Whether an old calibration still holds", all.check, visit);
+  visitShared("edge_slopes", "Without a board: how fast edges move, whatever they belong to", all.edge_slopes,
+              visit);
+  visitShared("egomotion", "Without a board: how the camera turns, beside the gyroscope", all.egomotion,
+              visit);
+  visitShared("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain,
+              visit);
 }
 
 template <class Options>
@@ -58,6 +77,10 @@ std::vector<std::string> fullNames() {
 }
 
 }  // namespace
+
+CalibrationOptions::CalibrationOptions() = default;
+
+bool CalibrationOptions::operator==(const CalibrationOptions&) const = default;
 
 std::vector<OptionSection> optionSections(const CalibrationOptions& options) {
   std::vector<OptionSection> sections;

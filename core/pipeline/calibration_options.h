@@ -2,16 +2,13 @@
 #pragma once
 
 #include "core/base/option_row.h"
-#include "core/egomotion/egomotion_options.h"
+#include "core/base/shared_options.h"
 #include "core/frames/blink_options.h"
 #include "core/frames/frame_options.h"
-#include "core/frontend/edge_slopes.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/check_options.h"
 #include "core/report/report_options.h"
 
 #include <string>
@@ -19,6 +16,11 @@
 #include <vector>
 
 namespace evical {
+
+struct CheckOptions;
+struct EdgeSlopeOptions;
+struct EgomotionOptions;
+struct MaintenanceOptions;
 
 struct CalibrationOptions {
   FrontEndOptions front_end;
@@ -28,11 +30,14 @@ struct CalibrationOptions {
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;
   ReportOptions report;
-  CheckOptions check;
-  EdgeSlopeOptions edge_slopes;
-  EgomotionOptions egomotion;
-  MaintenanceOptions maintain;
-  bool operator==(const CalibrationOptions&) const = default;
+  // Of other commands: who reads them includes their own headers.
+  SharedOptions<CheckOptions> check;
+  SharedOptions<EdgeSlopeOptions> edge_slopes;
+  SharedOptions<EgomotionOptions> egomotion;
+  SharedOptions<MaintenanceOptions> maintain;
+
+  CalibrationOptions();  // the defaults
+  bool operator==(const CalibrationOptions&) const;
 };
 
 // One group: its name, what it is about, and its options with their full names.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/egomotion/camera_record.h"
+#include "core/egomotion/egomotion_options.h"
 #include "core/egomotion/lens_rays.h"
 #include "core/frontend/edge_bursts.h"
 #include "core/frontend/edge_slopes.h"

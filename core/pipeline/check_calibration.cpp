@@ -1,6 +1,7 @@
 #include "core/pipeline/check_calibration.h"
 
 #include "core/base/error.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/check_verdict.h"
 #include "core/pipeline/check_without_board.h"
 #include "core/pipeline/compared_quantities.h"
@@ -47,7 +48,7 @@ BoardSeen boardSeen(const RecordingPass& pass) {
 void addTogether(const NamedResult& together, const CheckInput& input,
                  std::vector<CheckedQuantity>& quantities) {
   const ComparedQuantities compared =
-      compareQuantities({input.before, together, input.same_board}, input.session.options.check);
+      compareQuantities({input.before, together, input.same_board}, *input.session.options.check);
   for (CheckedQuantity& quantity : quantities)
     for (const ComparedQuantity& other : compared.quantities) {
       if (other.shown.sensor != quantity.sensor || other.shown.name != quantity.name) continue;
@@ -62,7 +63,7 @@ class Check {
  public:
   Check(const CheckInput& input, const RunContext& context) : input_(input), context_(context) {
     out_.check.notes = input.notes;
-    out_.check.false_alarms = input.session.options.check.false_alarms;
+    out_.check.false_alarms = input.session.options.check->false_alarms;
     out_.check.before = input.before_name;
     out_.check.recording = input.session.recording.filename().string();
   }
@@ -90,7 +91,7 @@ class Check {
  private:
   void compare(const Session& session) {
     const NamedResult now = namedRun(session, out_.run, {});
-    const CheckOptions& options = session.options.check;
+    const CheckOptions& options = *session.options.check;
     const ComparedQuantities compared = compareQuantities({input_.before, now, input_.same_board}, options);
     if (compared.quantities.empty())
       throw badInput(session.source.string(), "nothing that this recording tells is in the old result",
@@ -153,11 +154,11 @@ class Check {
 }  // namespace
 
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
-  if (input.session.options.check.no_board) return checkWithoutBoard(input, context);
+  if (input.session.options.check->no_board) return checkWithoutBoard(input, context);
   CheckRun checked =
       Check(input, context).run([&](const Session& session) { return runCalibration(session, context); });
   const BoardSeen seen = boardSeen(checked.run ? checked.run->pass : checked.pass);
-  if (input.session.board_blinks || !seen.isRare(input.session.options.check.least_board_share))
+  if (input.session.board_blinks || !seen.isRare(input.session.options.check->least_board_share))
     return checked;
   CheckRun without = checkWithoutBoard(input, context);
   without.check.notes.push_back(fmt::format(

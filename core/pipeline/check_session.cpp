@@ -5,6 +5,7 @@
 #include "core/base/nearest_name.h"
 #include "core/data/quantity.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/compared_quantities.h"
 #include "core/pipeline/saved_run.h"
 #include "core/pipeline/session_keys.h"
@@ -223,13 +224,13 @@ CheckInput readCheckInput(const std::filesystem::path& result, Session session) 
 }
 
 Session withPriorOf(const NamedResult& before, Session session) {
-  const Stability stability(session.options.check);
+  const Stability stability(*session.options.check);
   const CalibrationState& state = before.result->state;
   const UncertaintyReport& sigmas = before.result->uncertainty;
   for (std::size_t k = 0; k < before.cameras.size(); ++k)
     for (SessionCamera& camera : session.cameras) {
       if (camera.name != before.cameras[k].name) continue;
-      weighLens(before, camera.name, session.options.check.stability_lens_px, camera);
+      weighLens(before, camera.name, session.options.check->stability_lens_px, camera);
       if (camera.name == session.reference || !camera.same_sensor_as.empty()) continue;
       weighPlace(state.cameras[k].reference_from_camera, state.cameras[k].time_offset_s, sigmas.cameras[k],
                  stability, camera.prior);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_check.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/compared_quantities.h"
 
 #include <string>

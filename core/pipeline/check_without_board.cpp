@@ -8,6 +8,7 @@
 #include "core/egomotion/rotation_alignment.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/check_verdict.h"
 #include "core/pipeline/compared_quantities.h"
 
@@ -87,7 +88,7 @@ class BoardlessCheck {
       : input_(input), pass_(std::move(pass)), context_(context) {
     CalibrationCheck& check = out_.check;
     check.notes = input.notes;
-    check.false_alarms = input.session.options.check.false_alarms;
+    check.false_alarms = input.session.options.check->false_alarms;
     check.before = input.before_name;
     check.recording = input.session.recording.filename().string();
     check.without_board = true;
@@ -137,9 +138,9 @@ class BoardlessCheck {
     const LensRays lens(*input_.session.sensor(k).intrinsics);
     const RotationAlignment alignment = alignRotation(
         pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
-        {before.reference_from_camera.rotation, before.time_offset_s}, input_.session.options.egomotion,
+        {before.reference_from_camera.rotation, before.time_offset_s}, *input_.session.options.egomotion,
         input_.session.options.optimisation.threads, context_);
-    const CheckOptions& limits = input_.session.options.check;
+    const CheckOptions& limits = *input_.session.options.check;
     const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));
     if (!alignment.found())
@@ -197,7 +198,7 @@ class BoardlessCheck {
       OptionRow& delay = now_.options.emplace_back();
       delay.name = "optimisation.verdict.pixel_delay_ms";
       delay.value = "0";
-      CheckOptions options = input_.session.options.check;
+      CheckOptions options = *input_.session.options.check;
       options.stability_rotation_deg =
           std::max(options.stability_rotation_deg, options.without_board_least_rotation_deg);
       options.stability_time_offset_ms =

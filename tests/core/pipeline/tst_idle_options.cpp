@@ -30,6 +30,16 @@ class TestIdleOptions : public QObject {
     QVERIFY(whyIdle(session, "intrinsics.model").empty());
   }
 
+  void optionsOfOtherCommands_areIdle() {
+    Session session = test::simulatePass(0.5).session;
+    for (const OptionRow& row : optionRows())
+      for (const char* const group : {"check.", "maintain.", "egomotion.", "edge_slopes.", "blink."})
+        if (row.name.starts_with(group)) QVERIFY2(!whyIdle(session, row.name).empty(), row.name.c_str());
+    session.board_blinks = true;
+    for (const OptionRow& row : optionRows())
+      if (row.name.starts_with("blink.")) QVERIFY2(whyIdle(session, row.name).empty(), row.name.c_str());
+  }
+
   void imus_decideAboutTheirs() {
     Session session = test::simulatePass(0.5).session;
     QVERIFY(whyIdle(session, "optimisation.priors.gyroscope_bias_sigma_rad_s").empty());
