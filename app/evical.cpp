@@ -6,6 +6,7 @@
 #include "app/output.h"
 #include "app/version.h"
 #include "core/base/error.h"
+#include "core/recording/recording_server.h"
 
 #include <csignal>
 #include <cstdio>
@@ -84,6 +85,7 @@ int runOrFail(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace evical;
+  beRecordingServer(argc, argv);
   holdStandardStreams();
   // A file size limit is a full disk like any other: let write() say so.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -2,6 +2,7 @@
 // The desktop program: builds the window, opens what it was given, runs.
 #include "app/manual_page.h"
 #include "app/version.h"
+#include "core/recording/recording_server.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"
 #include "ui/window/photographer.h"
@@ -123,6 +124,7 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  evical::beRecordingServer(argc, argv);
 #ifdef __GLIBC__
   mallopt(M_ARENA_MAX, 2);  // else each thread's freed memory stays its own
 #endif

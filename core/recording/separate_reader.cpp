@@ -5,17 +5,21 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <exception>
 #include <new>
 #include <string_view>
+#include <thread>
 #include <type_traits>
 #include <utility>
 
@@ -45,8 +49,15 @@ bool sendAll(int socket, std::string_view bytes) {
   return true;
 }
 
-bool receiveAll(int socket, char* bytes, std::size_t count) {
+enum class Silence { Awaited, Limited };
+
+bool receiveAll(int socket, char* bytes, std::size_t count, Silence silence) {
   while (count > 0) {
+    pollfd waiting{socket, POLLIN, 0};
+    const int ready =
+        ::poll(&waiting, 1, silence == Silence::Limited ? SeparateReader::longest_silence_ms : -1);
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) return false;
     const ssize_t got = ::recv(socket, bytes, count, 0);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return false;
@@ -62,11 +73,11 @@ bool sendMessage(int socket, const std::string& message) {
   return sendAll(socket, length) && sendAll(socket, message);
 }
 
-bool receiveMessage(int socket, std::string& message) {
+bool receiveMessage(int socket, std::string& message, Silence silence = Silence::Limited) {
   std::uint64_t length = 0;
-  if (!receiveAll(socket, reinterpret_cast<char*>(&length), sizeof(length))) return false;
+  if (!receiveAll(socket, reinterpret_cast<char*>(&length), sizeof(length), silence)) return false;
   message.resize(static_cast<std::size_t>(length));
-  return receiveAll(socket, message.data(), message.size());
+  return receiveAll(socket, message.data(), message.size(), silence);
 }
 
 void putStream(std::string& message, const StreamInfo& info) {
@@ -214,7 +225,35 @@ void beQuiet() {
   for (const int fatal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(fatal, SIG_DFL);
 }
 
-[[noreturn]] void serve(int socket, const SeparateReader::Open& open) {
+[[noreturn]] void throwError(const std::filesystem::path& path, std::string_view message) {
+  ByteCursor cursor(message);
+  const auto kind = cursor.number<ErrorKind>();
+  std::string place(cursor.sized()), problem(cursor.sized()), advice(cursor.sized());
+  if (place.empty()) place = path.string();
+  throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
+}
+
+// The program again, with the socket in the place that it looks for it. Another process from its first instruction on: a fork would
+// have the locks that other threads hold now.
+pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path, int socket) {
+  std::vector<std::string> words = command;
+  words.push_back(path.string());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, socket, kServerSocket);
+  pid_t process = -1;
+  const int error = ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  errno = error;
+  return error == 0 ? process : -1;
+}
+
+}  // namespace
+
+void serveReader(int socket, const SeparateReader::Open& open) {
   beQuiet();
   const auto attempt = [&](const auto& work) {
     try {
@@ -236,39 +275,43 @@ void beQuiet() {
   });
   bool heard = sendMessage(socket, first);
   std::string question;
-  while (heard && reader && receiveMessage(socket, question))
+  while (heard && reader && receiveMessage(socket, question, Silence::Awaited))
     heard = sendMessage(socket, attempt([&] { return answerTo(question, *reader); }));
   ::_exit(0);
 }
 
-[[noreturn]] void throwError(const std::filesystem::path& path, std::string_view message) {
-  ByteCursor cursor(message);
-  const auto kind = cursor.number<ErrorKind>();
-  std::string place(cursor.sized()), problem(cursor.sized()), advice(cursor.sized());
-  if (place.empty()) place = path.string();
-  throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
+SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& open) : path_(path) {
+  begin([&](int own, int other) {
+    const pid_t process = ::fork();
+    if (process != 0) return process;
+    ::close(own);
+    serveReader(other, open);
+  });
 }
 
-}  // namespace
+SeparateReader::SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server)
+    : path_(path) {
+  begin([&](int, int other) { return spawn(server, path, other); });
+}
 
-SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& open) : path_(path) {
+void SeparateReader::begin(const std::function<pid_t(int own, int other)>& start) {
   int sockets[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
-    throw calibrationFailed(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
+    throw calibrationFailed(path_.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
                             "Close other files and programs");
-  process_ = ::fork();
-  if (process_ == 0) {
-    ::close(sockets[0]);
-    serve(sockets[1], open);
-  }
+  process_ = start(sockets[0], sockets[1]);
   const int error = errno;
   ::close(sockets[1]);
   socket_ = sockets[0];
   if (process_ < 0) {
     end();
-    throw calibrationFailed(path.string(), fmt::format("cannot be read: {}", std::strerror(error)),
+    throw calibrationFailed(path_.string(), fmt::format("cannot be read: {}", std::strerror(error)),
                             "Close other programs");
   }
+  takeFirstState();
+}
+
+void SeparateReader::takeFirstState() {
   std::string message;
   if (receiveMessage(socket_, message) && !message.empty()) {
     std::string_view rest(message);
@@ -279,11 +322,11 @@ SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& op
       return;
     }
     end();
-    throwError(path, rest);
+    throwError(path_, rest);
   }
   const std::string reason = reasonOfEnd();
   end();
-  throw badInput(path.string(), fmt::format("the file is damaged so that its library ends ({})", reason),
+  throw badInput(path_.string(), fmt::format("the file is damaged so that its library ends ({})", reason),
                  "Copy it again, or record again");
 }
 
@@ -371,8 +414,20 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
 
 // What its process ended by.
 std::string SeparateReader::reasonOfEnd() {
+  constexpr int kRounds = 100;  // of 10 ms: one that has closed its socket ends soon
   int status = 0;
-  const bool known = process_ > 0 && ::waitpid(process_, &status, 0) == process_;
+  pid_t ended = 0;
+  for (int round = 0; process_ > 0 && ended == 0 && round < kRounds; ++round) {
+    ended = ::waitpid(process_, &status, WNOHANG);
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (process_ > 0 && ended == 0) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+    process_ = -1;
+    return fmt::format("it has not answered for {:g} s", 1e-3 * longest_silence_ms);
+  }
+  const bool known = process_ > 0 && ended == process_;
   process_ = -1;
   return known && WIFSIGNALED(status) ? fmt::format("by signal {}", WTERMSIG(status)) : "without a word";
 }

@@ -16,12 +16,19 @@
 
 namespace evical {
 
+// The file descriptor at which a server finds its socket.
+inline constexpr int kServerSocket = 3;
+
 class SeparateReader : public RecordingReader {
  public:
   using Open = std::function<std::unique_ptr<RecordingReader>()>;
+  // A process that is silent for so long hangs, and is ended. Disks that wake up and networks take less.
+  static inline int longest_silence_ms = 30'000;
 
-  // Calls `open` in the other process; what it throws is thrown here. `path` for messages.
+  // Calls `open` in a copy of this process; what it throws is thrown here. `path` for messages.
   SeparateReader(const std::filesystem::path& path, const Open& open);
+  // Starts `server`, a command that is given the path, and serves a reader at kServerSocket (recording_server.h).
+  SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server);
   ~SeparateReader() override;
   SeparateReader(const SeparateReader&) = delete;
   SeparateReader& operator=(const SeparateReader&) = delete;
@@ -34,6 +41,8 @@ class SeparateReader : public RecordingReader {
   std::string format() const override { return format_; }
 
  private:
+  void begin(const std::function<pid_t(int own, int other)>& start);
+  void takeFirstState();
   void end();
   bool ask();
   void takeState(std::string_view message);
@@ -49,5 +58,8 @@ class SeparateReader : public RecordingReader {
   std::vector<RecordingFault> faults_;
   std::string format_, message_;
 };
+
+// In the other process: answers until nobody asks any more, and exits.
+[[noreturn]] void serveReader(int socket, const SeparateReader::Open& open);
 
 }  // namespace evical

@@ -4,9 +4,11 @@
 #include "tests/support/test_program.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <utility>
 
 namespace {
 
@@ -75,6 +77,7 @@ class TestSeparateReader : public QObject {
   void reader_thatFalls_endsTheRecording_data();
   void reader_thatFalls_endsTheRecording();
   void fallAtOpening_isBadInput();
+  void reader_thatHangs_isEnded();
   void error_isThrownHere();
   void reader_thatIsNotReadToItsEnd_leavesNoProcess();
 };
@@ -135,6 +138,20 @@ void TestSeparateReader::fallAtOpening_isBadInput() {
     QCOMPARE(error.place(), std::string("some.h5"));
     QVERIFY2(error.problem().find("damaged") != std::string::npos, error.what());
   }
+}
+
+void TestSeparateReader::reader_thatHangs_isEnded() {
+  const int usual_ms = std::exchange(SeparateReader::longest_silence_ms, 200);
+  SeparateReader reader("file.h5", [] {
+    return std::make_unique<CountingReader>(10, 4, [] {
+      for (;;) ::pause();
+    });
+  });
+  QCOMPARE(readAll(reader).size(), std::size_t{4});
+  SeparateReader::longest_silence_ms = usual_ms;
+  QVERIFY2(reader.faults().back().text.find("it has not answered for 0.2 s") != std::string::npos,
+           reader.faults().back().text.c_str());
+  QVERIFY(::waitpid(-1, nullptr, WNOHANG) < 0);  // no process is left
 }
 
 void TestSeparateReader::error_isThrownHere() {
