@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/base/time.h"
 #include "core/frames/picture_file.h"
 #include "core/pipeline/simulated_cameras.h"
 #include "core/recording/recording_writer.h"
@@ -12,10 +13,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -144,8 +147,10 @@ class Workshop {
   std::filesystem::path folder_;
 };
 
-void writeRecording(const Scenario& scenario, RecordingWriter& writer, SimulationSummary& summary,
-                    const RunContext& context) {
+// `imu_writer`: the same one, or that of a file that holds the IMUs alone.
+void writeRecording(const Scenario& scenario, RecordingWriter& writer, RecordingWriter& imu_writer,
+                    SimulationSummary& summary, const RunContext& context) {
+  const bool apart = &writer != &imu_writer;
   std::vector<ImuFeed> feeds;
   std::vector<std::size_t> streams;  // by camera; of frame cameras none is used
   std::size_t next = 0;
@@ -154,19 +159,35 @@ void writeRecording(const Scenario& scenario, RecordingWriter& writer, Simulatio
     if (!camera.frames) ++next;
   }
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
-    feeds.emplace_back(next + k, simulateImu(scenario, k));
+    feeds.emplace_back(apart ? k : next + k, simulateImu(scenario, k));
     summary.imu_samples += feeds.back().size();
   }
   simulateCameras(
       scenario,
       [&](std::size_t camera, EventSpan events) {
-        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, writer);
+        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, imu_writer);
         writer.write(streams[camera], events);
         summary.events += events.size();
       },
       context);
-  for (ImuFeed& feed : feeds) feed.writeRest(writer);
+  for (ImuFeed& feed : feeds) feed.writeRest(imu_writer);
   writer.finish();
+  if (apart) imu_writer.finish();
+}
+
+// As who has a camera of Prophesee's has them: its file, and the IMU's own table beside it.
+void writeApart(const std::filesystem::path& made, const RecordingFormat& format, Scenario& named,
+                SimulationSummary& summary, const RunContext& context) {
+  std::vector<StreamInfo> events = streamsOf(named), imus;
+  const auto is_imu = [](const StreamInfo& stream) { return stream.type == StreamType::Imu; };
+  std::copy_if(events.begin(), events.end(), std::back_inserter(imus), is_imu);
+  std::erase_if(events, is_imu);
+  const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, events);
+  const std::unique_ptr<RecordingWriter> table = createCsv(made.parent_path(), imus);
+  writeRecording(named, *writer, *table, summary, context);
+  std::vector<std::string> names = writer->streamNames();
+  for (const std::string& name : table->streamNames()) names.push_back(name);
+  takeNames(names, named);
 }
 
 }  // namespace
@@ -188,15 +209,19 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   const std::vector<StreamInfo> streams = streamsOf(scenario);
   if (streams.empty()) {
     summary.recording = folder / kFramesFolder;
+  } else if (format.one_camera) {
+    named.start_ns = kSecond_ns;  // such files have no room for more
+    writeApart(made, format, named, summary, context);
   } else {
     const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);
-    writeRecording(scenario, *writer, summary, context);
+    writeRecording(scenario, *writer, *writer, summary, context);
     takeNames(writer->streamNames(), named);
   }
   writeFrames(scenario, workshop.folder(), summary, context);
   writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
   writeFileWhole(workshop.folder() / "session.yaml",
-                 sessionYaml(named, streams.empty() ? kFramesFolder : file));
+                 sessionYaml(named, streams.empty() ? kFramesFolder : file,
+                             format.one_camera && !streams.empty() ? "imu.csv" : ""));
   workshop.deliver(folder, "truth.yaml", "session.yaml");
   return summary;
 }

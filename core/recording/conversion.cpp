@@ -19,7 +19,7 @@ constexpr std::size_t kNotWritten = static_cast<std::size_t>(-1);
 
 bool isWritable(const StreamInfo& stream, const RecordingFormat& format) {
   if (stream.type == StreamType::Frames) return format.frames && stream.readable && stream.timed;
-  return stream.type == StreamType::Events || stream.type == StreamType::Imu;
+  return stream.type == StreamType::Events || (stream.type == StreamType::Imu && !format.one_camera);
 }
 
 std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const RecordingFormat& format,
@@ -54,14 +54,16 @@ void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& form
   if (!request.streams.empty()) return;
   std::string names;
   for (const StreamInfo& stream : reader.streams())
-    if ((stream.type == StreamType::Frames && !isWritable(stream, format)) ||
+    if (((stream.type == StreamType::Frames || stream.type == StreamType::Imu) &&
+         !isWritable(stream, format)) ||
         stream.type == StreamType::Points)
       names += (names.empty() ? "" : ", ") + stream.name;
   if (!names.empty())
-    context.progress.log(
-        LogLevel::Warning,
-        fmt::format("{} holds no {}; left out: {}.", format.name,
-                    format.frames ? "points, nor frames without times" : "frames and points", names));
+    context.progress.log(LogLevel::Warning, fmt::format("{} holds no {}; left out: {}.", format.name,
+                                                        format.frames ? "points, nor frames without times"
+                                                        : format.one_camera ? "IMU samples, frames and points"
+                                                                            : "frames and points",
+                                                        names));
 }
 
 void checkPaths(const ConversionRequest& request) {

@@ -30,6 +30,8 @@ constexpr RecordingFormat kFormats[] = {
     {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap, true},
     {"aedat4", ".aedat4", "iniVation AEDAT4", createLz4Aedat4},
     {"dsec", ".h5", "HDF5 in DSEC's layout, IMU samples in /imu", createDsec},
+    {"raw", ".raw", "Prophesee RAW, EVT 3.0, of one camera", createRaw, false, true},
+    {"dat", ".dat", "Prophesee DAT of one camera", createDat, false, true},
     {"text", "", "a folder with events.txt and imu.txt", createText},
     {"csv", "", "a folder with events.csv and imu.csv", createCsv},
 };

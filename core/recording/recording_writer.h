@@ -65,6 +65,13 @@ std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
 std::unique_ptr<RecordingWriter> createCsv(const std::filesystem::path& folder,
                                            const std::vector<StreamInfo>& streams);
 
+// Prophesee's RAW (EVT 3.0) and DAT: the events of one camera, which needs its resolution. Times are rounded down to the us, and
+// count from the first event where that is later than 16 s.
+std::unique_ptr<RecordingWriter> createRaw(const std::filesystem::path& path,
+                                           const std::vector<StreamInfo>& streams);
+std::unique_ptr<RecordingWriter> createDat(const std::filesystem::path& path,
+                                           const std::vector<StreamInfo>& streams);
+
 // One that can be written; the table is in create_recording.cpp.
 struct RecordingFormat {
   const char* name;         // as people choose it: "bag"
@@ -72,7 +79,8 @@ struct RecordingFormat {
   const char* description;  // for people
   std::unique_ptr<RecordingWriter> (*create)(const std::filesystem::path& path,
                                              const std::vector<StreamInfo>& streams);
-  bool frames = false;  // also holds frames
+  bool frames = false;      // also holds frames
+  bool one_camera = false;  // holds the events of one camera, and no IMU samples
   bool isFolder() const { return *extension == '\0'; }
 };
 std::span<const RecordingFormat> recordingFormats();

@@ -139,7 +139,8 @@ std::string truthYaml(const Scenario& scenario) {
   return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
 }
 
-std::string sessionYaml(const Scenario& truth, const std::string& recording_file) {
+std::string sessionYaml(const Scenario& truth, const std::string& recording_file,
+                        const std::string& imu_file) {
   const Scenario scenario = asSessionSays(truth);
   std::string text = fmt::format("evical_session: 1\nrecording: {}\n{}cameras:\n", yamlText(recording_file),
                                  boardSession(scenario));
@@ -161,10 +162,11 @@ std::string sessionYaml(const Scenario& truth, const std::string& recording_file
   text += "imus:\n";
   for (const SimulatedImu& imu : scenario.imus) {
     text += fmt::format(
-        "  {}:\n    stream: {}\n    accelerometer_noise_density: {:.6g}\n    gyroscope_noise_density: "
+        "  {}:\n{}    stream: {}\n    accelerometer_noise_density: {:.6g}\n    gyroscope_noise_density: "
         "{:.6g}\n"
         "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
-        yamlText(imu.name), yamlText(imu.stream), std::max(imu.accelerometer_density, kLeastDensity),
+        yamlText(imu.name), imu_file.empty() ? "" : fmt::format("    recording: {}\n", yamlText(imu_file)),
+        yamlText(imu.stream), std::max(imu.accelerometer_density, kLeastDensity),
         std::max(imu.gyroscope_density, kLeastDensity));
     if (imu.accelerometer_walk > 0.0)
       text += fmt::format("    accelerometer_random_walk: {:.6g}\n", imu.accelerometer_walk);

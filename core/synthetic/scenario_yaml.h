@@ -21,6 +21,8 @@ std::string truthYaml(const Scenario& scenario);
 inline constexpr const char* kFramesFolder = "frames";
 
 // A session for the recording `recording_file` in the same folder.
-std::string sessionYaml(const Scenario& scenario, const std::string& recording_file);
+// `imu_file`: where the IMUs have one of their own; empty: in the recording.
+std::string sessionYaml(const Scenario& scenario, const std::string& recording_file,
+                        const std::string& imu_file = {});
 
 }  // namespace evical

@@ -1,9 +1,11 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/packed_events.h"
 #include "tests/support/test_program.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace evical;
@@ -49,6 +51,9 @@ class TestPropheseeFiles : public QObject {
  private slots:
   void roundTrip_isExact_data();
   void roundTrip_isExact();
+  void whatIsWritten_isReadBack_data();
+  void whatIsWritten_isReadBack();
+  void whatHasNoPlace_isRefused();
   void size_isThatOfTheHeader();
   void everyCut_keepsWhatIsWhole();
   void time_wraps_data();
@@ -85,6 +90,56 @@ void TestPropheseeFiles::roundTrip_isExact() {
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1000});
   QVERIFY(sameEvents(contents.events.at(0), events));
   QCOMPARE(contents.faults.size(), format == "DAT bare" ? 1u : 0u);
+}
+
+// Over three turns of EVT3's counter; from a late beginning on, times count from the first event.
+void TestPropheseeFiles::whatIsWritten_isReadBack_data() {
+  QTest::addColumn<QString>("format");
+  QTest::addColumn<qint64>("start_ns");
+  for (const char* const format : {"raw", "dat"}) {
+    QTest::addRow("%s", format) << QString(format) << qint64{1'000'000'000};
+    QTest::addRow("%s, of a host's clock", format) << QString(format) << qint64{1'700'000'000'123'456'000};
+  }
+}
+
+void TestPropheseeFiles::whatIsWritten_isReadBack() {
+  QFETCH(QString, format);
+  QFETCH(qint64, start_ns);
+  std::vector<Event> events = rowsForPropheseeFiles(60'000, start_ns);
+  for (std::size_t i = 0; i < events.size(); ++i)
+    events[i].time_ns += static_cast<std::int64_t>(i / 10) * 10'000'000;
+  StreamInfo stream;
+  stream.name = "/camera/events";
+  stream.type = StreamType::Events;
+  stream.resolution_px = {640, 480};
+  const std::filesystem::path path = scratch_ / ("written." + format.toStdString());
+  const auto writer = createRecording(path, format.toStdString(), {stream});
+  for (std::size_t i = 0; i < events.size(); i += 777)
+    writer->write(0, EventSpan(events).subspan(i, std::min<std::size_t>(777, events.size() - i)));
+  writer->finish();
+  const Contents contents = readAll(path);
+  QVERIFY(contents.streams[0].resolution_px == stream.resolution_px);
+  QCOMPARE(contents.streams[0].name, writer->streamNames()[0]);
+  if (start_ns > 1'000'000'000'000)
+    for (Event& event : events) event.time_ns -= start_ns;
+  QVERIFY(sameEvents(contents.events.at(0), events));
+}
+
+void TestPropheseeFiles::whatHasNoPlace_isRefused() {
+  StreamInfo events, imu;
+  events.name = "events";
+  events.type = StreamType::Events;
+  events.resolution_px = {640, 480};
+  imu.name = "imu";
+  imu.type = StreamType::Imu;
+  for (const char* const format : {"raw", "dat"}) {
+    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {events, imu}), CalibrationError);
+    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {events, events}), CalibrationError);
+    StreamInfo unknown = events;
+    unknown.resolution_px = {};
+    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {unknown}), CalibrationError);
+  }
+  QVERIFY(!std::filesystem::exists(scratch_ / "no"));
 }
 
 void TestPropheseeFiles::size_isThatOfTheHeader() {
