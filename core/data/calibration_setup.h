@@ -8,6 +8,7 @@
 #include "core/data/imu_sample.h"
 #include "core/geometry/board.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -31,10 +32,23 @@ struct ImuData {
   std::vector<ImuSample> samples;  // in time order
   ImuPrior prior = {};
 
-  double rate_hz() const {
-    return samples.size() < 2 ? 0.0
-                              : static_cast<double>(samples.size() - 1) * 1e9 /
-                                    static_cast<double>(samples.back().time_ns - samples.front().time_ns);
+  // How often each of the two sensors measures; the gyroscope's is what is said of the IMU.
+  double rate_hz() const { return rateOf_hz(MeasuredBy::Gyroscope); }
+  double accelerometerRate_hz() const { return rateOf_hz(MeasuredBy::Accelerometer); }
+  // One sample's noise, per axis.
+  double gyroscopeSigma_rad_s() const { return noise.gyroscope_density * std::sqrt(rate_hz()); }
+  double accelerometerSigma_m_s2() const {
+    return noise.accelerometer_density * std::sqrt(accelerometerRate_hz());
+  }
+
+ private:
+  double rateOf_hz(MeasuredBy sensor) const {
+    const auto count = std::count_if(samples.begin(), samples.end(), [sensor](const ImuSample& sample) {
+      return sample.measured_by == sensor || sample.measured_by == MeasuredBy::Both;
+    });
+    return count < 2 ? 0.0
+                     : static_cast<double>(count - 1) * 1e9 /
+                           static_cast<double>(samples.back().time_ns - samples.front().time_ns);
   }
 };
 

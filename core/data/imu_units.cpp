@@ -3,6 +3,21 @@
 #include <cstdlib>
 
 namespace evical {
+namespace {
+
+bool isNothing(const Eigen::Vector3d& values) {
+  return values.isZero(0.0) || !values.allFinite();
+}
+
+}  // namespace
+
+bool lacksRate(const RawImuSample& sample) {
+  return sample.measured_by == MeasuredBy::Accelerometer || isNothing(sample.angular_rate);
+}
+
+bool lacksForce(const RawImuSample& sample) {
+  return sample.measured_by == MeasuredBy::Gyroscope || isNothing(sample.specific_force);
+}
 
 std::string axesText(const AxesReading& reading) {
   std::string text;

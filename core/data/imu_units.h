@@ -61,11 +61,16 @@ struct RawImuSample {
   std::int64_t time_ns = 0;
   Eigen::Vector3d angular_rate = Eigen::Vector3d::Zero();
   Eigen::Vector3d specific_force = Eigen::Vector3d::Zero();
+  MeasuredBy measured_by = MeasuredBy::Both;
 };
+
+// Whether a sample tells nothing of one sensor: its format says so, or its values are all 0 or no numbers.
+bool lacksRate(const RawImuSample& sample);
+bool lacksForce(const RawImuSample& sample);
 
 inline ImuSample toSi(const RawImuSample& raw, AccelerationUnit acceleration, AngularRateUnit rate) {
   return {raw.time_ns, raw.angular_rate * radiansPerSecond(rate),
-          raw.specific_force * metresPerSecond2(acceleration)};
+          raw.specific_force * metresPerSecond2(acceleration), raw.measured_by};
 }
 
 // Appends to `samples`.
@@ -76,7 +81,7 @@ inline void toSi(std::span<const RawImuSample> raw, AccelerationUnit acceleratio
 
 inline RawImuSample fromSi(const ImuSample& sample, AccelerationUnit acceleration, AngularRateUnit rate) {
   return {sample.time_ns, sample.angular_rate_rad_s / radiansPerSecond(rate),
-          sample.specific_force_m_s2 / metresPerSecond2(acceleration)};
+          sample.specific_force_m_s2 / metresPerSecond2(acceleration), sample.measured_by};
 }
 
 }  // namespace evical

@@ -32,6 +32,7 @@ enum class FaultKind {
   OutsideResolution,
   Part,
   SaturatedAxis,
+  SaturatedReadOut,
   SecondClock,
   StuckAxis,
   TimeWrap,
@@ -44,14 +45,17 @@ enum class FaultKind {
 };
 
 // As reports and `evical inspect` spell them, in the enumeration's order.
-inline constexpr std::array kFaultKinds{
-    "backward_time",      "board_size",    "corrupt",        "empty",         "encoding",
-    "exposure_left_out",  "gap",           "guess",          "held",          "host_clock",
-    "hot_pixels",         "imu_left_out",  "jitter",         "lost_messages", "metadata",
-    "no_index",           "no_resolution", "no_stamps",      "not_finite",    "outside",
-    "outside_resolution", "part",          "saturated_axis", "second_clock",  "stuck_axis",
-    "time_wrap",          "triggers",      "truncated",      "unit",          "unreadable",
-    "unsorted",           "untimed"};
+inline constexpr std::array kFaultKinds{"backward_time", "board_size",     "corrupt",
+                                        "empty",         "encoding",       "exposure_left_out",
+                                        "gap",           "guess",          "held",
+                                        "host_clock",    "hot_pixels",     "imu_left_out",
+                                        "jitter",        "lost_messages",  "metadata",
+                                        "no_index",      "no_resolution",  "no_stamps",
+                                        "not_finite",    "outside",        "outside_resolution",
+                                        "part",          "saturated_axis", "saturated_read_out",
+                                        "second_clock",  "stuck_axis",     "time_wrap",
+                                        "triggers",      "truncated",      "unit",
+                                        "unreadable",    "unsorted",       "untimed"};
 static_assert(kFaultKinds.size() == static_cast<std::size_t>(FaultKind::Untimed) + 1);
 
 constexpr const char* nameOf(FaultKind kind) {

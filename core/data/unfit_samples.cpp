@@ -196,6 +196,35 @@ void findUnfitOf(std::span<const ImuSample> samples, bool rate, UnfitSamples& un
   });
 }
 
+// Some of the samples, and which they were. Without a copy where all are.
+struct OwnSamples {
+  std::span<const ImuSample> samples;
+  std::vector<std::size_t> places, others;  // places: empty where all are
+
+  template <class IsOwn>
+  OwnSamples(std::span<const ImuSample> all, IsOwn&& isOwn) : samples(all) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!isOwn(i)) others.push_back(i);
+    if (others.empty()) return;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!isOwn(i)) continue;
+      places.push_back(i);
+      copies_.push_back(all[i]);
+    }
+    samples = copies_;
+  }
+  OwnSamples(const OwnSamples&) = delete;
+  OwnSamples& operator=(const OwnSamples&) = delete;
+
+  void bringBack(std::vector<std::size_t>& found) const {
+    if (others.empty()) return;
+    for (std::size_t& i : found) i = places[i];
+  }
+
+ private:
+  std::vector<ImuSample> copies_;
+};
+
 std::vector<ImuSample> those(std::span<const ImuSample> samples, const std::vector<std::uint8_t>& fit) {
   std::vector<ImuSample> kept;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -217,26 +246,20 @@ UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
   UnfitSamples unfit;
   if (samples.empty()) return unfit;
   for (const bool rate : {true, false}) {
+    const MeasuredBy other = rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope;
+    const OwnSamples own(samples, [&](std::size_t i) { return samples[i].measured_by != other; });
+    (rate ? unfit.without_rate : unfit.without_force) = own.others;
+    if (own.samples.empty()) continue;
     std::vector<std::size_t>& repeats = rate ? unfit.gyroscope_repeats : unfit.accelerometer_repeats;
-    repeats = repeatsOf(samples, rate);
-    if (repeats.empty()) {
-      findUnfitOf(samples, rate, unfit);
-      continue;
-    }
+    repeats = repeatsOf(own.samples, rate);
     // A held sample looks like a limit that is reached: only the first of each counts.
-    std::vector<std::size_t> firsts;
-    std::vector<ImuSample> thinned;
-    for (std::size_t i = 0, next = 0; i < samples.size(); ++i) {
-      if (next < repeats.size() && repeats[next] == i) {
-        ++next;
-        continue;
-      }
-      firsts.push_back(i);
-      thinned.push_back(samples[i]);
-    }
-    findUnfitOf(thinned, rate, unfit);
+    const OwnSamples firsts(
+        own.samples, [&](std::size_t i) { return !std::binary_search(repeats.begin(), repeats.end(), i); });
+    findUnfitOf(firsts.samples, rate, unfit);
+    own.bringBack(repeats);
     const auto bringBack = [&](std::vector<std::size_t>& found) {
-      for (std::size_t& i : found) i = firsts[i];
+      firsts.bringBack(found);
+      own.bringBack(found);
     };
     for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis)
       if (kImuAxes[axis].rate == rate) bringBack(unfit.saturated[axis]);
@@ -249,19 +272,19 @@ std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<cons
                                        const UnfitSamples& unfit) {
   std::vector<RecordingFault> faults;
   if (samples.size() < 2) return faults;
-  const double rate_hz =
-      static_cast<double>(samples.size() - 1) / secondsSince(samples.front().time_ns, samples.back().time_ns);
-  for (const auto& [repeats, sensor] : {std::pair{&unfit.gyroscope_repeats, "gyroscope"},
-                                        std::pair{&unfit.accelerometer_repeats, "accelerometer"}}) {
-    if (repeats->empty()) continue;
-    const double own_hz =
-        rate_hz * (1.0 - static_cast<double>(repeats->size()) / static_cast<double>(samples.size()));
+  const double whole_s = secondsSince(samples.front().time_ns, samples.back().time_ns);
+  const auto tell = [&](const char* sensor, const std::vector<std::size_t>& repeats, std::size_t others) {
+    if (repeats.empty()) return;
+    const double rate_hz = static_cast<double>(samples.size() - others - 1) / whole_s;
+    const double own_hz = rate_hz - static_cast<double>(repeats.size()) / whole_s;
     faults.push_back(
         {stream, FaultKind::Held, 0.0,
          fmt::format("The {} measures at {:.1f} Hz, and its samples are repeated at {:.1f} Hz: calibrations "
                      "take each once.",
                      sensor, own_hz, rate_hz)});
-  }
+  };
+  tell("gyroscope", unfit.gyroscope_repeats, unfit.without_rate.size());
+  tell("accelerometer", unfit.accelerometer_repeats, unfit.without_force.size());
   return faults;
 }
 
@@ -270,21 +293,37 @@ SampleSelection fitSamples(std::span<const ImuSample> samples) {
   SampleSelection fit{std::vector<std::uint8_t>(samples.size(), 1),
                       std::vector<std::uint8_t>(samples.size(), 1)};
   for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
-    std::vector<std::uint8_t>& sensor = kImuAxes[axis].rate ? fit.gyroscope : fit.accelerometer;
+    const bool rate = kImuAxes[axis].rate;
+    std::vector<std::uint8_t>& sensor = rate ? fit.gyroscope : fit.accelerometer;
+    const auto isOwn = [&](std::size_t k) {
+      return samples[k].measured_by != (rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope);
+    };
     for (const std::size_t i : unfit.saturated[axis]) {
-      for (std::size_t k = i > 0 ? i - 1 : 0; k <= std::min(i + 1, samples.size() - 1); ++k) sensor[k] = 0;
+      sensor[i] = 0;
+      for (std::size_t k = i; k-- > 0;) {
+        sensor[k] = 0;
+        if (isOwn(k)) break;
+      }
+      for (std::size_t k = i + 1; k < samples.size(); ++k) {
+        sensor[k] = 0;
+        if (isOwn(k)) break;
+      }
     }
   }
   for (const std::size_t i : unfit.gyroscope_spikes) fit.gyroscope[i] = 0;
   for (const std::size_t i : unfit.accelerometer_spikes) fit.accelerometer[i] = 0;
-  for (const std::size_t i : unfit.gyroscope_repeats) fit.gyroscope[i] = 0;
-  for (const std::size_t i : unfit.accelerometer_repeats) fit.accelerometer[i] = 0;
+  for (const auto* const left_out : {&unfit.gyroscope_repeats, &unfit.without_rate})
+    for (const std::size_t i : *left_out) fit.gyroscope[i] = 0;
+  for (const auto* const left_out : {&unfit.accelerometer_repeats, &unfit.without_force})
+    for (const std::size_t i : *left_out) fit.accelerometer[i] = 0;
   return fit;
 }
 
 std::vector<ImuSample> withoutRateSpikes(std::span<const ImuSample> samples) {
   std::vector<std::uint8_t> kept(samples.size(), 1);
-  for (const std::size_t i : findUnfitSamples(samples).gyroscope_spikes) kept[i] = 0;
+  const UnfitSamples unfit = findUnfitSamples(samples);
+  for (const auto* const left_out : {&unfit.gyroscope_spikes, &unfit.without_rate})
+    for (const std::size_t i : *left_out) kept[i] = 0;
   return those(samples, kept);
 }
 

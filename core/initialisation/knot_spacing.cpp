@@ -241,12 +241,10 @@ KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange ran
   std::vector<double> spacings_s = {closest_s};
   std::copy_if(kSpacings_s.begin(), kSpacings_s.end(), std::back_inserter(spacings_s),
                [&](double spacing_s) { return spacing_s > closest_s; });
-  const double root_rate = std::sqrt(imu.rate_hz());
-  found.rates =
-      Demand(std::move(signals[0]), closest_s, imu.noise.gyroscope_density * root_rate, views.angle_rad)
-          .widest(spacings_s);
+  found.rates = Demand(std::move(signals[0]), closest_s, imu.gyroscopeSigma_rad_s(), views.angle_rad)
+                    .widest(spacings_s);
   found.accelerations =
-      Demand(std::move(signals[1]), closest_s, imu.noise.accelerometer_density * root_rate, views.position_m)
+      Demand(std::move(signals[1]), closest_s, imu.accelerometerSigma_m_s2(), views.position_m)
           .widest(spacings_s);
   return found;
 }

@@ -212,9 +212,8 @@ Batch::ImuFits Batch::imuFits(const std::vector<SampleErrors>& errors) const {
     const ImuFit fit{rmsPerAxis(errors[i].gyroscope_rad_s, used.gyroscope),
                      rmsPerAxis(errors[i].accelerometer_m_s2, used.accelerometer)};
     all.fits.push_back(fit);
-    const double root_rate = std::sqrt(data.rate_hz());
-    all.gyroscopes.push_back(fit.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate));
-    all.accelerometers.push_back(fit.accelerometer_rms_m_s2 / (data.noise.accelerometer_density * root_rate));
+    all.gyroscopes.push_back(fit.gyroscope_rms_rad_s / data.gyroscopeSigma_rad_s());
+    all.accelerometers.push_back(fit.accelerometer_rms_m_s2 / data.accelerometerSigma_m_s2());
   }
   return all;
 }

@@ -93,8 +93,7 @@ ImuRole roleOf(const ProblemBuilder& builder, const SampleRun& run) {
 void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
   ImuState& state = builder.parameters.moved().imus[run.imu];
   const ImuData& data = builder.input.imus[run.imu];
-  const double sigma =
-      builder.weights.scales.gyroscopes[run.imu] * data.noise.gyroscope_density * std::sqrt(data.rate_hz());
+  const double sigma = builder.weights.scales.gyroscopes[run.imu] * data.gyroscopeSigma_rad_s();
   std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::angular_rate_rad_s,
                                                             builder.weights.used_samples[run.imu].gyroscope);
   if (measurements.empty()) return;
@@ -117,8 +116,7 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
   CalibrationState& all = builder.parameters.moved();
   ImuState& state = all.imus[run.imu];
   const ImuData& data = builder.input.imus[run.imu];
-  const double sigma = builder.weights.scales.accelerometers[run.imu] * data.noise.accelerometer_density *
-                       std::sqrt(data.rate_hz());
+  const double sigma = builder.weights.scales.accelerometers[run.imu] * data.accelerometerSigma_m_s2();
   std::vector<InertialMeasurement> measurements = samplesOf(
       builder, run, &ImuSample::specific_force_m_s2, builder.weights.used_samples[run.imu].accelerometer);
   if (measurements.empty()) return;

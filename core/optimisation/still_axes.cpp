@@ -60,10 +60,8 @@ StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state
         isWithin(accelerometerTime_s(state.imus[imu], imu_time_s)))
       forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
   }
-  const double root_rate = std::sqrt(data.rate_hz());
-  return {
-      rates.axesWithout(weights.scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate),
-      forces.axesWithout(weights.scales.accelerometers[imu] * data.noise.accelerometer_density * root_rate)};
+  return {rates.axesWithout(weights.scales.gyroscopes[imu] * data.gyroscopeSigma_rad_s()),
+          forces.axesWithout(weights.scales.accelerometers[imu] * data.accelerometerSigma_m_s2())};
 }
 
 }  // namespace evical

@@ -51,6 +51,24 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   }
 }
 
+// Drivers that give each of the two sensors messages of its own leave the other's numbers at 0.
+void checkBothSensors(const ImuData& imu, const SessionImu& session) {
+  if (!session.accelerometer_stream.empty()) return;
+  const ImuStreamKind kind = imuStreamKind(imu.samples);
+  if (kind == ImuStreamKind::Whole) return;
+  const bool gyroscope = kind != ImuStreamKind::Accelerometer,
+             accelerometer = kind != ImuStreamKind::Gyroscope;
+  throw badInput(
+      imu.name,
+      gyroscope && accelerometer
+          ? fmt::format("each message of {} is of the gyroscope or of the accelerometer, the rest is 0",
+                        session.stream)
+          : fmt::format("the messages of {} hold {} only, the rest is 0", session.stream,
+                        gyroscope ? "angular rates" : "accelerations"),
+      fmt::format("Name both streams in the session, in place of stream: gyroscope: {} and accelerometer: {}",
+                  gyroscope ? session.stream : "STREAM", accelerometer ? session.stream : "STREAM"));
+}
+
 double durationOf(const BoardObservations& camera) {
   return camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s;
 }
@@ -150,7 +168,9 @@ void checkSession(const Session& session) {
 }
 
 void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
-  for (const ImuData& imu : pass.imus) {
+  for (std::size_t k = 0; k < pass.imus.size(); ++k) {
+    const ImuData& imu = pass.imus[k];
+    if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);
     checkStampsApart(imu);
     checkAxesAlive(imu);
     checkUnits(imu, session.options.initialisation);

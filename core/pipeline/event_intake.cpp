@@ -19,6 +19,7 @@ std::optional<CameraBatch> EventIntake::take(std::vector<Event>& events) {
   }
   count_ += events.size();
   stamp_step_.add(events);
+  load_.add(events);
   batch.camera = camera_;
   batch.first_event_ns = events.front().time_ns;
   batch.complete_until_ns = last_ns_ = events.back().time_ns;
@@ -55,6 +56,14 @@ void EventIntake::report(std::vector<RecordingFault>& faults) const {
          fmt::format(
              "{}: time stamps of events step by {:.3g} ms, so the time offset is uncertain by half of that",
              session_.stream, 1e3 * step_s)});
+  if (const ReadOutLoad::Limit limit = load_.limit(); limit.share > 0.0)
+    faults.push_back(
+        {session_.stream, FaultKind::SaturatedReadOut, 0.0,
+         fmt::format(
+             "{}: for {:.0f} % of the time events come at {:.2g} million a second, and never faster: the "
+             "read-out is at its limit. Events are lost, and others are stamped late, which the time offset "
+             "includes. Move more slowly, or raise the camera's contrast thresholds",
+             session_.stream, 100.0 * limit.share, 1e-6 * limit.rate_hz)});
   if (outside_ > 0) {
     faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
                       fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,

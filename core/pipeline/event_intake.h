@@ -7,6 +7,7 @@
 #include "core/frontend/edge_bursts.h"
 #include "core/pipeline/camera_batch.h"
 #include "core/pipeline/session.h"
+#include "core/recording/read_out_load.h"
 #include "core/recording/stamp_step.h"
 
 #include <cstdint>
@@ -46,6 +47,7 @@ class EventIntake {
   EventUse use_;
   std::uint64_t count_ = 0;  // handed on
   StampStep stamp_step_;
+  ReadOutLoad load_;
   std::optional<BurstExtractor> extractor_;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;

@@ -4,6 +4,7 @@
 #include "core/base/nearest_name.h"
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
+#include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
 
@@ -67,10 +68,22 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   start_ns_ = first_ns;
 }
 
-// A table whose own header does not tell its columns may be like the calibration's.
+// A table whose own header does not tell its columns may be like the calibration's. Sensors that the calibration had from
+// streams of their own are joined where the log has both.
 std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& log) const {
   try {
-    return openRecording(log);
+    std::unique_ptr<RecordingReader> reader = openRecording(log);
+    const auto has = [&](const std::string& name) {
+      return std::ranges::any_of(reader->streams(), [&](const StreamInfo& stream) {
+        return stream.type == StreamType::Imu && stream.name == name;
+      });
+    };
+    std::vector<SeparateImu> separate;
+    for (const auto& [name, reading] : readings_)
+      if (!reading.accelerometer_stream.empty() && has(reading.gyroscope_stream) &&
+          has(reading.accelerometer_stream))
+        separate.push_back({reading.gyroscope_stream, reading.accelerometer_stream});
+    return withSeparateImus(std::move(reader), separate);
   } catch (const CalibrationError&) {
     for (const auto& [name, reading] : readings_)
       if (!reading.columns.empty()) return openRecording(log, {{log.filename().string(), reading.columns}});
@@ -103,12 +116,22 @@ std::optional<std::size_t> ImuLogs::imuOf(const Source& source, const StreamInfo
   return only_one ? onlyOne(open) : std::nullopt;
 }
 
+// Its samples come in with the other sensor's.
+bool ImuLogs::isJoined(const std::string& stream) const {
+  return std::ranges::any_of(readings_, [&](const auto& each) {
+    const ImuReading& reading = each.second;
+    return !reading.accelerometer_stream.empty() &&
+           (reading.gyroscope_stream == stream || reading.accelerometer_stream == stream);
+  });
+}
+
 void ImuLogs::match(bool only_one) {
   for (Source& source : sources_) {
     const std::vector<StreamInfo>& streams = source.reader->streams();
     for (std::size_t s = 0; s < streams.size(); ++s) {
       if (streams[s].type != StreamType::Imu || !streams[s].readable) continue;
       const auto imu = imuOf(source, streams[s], only_one);
+      if (!imu && isJoined(streams[s].name)) continue;
       if (!imu) {
         notes_.push_back(fmt::format("{}: the stream {} is left out: the old result knows no IMU of it",
                                      source.path.filename().string(), streams[s].name));
@@ -218,6 +241,7 @@ void ImuLogs::toSamples(const StreamInfo& info, const std::vector<RawImuSample>&
        settings_.angular_rate_unit.value_or(reading.angular_rate_unit.value_or(info.angular_rate_unit)),
        packet.samples);
   for (ImuSample& sample : packet.samples) {
+    if (reading.accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
     sample.angular_rate_rad_s = readAs(reading.gyroscope_axes, sample.angular_rate_rad_s);
     sample.specific_force_m_s2 = readAs(reading.accelerometer_axes, sample.specific_force_m_s2);
   }

@@ -32,6 +32,8 @@ struct ImuReading {
   std::optional<AngularRateUnit> angular_rate_unit = {};
   AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
   std::string columns = {};  // of a text table
+  // Where the recording keeps the two sensors apart; the other is empty else.
+  std::string gyroscope_stream = {}, accelerometer_stream = {};
 };
 using ImuReadings = std::map<std::string, ImuReading>;  // by the IMU's name
 
@@ -71,6 +73,7 @@ class ImuLogs {
 
   std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
   std::optional<std::size_t> imuOf(const Source& source, const StreamInfo& stream, bool only_one) const;
+  bool isJoined(const std::string& stream) const;
   void match(bool only_one);
   void advance(Source& source);
   void toSamples(const StreamInfo& info, const std::vector<RawImuSample>& raw, ImuLogPacket& packet) const;

@@ -250,11 +250,9 @@ void Maintainer::checkLogs() const {
 void Maintainer::addStops(double false_alarms) {
   for (std::size_t k = 0; k < imus_.size(); ++k) {
     const std::vector<MeansWindow>& windows = passes_[k].means.windows();
-    const std::vector<StopRange> stops = findStops(windows, input_.options);
-    const StopCalibration found =
-        calibrateFromStops(windows, stops, state(imus_[k]), gravity_m_s2_, input_.options);
+    const StopCalibration found = calibrateFromStops(windows, state(imus_[k]), gravity_m_s2_, input_.options);
     MaintainedImu& imu = maintenance_.imus[k];
-    if (stops.empty()) {
+    if (found.stops.empty()) {
       maintenance_.notes.push_back(
           fmt::format("{}: it never stands still for {:g} s", imu.name, input_.options.shortest_stop_s));
       continue;
@@ -404,8 +402,9 @@ MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
   const std::filesystem::path kept = file.parent_path() / kSessionFile;
   if (std::filesystem::exists(kept, ignored))
     for (const SessionImu& imu : readSessionOfRun(kept).imus)
-      input.readings[imu.name] = {imu.acceleration_unit, imu.angular_rate_unit, imu.gyroscope_axes,
-                                  imu.accelerometer_axes, imu.columns};
+      input.readings[imu.name] = {imu.acceleration_unit,   imu.angular_rate_unit, imu.gyroscope_axes,
+                                  imu.accelerometer_axes,  imu.columns,           imu.stream,
+                                  imu.accelerometer_stream};
   return input;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/maintenance.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/maintenance/pair_tracking.h"
 #include "core/maintenance/stop_calibration.h"
 #include "core/maintenance/trajectory_lag.h"

@@ -103,8 +103,9 @@ std::string saturationIn(const CalibrationInput& input, const VerdictOptions& op
   for (const ImuData& imu : input.imus) {
     const UnfitSamples unfit = findUnfitSamples(imu.samples);
     for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+      const std::size_t others = (kImuAxes[axis].rate ? unfit.without_rate : unfit.without_force).size();
       const double share = static_cast<double>(unfit.saturated[axis].size()) /
-                           std::max(1.0, static_cast<double>(imu.samples.size()));
+                           std::max(1.0, static_cast<double>(imu.samples.size() - others));
       if (share <= options.saturated_share) continue;
       words += fmt::format("{}{}: {} is at its limit for {:.0f} % of the samples", words.empty() ? "" : ", ",
                            imu.name, kImuAxes[axis].name, 100.0 * share);

@@ -200,11 +200,11 @@ class ReadingPass {
   void finishImu(const SessionImu& session, ImuData& imu) {
     imu.name = session.name;
     imu.noise = session.noise;
-    leaveOutSecondClocks(session.stream, imu.samples);
+    leaveOutSecondClocks(session.joinedStream(), imu.samples);
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
-      result_.faults.push_back(
-          {session.stream, FaultKind::BackwardTime, 0.0, session.stream + ": samples out of order, sorted"});
+      result_.faults.push_back({session.joinedStream(), FaultKind::BackwardTime, 0.0,
+                                session.joinedStream() + ": samples out of order, sorted"});
       std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };

@@ -5,6 +5,7 @@
 #include "core/data/doubt.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/chi_squared.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/compared_quantities.h"
 #include "core/pipeline/prefixed_progress.h"
 #include "core/pipeline/repeated_estimates.h"
@@ -82,7 +83,7 @@ class Repeat {
   using Chosen = std::vector<std::size_t>;  // of ones_
 
   Repeatability& out() { return run_.repeatability; }
-  const CheckOptions& options() const { return input_.sessions.front().options.check; }
+  const CheckOptions& options() const { return *input_.sessions.front().options.check; }
   RepeatedRecording& recordingOf(std::size_t one) { return out().recordings[ones_[one].recording]; }
 
   void calibrateOne(std::size_t k, const CalibrateOne& calibrate, const RecordingDone& done) {

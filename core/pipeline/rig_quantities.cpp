@@ -257,13 +257,13 @@ std::vector<RigQuantity> rigQuantities(const Session& session, const Calibration
         session.cameras[k].name, [k](CalibrationState& in) -> CameraState& { return in.cameras.at(k); },
         [k](UncertaintyReport& in) -> CameraUncertainty& { return in.cameras.at(k); }};
     forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      all.push_back(quantityOf(row, place, state, session.options.check));
+      all.push_back(quantityOf(row, place, state, *session.options.check));
       RigQuantity& quantity = all.back();
       if (quantity.share != QuantityShare::Common) return;
       quantity.prior = priors.ofCamera(row, k, place.sensor);
       if (row.info.shape == QuantityShape::Intrinsics)
         quantity.moving = [k, count = static_cast<Eigen::Index>(quantity.parts.size()),
-                           rms_px = session.options.check.stability_lens_px](const CalibrationState& at) {
+                           rms_px = session.options.check->stability_lens_px](const CalibrationState& at) {
           return lensCovariance(*at.cameras.at(k).lens.inUse(), count, rms_px);
         };
     });
@@ -273,7 +273,7 @@ std::vector<RigQuantity> rigQuantities(const Session& session, const Calibration
         session.imus[k].name, [k](CalibrationState& in) -> ImuState& { return in.imus.at(k); },
         [k](UncertaintyReport& in) -> ImuUncertainty& { return in.imus.at(k); }};
     forEachQuantity(kImuQuantities, [&](const auto& row) {
-      all.push_back(quantityOf(row, place, state, session.options.check));
+      all.push_back(quantityOf(row, place, state, *session.options.check));
       if (all.back().share == QuantityShare::Common) all.back().prior = priors.ofImu(row, k, place.sensor);
     });
   }
@@ -284,10 +284,10 @@ std::vector<RigQuantity> rigQuantities(const Session& session, const Calibration
         [k](UncertaintyReport& in) -> BoardUncertainty& { return in.boardAt(k); }};
     if (k > 0)
       forEachQuantity(kBoardQuantities, [&](const auto& row) {
-        if (row.info.relative) all.push_back(quantityOf(row, place, state, session.options.check));
+        if (row.info.relative) all.push_back(quantityOf(row, place, state, *session.options.check));
       });
     forEachSheetQuantity([&](const auto& row) {
-      all.push_back(quantityOf(row, place, state, session.options.check));
+      all.push_back(quantityOf(row, place, state, *session.options.check));
       all.back().prior = priors.ofBoard(row, k, place.sensor);
       if (row.info.release == QuantityRelease::BoardBow) {
         constexpr double kSheet_m = 1e-4;  // a sheet on a board bends by so much by itself

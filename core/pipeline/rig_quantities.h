@@ -4,6 +4,7 @@
 
 #include "core/data/calibration_result.h"
 #include "core/data/quantity.h"
+#include "core/pipeline/check_options.h"
 #include "core/pipeline/session.h"
 
 #include <Eigen/Core>

@@ -98,7 +98,7 @@ inline constexpr int kMembers<BoardObservations> = 8;
 template <>
 inline constexpr int kMembers<ImuNoise> = 4;
 template <>
-inline constexpr int kMembers<ImuSample> = 3;
+inline constexpr int kMembers<ImuSample> = 4;
 template <>
 inline constexpr int kMembers<ImuData> = 4;
 template <>
@@ -118,6 +118,8 @@ template <>
 inline constexpr auto kLast<CameraKind> = CameraKind::Points;
 template <>
 inline constexpr auto kLast<FaultKind> = FaultKind::Untimed;
+template <>
+inline constexpr auto kLast<MeasuredBy> = MeasuredBy::Accelerometer;
 
 template <>
 inline constexpr bool kLeftOut<ImuPrior> = true;
@@ -332,6 +334,11 @@ ReadRunData readRunData(const std::filesystem::path& file) {
                                        file.filename().string()));
     return read;
   }
+  return parseRunData(content);
+}
+
+ReadRunData parseRunData(const std::string& content) {
+  ReadRunData read;
   const std::map<std::string, Part> parts = partsOf(content);
   read.has_result =
       readWhole(parts, "result", "trajectory, convergence and residuals", read.run.result, read.missing);

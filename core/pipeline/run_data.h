@@ -24,5 +24,6 @@ struct ReadRunData {
 // Never throws for what is in the file: parts that are damaged, of another version or contradict each other are
 // missing.
 ReadRunData readRunData(const std::filesystem::path& file);
+ReadRunData parseRunData(const std::string& content);
 
 }  // namespace evical

@@ -5,6 +5,7 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/session_boards.h"
 #include "core/pipeline/session_priors.h"
+#include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,13 @@ void checkReference(const Session& session, const std::string& place) {
                  nameAdvice(session.reference, names));
 }
 
+std::string separateAccelerometer(const SessionCamera&) {
+  return {};
+}
+std::string separateAccelerometer(const SessionImu& imu) {
+  return imu.accelerometer_stream;
+}
+
 void checkDifferent(const Session& session, const std::string& place) {
   std::set<std::string> names;
   std::set<std::pair<std::filesystem::path, std::string>> streams;
@@ -37,9 +45,14 @@ void checkDifferent(const Session& session, const std::string& place) {
       throw badInput(key, "this name is taken", "Give every sensor its own name");
     const auto recording =
         std::filesystem::weakly_canonical(sensor.recording.empty() ? session.recording : sensor.recording);
-    if (!streams.insert({recording, sensor.stream}).second)
-      throw badInput(key + ".stream", fmt::format("'{}' is already another sensor's stream", sensor.stream),
-                     "Give every sensor its own stream");
+    const auto take = [&](const char* what, const std::string& stream) {
+      if (!streams.insert({recording, stream}).second)
+        throw badInput(key + what, fmt::format("'{}' is already another sensor's stream", stream),
+                       "Give every sensor its own stream");
+    };
+    const std::string accelerometer = separateAccelerometer(sensor);
+    take(accelerometer.empty() ? ".stream" : ".gyroscope", sensor.stream);
+    if (!accelerometer.empty() && accelerometer != sensor.stream) take(".accelerometer", accelerometer);
   };
   for (const SessionCamera& camera : session.cameras) check("cameras", camera);
   for (const SessionImu& imu : session.imus) check("imus", imu);
@@ -118,7 +131,11 @@ std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder
   std::string text = fmt::format("  {}:\n", yamlText(sensor.name));
   if (!sensor.recording.empty())
     text += fmt::format("    recording: {}\n", yamlText(recordingText(sensor.recording, folder)));
-  text += fmt::format("    stream: {}\n", yamlText(sensor.stream));
+  if (const std::string accelerometer = separateAccelerometer(sensor); accelerometer.empty())
+    text += fmt::format("    stream: {}\n", yamlText(sensor.stream));
+  else
+    text += fmt::format("    gyroscope: {}\n    accelerometer: {}\n", yamlText(sensor.stream),
+                        yamlText(accelerometer));
   if (sensor.clock_offset_s != 0.0) text += fmt::format("    clock_offset_s: {}\n", sensor.clock_offset_s);
   if (sensor.clock_scale != 1.0) text += fmt::format("    clock_scale: {}\n", sensor.clock_scale);
   if (!sensor.columns.empty()) text += fmt::format("    columns: {}\n", yamlText(sensor.columns));
@@ -191,6 +208,10 @@ std::vector<CameraLens> givenLenses(const Session& session) {
     lenses.push_back(givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty));
   }
   return lenses;
+}
+
+std::string SessionImu::joinedStream() const {
+  return accelerometer_stream.empty() ? stream : nameOf(SeparateImu{stream, accelerometer_stream});
 }
 
 std::size_t Session::sensorOf(std::size_t camera) const {

@@ -33,7 +33,9 @@ struct SessionCamera {
 };
 
 struct SessionImu {
-  std::string name, stream;
+  std::string name, stream;  // where the accelerometer has a stream of its own, the gyroscope's
+  // The accelerometer's, where the recording keeps it apart; the gyroscope's again where they alternate on one. Else empty.
+  std::string accelerometer_stream = {};
   ImuNoise noise;
   std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
   std::optional<AngularRateUnit> angular_rate_unit;
@@ -43,6 +45,9 @@ struct SessionImu {
   double clock_scale = 1.0;         // seconds per second of its clock, counted from its first stamp
   std::string columns = {};         // of a text table: a header line that counts instead of the file's
   ImuPrior prior = {};              // the file's prior.imus.<name>
+
+  // As the opened recording calls the stream of both.
+  std::string joinedStream() const;
 };
 
 // With what tells its spacing and spacing_std, where it was measured so.

@@ -31,6 +31,32 @@ bool isSensor(const StreamSummary& stream, StreamType type) {
   return stream.info.type == type && stream.count > 0;
 }
 
+// The stream of the other sensor of an IMU whose sensors have streams of their own: the one whose name begins most like
+// this one's. Nothing where there is none.
+const StreamSummary* otherSensor(const StreamSummary& stream, const Inspection& inspection) {
+  const ImuStreamKind kind = imuStreamKind(stream);
+  if (kind != ImuStreamKind::Gyroscope && kind != ImuStreamKind::Accelerometer) return nullptr;
+  const ImuStreamKind wanted =
+      kind == ImuStreamKind::Gyroscope ? ImuStreamKind::Accelerometer : ImuStreamKind::Gyroscope;
+  const StreamSummary* best = nullptr;
+  std::ptrdiff_t most_alike = -1;
+  for (const StreamSummary& other : inspection.streams) {
+    if (!isSensor(other, StreamType::Imu) || imuStreamKind(other) != wanted) continue;
+    const auto alike =
+        std::ranges::mismatch(stream.info.name, other.info.name).in1 - stream.info.name.begin();
+    if (alike <= most_alike) continue;
+    best = &other;
+    most_alike = alike;
+  }
+  return best;
+}
+
+// "/camera/imu" of "/camera/gyro/sample" and "/camera/accel/sample".
+std::string commonPart(const std::string& a, const std::string& b) {
+  const std::string alike(a.begin(), std::ranges::mismatch(a, b).in1);
+  return alike.substr(0, alike.rfind('/') + 1) + "imu";
+}
+
 void addSensors(const std::filesystem::path& own_recording, const Inspection& inspection, StreamType type,
                 Session& session) {
   for (const StreamSummary& stream : inspection.streams) {
@@ -39,7 +65,10 @@ void addSensors(const std::filesystem::path& own_recording, const Inspection& in
     const bool frames = type == StreamType::Frames && stream.info.readable && stream.info.timed;
     if (frames || type == StreamType::Points)
       session.cameras.push_back(guessedCamera(stream, session, own_recording));
-    if (type == StreamType::Imu) session.imus.push_back(guessedImu(stream, session, own_recording));
+    const bool is_with_gyroscope =
+        imuStreamKind(stream) == ImuStreamKind::Accelerometer && otherSensor(stream, inspection) != nullptr;
+    if (type == StreamType::Imu && !is_with_gyroscope)
+      session.imus.push_back(guessedImu(stream, inspection, session, own_recording));
   }
 }
 
@@ -55,12 +84,19 @@ SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
   return camera;
 }
 
-SessionImu guessedImu(const StreamSummary& stream, const Session& session,
+SessionImu guessedImu(const StreamSummary& given, const Inspection& inspection, const Session& session,
                       const std::filesystem::path& own_recording) {
+  const ImuStreamKind kind = imuStreamKind(given);
+  const StreamSummary* const other = otherSensor(given, inspection);
+  const bool other_is_gyroscope = other != nullptr && kind == ImuStreamKind::Accelerometer;
+  const StreamSummary& gyroscope = other_is_gyroscope ? *other : given;
+  const StreamSummary& stream = other != nullptr && !other_is_gyroscope ? *other : given;
   SessionImu imu;
   imu.recording = own_recording;
-  imu.name = freeName(stream.info.name, "imu", session);
-  imu.stream = stream.info.name;
+  imu.name = freeName(other != nullptr ? commonPart(given.info.name, other->info.name) : given.info.name,
+                      "imu", session);
+  imu.stream = gyroscope.info.name;
+  if (other != nullptr || kind == ImuStreamKind::Alternating) imu.accelerometer_stream = stream.info.name;
   if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
     imu.acceleration_unit = AccelerationUnit::Gravity;
   return imu;

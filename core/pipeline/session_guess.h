@@ -19,7 +19,8 @@ Session guessedSession(const std::filesystem::path& recording, const Inspection&
 // file, where it is not the session's.
 SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
                             const std::filesystem::path& own_recording = {});
-SessionImu guessedImu(const StreamSummary& stream, const Session& session,
+// Of a stream of one of its sensors, together with the stream of the other that the recording has.
+SessionImu guessedImu(const StreamSummary& stream, const Inspection& inspection, const Session& session,
                       const std::filesystem::path& own_recording = {});
 
 // Where neither the recording nor a lens says how large the sensor is: as large as its events reach, or the usual sensor

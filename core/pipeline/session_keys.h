@@ -14,6 +14,9 @@ namespace evical {
 // As readSession; but the recordings of a run may be gone since.
 Session readSessionOfRun(const std::filesystem::path& file);
 
+// The same from a text; its paths are as seen from `folder`.
+Session parseSession(const std::string& yaml, const std::filesystem::path& folder);
+
 // Of a file that lists `recordings`, a session for each; of any other the one that it is. Throws as readSession.
 std::vector<Session> readRepeatedSessions(const std::filesystem::path& file);
 

@@ -46,12 +46,30 @@ void readTable(const YamlNode& map, Sensor& sensor) {
     throw columns->error("has a ?", "Put the column's name there, or - if it is not used");
 }
 
+void readStream(const YamlNode& map, SessionCamera& camera) {
+  camera.stream = nameFrom(map["stream"]);
+}
+
+// One, or one for each of the two sensors.
+void readStream(const YamlNode& map, SessionImu& imu) {
+  const auto gyroscope = map.find("gyroscope"), accelerometer = map.find("accelerometer");
+  if (!gyroscope && !accelerometer) {
+    imu.stream = nameFrom(map["stream"]);
+    return;
+  }
+  if (const auto node = map.find("stream"))
+    throw node->error("is there beside a stream of one of its sensors",
+                      "Give either stream, or gyroscope and accelerometer");
+  imu.stream = nameFrom(map["gyroscope"]);
+  imu.accelerometer_stream = nameFrom(map["accelerometer"]);
+}
+
 // Which stream of which file, in which clock.
 template <class Sensor>
 Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
   Sensor sensor;
   sensor.name = sensor_name;
-  sensor.stream = nameFrom(map["stream"]);
+  readStream(map, sensor);
   if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
   readTable(map, sensor);
   return sensor;
@@ -114,10 +132,10 @@ void setFromNode(const YamlNode& node, const std::string& key, SessionImu& imu) 
 }
 
 SessionImu readImu(const YamlNode& map, const std::string& imu_name, const SessionFolder& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "clock_scale", "columns",
-                 "accelerometer_noise_density", "gyroscope_noise_density", "accelerometer_random_walk",
-                 "gyroscope_random_walk", "acceleration_unit", "angular_rate_unit", "gyroscope_axes",
-                 "accelerometer_axes"});
+  map.allowOnly({"recording", "stream", "gyroscope", "accelerometer", "clock_offset_s", "clock_scale",
+                 "columns", "accelerometer_noise_density", "gyroscope_noise_density",
+                 "accelerometer_random_walk", "gyroscope_random_walk", "acceleration_unit",
+                 "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
   SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
@@ -308,6 +326,10 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
 
 Session readSessionOfRun(const std::filesystem::path& file) {
   return oneSessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
+}
+
+Session parseSession(const std::string& yaml, const std::filesystem::path& folder) {
+  return oneSessionFrom(YamlNode::parse(yaml, "session"), {folder, true}, {});
 }
 
 // What a file may not say must not be in what would be written as one.

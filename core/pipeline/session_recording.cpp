@@ -45,7 +45,7 @@ SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
     : session_(session), stop_(std::move(stop)) {
   for (const SessionCamera& camera : session.cameras)
     addSensor(camera.recording, camera.stream, kCameraStreams);
-  for (const SessionImu& imu : session.imus) addSensor(imu.recording, imu.stream, kImuStreams);
+  for (const SessionImu& imu : session.imus) addSensor(imu.recording, imu.joinedStream(), kImuStreams);
   gates_.resize(places_.size());
   for (Source& source : sources_) {
     source.reader->select(source.selected);
@@ -68,22 +68,34 @@ std::size_t SessionRecording::sourceOf(const std::filesystem::path& path) {
   if (found != sources_.end()) return static_cast<std::size_t>(found - sources_.begin());
   Source& source = sources_.emplace_back();
   source.path = path;
-  source.reader = openRecording(path, columnNames(path));
+  source.reader = withSeparateImus(openRecording(path, columnNames(path)), separateImus(path));
   return sources_.size() - 1;
+}
+
+template <class Sensor>
+bool SessionRecording::isIn(const std::filesystem::path& path, const Sensor& sensor) const {
+  const std::filesystem::path& own = sensor.recording.empty() ? session_.recording : sensor.recording;
+  std::error_code ignored;
+  return own == path || std::filesystem::equivalent(own, path, ignored);
 }
 
 // What the session says of the tables in this recording.
 ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) const {
   ColumnNames names;
   const auto add = [&](const auto& sensor) {
-    const std::filesystem::path& own = sensor.recording.empty() ? session_.recording : sensor.recording;
-    std::error_code ignored;
-    if (!sensor.columns.empty() && (own == path || std::filesystem::equivalent(own, path, ignored)))
-      names[sensor.stream] = sensor.columns;
+    if (!sensor.columns.empty() && isIn(path, sensor)) names[sensor.stream] = sensor.columns;
   };
   for (const SessionCamera& camera : session_.cameras) add(camera);
   for (const SessionImu& imu : session_.imus) add(imu);
   return names;
+}
+
+std::vector<SeparateImu> SessionRecording::separateImus(const std::filesystem::path& path) const {
+  std::vector<SeparateImu> imus;
+  for (const SessionImu& imu : session_.imus)
+    if (!imu.accelerometer_stream.empty() && isIn(path, imu))
+      imus.push_back({imu.stream, imu.accelerometer_stream});
+  return imus;
 }
 
 void SessionRecording::addSensor(const std::filesystem::path& own_recording, const std::string& stream,
@@ -230,6 +242,8 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) {
     toSi(raw.imu_samples, session_.imus[imu].acceleration_unit.value_or(stream.acceleration_unit),
          session_.imus[imu].angular_rate_unit.value_or(stream.angular_rate_unit), packet.imu_samples);
     for (ImuSample& sample : packet.imu_samples) {
+      // What messages say of themselves is believed only where the session says that the sensors are apart.
+      if (session_.imus[imu].accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
       sample.angular_rate_rad_s = readAs(session_.imus[imu].gyroscope_axes, sample.angular_rate_rad_s);
       sample.specific_force_m_s2 = readAs(session_.imus[imu].accelerometer_axes, sample.specific_force_m_s2);
     }

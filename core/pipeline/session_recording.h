@@ -6,6 +6,7 @@
 
 #include "core/pipeline/session.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/separate_imu.h"
 #include "core/recording/stray_stamps.h"
 
 #include <cstddef>
@@ -80,7 +81,10 @@ class SessionRecording {
   };
 
   std::size_t sourceOf(const std::filesystem::path& path);
+  template <class Sensor>
+  bool isIn(const std::filesystem::path& path, const Sensor& sensor) const;
   ColumnNames columnNames(const std::filesystem::path& path) const;
+  std::vector<SeparateImu> separateImus(const std::filesystem::path& path) const;
   void addSensor(const std::filesystem::path& path, const std::string& stream,
                  std::span<const StreamType> types);
   void advance(Source& source);

@@ -80,15 +80,33 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   }
 }
 
+// Where the two sensors have samples of their own, each has its own times.
+void checkTimesOfSensors(const std::string& name, const Samples& samples, const InspectionOptions& options,
+                         Faults& faults) {
+  const auto isOfBoth = [](const ImuSample& sample) { return sample.measured_by == MeasuredBy::Both; };
+  if (std::all_of(samples.begin(), samples.end(), isOfBoth))
+    return checkTimes(name, samples, options, faults);
+  for (const MeasuredBy other : {MeasuredBy::Accelerometer, MeasuredBy::Gyroscope}) {
+    Samples own;
+    std::copy_if(samples.begin(), samples.end(), std::back_inserter(own),
+                 [other](const ImuSample& sample) { return sample.measured_by != other; });
+    if (!own.empty()) checkTimes(name, own, options, faults);
+  }
+}
+
 void checkStuck(const std::string& name, const Samples& samples, const ImuAxis& axis,
                 const std::vector<std::size_t>& saturated, const InspectionOptions& options, Faults& faults) {
   Faults stuck;
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    const double value = axis.of(samples[begin]);
-    for (end = begin + 1; end < samples.size() && axis.of(samples[end]) == value;) ++end;
-    const double at_s = secondsSince(samples.front().time_ns, samples[begin].time_ns);
-    const double run_s = secondsSince(samples[begin].time_ns, samples[end - 1].time_ns);
-    if (run_s < options.stuck_axis_s || std::binary_search(saturated.begin(), saturated.end(), begin))
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples[i].measured_by != (axis.rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope))
+      own.push_back(i);
+  for (std::size_t begin = 0, end = 0; begin < own.size(); begin = end) {
+    const double value = axis.of(samples[own[begin]]);
+    for (end = begin + 1; end < own.size() && axis.of(samples[own[end]]) == value;) ++end;
+    const double at_s = secondsSince(samples.front().time_ns, samples[own[begin]].time_ns);
+    const double run_s = secondsSince(samples[own[begin]].time_ns, samples[own[end - 1]].time_ns);
+    if (run_s < options.stuck_axis_s || std::binary_search(saturated.begin(), saturated.end(), own[begin]))
       continue;
     stuck.push_back({name, FaultKind::StuckAxis, at_s,
                      fmt::format("{} stays at {} for {:.2f} s.", axis.name, value, run_s)});
@@ -125,9 +143,13 @@ void checkSpikes(const std::string& name, const Samples& samples, const char* se
 
 void checkUnits(const std::string& name, const Samples& samples, const InspectionOptions& options,
                 Faults& faults) {
-  const double norm = medianForceNorm(samples);
+  Samples forces;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(forces),
+               [](const ImuSample& sample) { return sample.measured_by != MeasuredBy::Gyroscope; });
+  const double norm = medianForceNorm(forces);
   // Brisk motion makes the norms larger, but not their mean in a frame that does not turn.
-  if (!isGravity(norm, options) && !isGravity(steadyForceNorm(samples).value_or(norm), options)) {
+  if (!forces.empty() && !isGravity(norm, options) &&
+      !isGravity(steadyForceNorm(samples).value_or(norm), options)) {
     const bool in_g = isGravity(norm * kStandardGravity_m_s2, options);
     faults.push_back(
         {name, FaultKind::Unit, 0.0,
@@ -160,7 +182,7 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
                       fmt::format("{} samples hold values that are no numbers, or that no sensor measures.",
                                   samples.size() - good.size())});
   }
-  checkTimes(name, samples, options, faults);
+  checkTimesOfSensors(name, samples, options, faults);
   const UnfitSamples unfit = findUnfitSamples(good);
   for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
     checkStuck(name, good, kImuAxes[axis], unfit.saturated[axis], options, faults);

@@ -18,6 +18,8 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
   summary.first_ns = samples.front().time_ns;
   summary.last_ns = samples.back().time_ns;
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    summary.without_rate += lacksRate(samples[i]) ? 1 : 0;
+    summary.without_force += lacksForce(samples[i]) ? 1 : 0;
     summary.mean_acceleration += samples[i].specific_force / static_cast<double>(samples.size());
     summary.mean_angular_rate += samples[i].angular_rate / static_cast<double>(samples.size());
     if (i == 0) continue;
@@ -46,6 +48,28 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
   } else {
     summary.angular_rate_unit = largestRate(samples) <= options.largest_rate_rad_s ? "rad/s" : "unknown";
   }
+}
+
+ImuStreamKind kindOf(std::uint64_t samples, std::uint64_t without_rate, std::uint64_t without_force) {
+  constexpr double kFew = 0.05, kNearlyAll = 0.95;
+  if (samples == 0) return ImuStreamKind::Whole;
+  const double count = static_cast<double>(samples);
+  const double no_rate = static_cast<double>(without_rate) / count,
+               no_force = static_cast<double>(without_force) / count;
+  if (no_force > kNearlyAll && no_rate < kNearlyAll) return ImuStreamKind::Gyroscope;
+  if (no_rate > kNearlyAll && no_force < kNearlyAll) return ImuStreamKind::Accelerometer;
+  const bool alternating = no_rate > kFew && no_force > kFew && no_rate + no_force > kNearlyAll;
+  return alternating ? ImuStreamKind::Alternating : ImuStreamKind::Whole;
+}
+
+// Of a stream whose kind is known, which sensor measured each sample.
+void setMeasuredBy(const std::vector<RawImuSample>& raw, ImuStreamKind kind,
+                   std::vector<ImuSample>& samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].measured_by = kind == ImuStreamKind::Whole || lacksRate(raw[i]) == lacksForce(raw[i])
+                                 ? MeasuredBy::Both
+                             : lacksRate(raw[i]) ? MeasuredBy::Accelerometer
+                                                 : MeasuredBy::Gyroscope;
 }
 
 // Of frames, and of points by their times.
@@ -101,6 +125,19 @@ void selectAll(RecordingReader& reader) {
 
 }  // namespace
 
+ImuStreamKind imuStreamKind(const StreamSummary& stream) {
+  return kindOf(stream.count, stream.without_rate, stream.without_force);
+}
+
+ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples) {
+  const auto withZero = [&](Eigen::Vector3d ImuSample::*value) {
+    return static_cast<std::uint64_t>(std::ranges::count_if(
+        samples, [value](const ImuSample& sample) { return (sample.*value).isZero(0.0); }));
+  };
+  return kindOf(samples.size(), withZero(&ImuSample::angular_rate_rad_s),
+                withZero(&ImuSample::specific_force_m_s2));
+}
+
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options,
                             const RunContext& context) {
   Inspection inspection;
@@ -136,6 +173,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     std::vector<ImuSample> samples;
     toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
     summarise(imu_samples[i], samples, options, summary);
+    setMeasuredBy(imu_samples[i], imuStreamKind(summary), samples);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
   }

@@ -39,8 +39,14 @@ struct StreamSummary {
   std::string acceleration_unit, angular_rate_unit;
   Eigen::Vector3d mean_acceleration = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_angular_rate = Eigen::Vector3d::Zero();
-  double median_acceleration = 0.0;  // of the norm
+  double median_acceleration = 0.0;                   // of the norm
+  std::uint64_t without_rate = 0, without_force = 0;  // samples that tell nothing of one of the sensors
 };
+
+// Which of an IMU's sensors a stream is of. Alternating: of both, but never at the same time.
+enum class ImuStreamKind { Whole, Gyroscope, Accelerometer, Alternating };
+ImuStreamKind imuStreamKind(const StreamSummary& stream);
+ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples);  // by what is 0 throughout
 
 struct Inspection {
   std::string format;

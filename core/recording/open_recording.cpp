@@ -12,6 +12,7 @@
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/recording_server.h"
 #include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/ros_files.h"
@@ -74,6 +75,7 @@ bool isRos2File(const std::filesystem::path& path, std::string_view start) {
 
 // libhdf5 writes past its own memory on some damaged files.
 std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path) {
+  if (!recordingServer().empty()) return std::make_unique<SeparateReader>(path, recordingServer());
   return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path); });
 }
 

@@ -285,10 +285,7 @@ void readCauses(const YamlNode& root, std::vector<Doubt>& causes) {
   }
 }
 
-}  // namespace
-
-NamedResult readResultYaml(const std::filesystem::path& file) {
-  const YamlNode root = YamlNode::load(file);
+NamedResult resultFrom(const YamlNode& root) {
   if (!root.isMap() || !(root.has("evical_result") || root.has("evical_truth")))
     throw root.error("is neither a result nor a truth file",
                      "Give result.yaml of `evical calibrate`, or truth.yaml");
@@ -320,6 +317,16 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
   readRun(root, named, result);
   named.result = std::make_shared<const CalibrationResult>(std::move(result));
   return named;
+}
+
+}  // namespace
+
+NamedResult readResultYaml(const std::filesystem::path& file) {
+  return resultFrom(YamlNode::load(file));
+}
+
+NamedResult parseResultYaml(const std::string& text, const std::string& place) {
+  return resultFrom(YamlNode::parse(text, place));
 }
 
 }  // namespace evical

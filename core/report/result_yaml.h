@@ -47,5 +47,6 @@ std::string resultYaml(const NamedResult& named);
 // All but trajectory, iterations and residuals. Absent numbers stay at their defaults, so that truth.yaml can
 // be read too. Throws CalibrationError (BadInput).
 NamedResult readResultYaml(const std::filesystem::path& file);
+NamedResult parseResultYaml(const std::string& text, const std::string& place);
 
 }  // namespace evical

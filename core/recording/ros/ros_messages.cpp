@@ -114,11 +114,19 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
     for (int i = 0; i < 3; ++i) vector[i] = cursor.number<double>();
   };
   skip(4 + 9);  // orientation and its covariance
+  // By the convention of sensor_msgs, a covariance that begins with -1 says that this was not measured.
+  const auto isMeasured = [&] {
+    const bool measured = cursor.number<double>() != -1.0;
+    skip(8);
+    return measured;
+  };
   takeVector(sample.angular_rate);
-  skip(9);
+  const bool has_rate = isMeasured();
   takeVector(sample.specific_force);
-  skip(9);
+  const bool has_force = isMeasured();
   if (!cursor.wellEnded()) return false;
+  if (has_rate != has_force)
+    sample.measured_by = has_rate ? MeasuredBy::Gyroscope : MeasuredBy::Accelerometer;
   samples.push_back(sample);
   return true;
 }
@@ -161,9 +169,13 @@ void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization se
   numbers[3] = 1.0;   // no rotation, and
   numbers[4] = -1.0;  // by the convention of sensor_msgs: there is no estimate of the orientation
   for (int i = 0; i < 3; ++i) {
-    numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
-    numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];
+    if (sample.measured_by != MeasuredBy::Accelerometer)
+      numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
+    if (sample.measured_by != MeasuredBy::Gyroscope)
+      numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];
   }
+  if (sample.measured_by == MeasuredBy::Accelerometer) numbers[16] = -1.0;
+  if (sample.measured_by == MeasuredBy::Gyroscope) numbers[28] = -1.0;
   for (const double number : numbers) bytes.append(number);
 }
 

@@ -68,7 +68,9 @@ RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>&
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
+  // Of sensors with topics of their own, "A + B", programs that name one have the gyroscope's.
+  const std::string topic = known.stream.substr(0, known.stream.find(" + "));
+  return {name, fileName(name, taken), topic, known.noise, known.rate_hz, state};
 }
 
 // An estimate of 0 is within its sigma of it, or nearly.
@@ -146,6 +148,13 @@ Rig rigOf(const NamedResult& result) {
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
                         [&](const RigImu& imu) { return imu.name == result.reference; });
   rig.timing = timingRemarks(result);
+  for (std::size_t i = 0; i < result.imus.size(); ++i)
+    if (result.imus[i].stream.find(" + ") != std::string::npos)
+      rig.timing.push_back(
+          fmt::format("{}: gyroscope and accelerometer have topics of their own, {}: where a program names "
+                      "one, it is the "
+                      "gyroscope's",
+                      result.imus[i].name, result.imus[i].stream));
   return rig;
 }
 

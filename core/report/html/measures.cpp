@@ -132,8 +132,8 @@ ImuMeasures measureImu(const ReportData& data, std::size_t index) {
       moments(given.samples.size(), [&](std::size_t i) { return given.samples[i].angular_rate_rad_s; });
   imu.force_m_s2 =
       moments(given.samples.size(), [&](std::size_t i) { return given.samples[i].specific_force_m_s2; });
-  imu.rate_sigma_rad_s = given.noise.gyroscope_density * std::sqrt(imu.rate_hz);
-  imu.force_sigma_m_s2 = given.noise.accelerometer_density * std::sqrt(imu.rate_hz);
+  imu.rate_sigma_rad_s = given.gyroscopeSigma_rad_s();
+  imu.force_sigma_m_s2 = given.accelerometerSigma_m_s2();
   const CalibrationState& state = data.named.result->state;
   if (index >= state.imus.size() || state.imu_in_world_m.segmentCount() < 1) return imu;
   imu.signals = predictSignals(given, data.start_ns, state, index);

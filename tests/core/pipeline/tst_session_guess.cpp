@@ -87,7 +87,7 @@ class TestSessionGuess : public QObject {
     QFETCH(QString, camera);
     QFETCH(QString, imu);
     QCOMPARE(guessedCamera(eventStream(stream.toStdString()), {}).name, camera.toStdString());
-    QCOMPARE(guessedImu(imuStream(stream.toStdString()), {}).name, imu.toStdString());
+    QCOMPARE(guessedImu(imuStream(stream.toStdString()), {}, {}).name, imu.toStdString());
   }
 
   void name_thatIsTakenGetsANumber() {
@@ -123,11 +123,11 @@ class TestSessionGuess : public QObject {
   }
 
   void accelerationsThatLookLikeGAreTakenForIt() {
-    QVERIFY(guessedImu(imuStream("/imu", "g"), {}).acceleration_unit == AccelerationUnit::Gravity);
-    QVERIFY(!guessedImu(imuStream("/imu", "m/s^2"), {}).acceleration_unit);
+    QVERIFY(guessedImu(imuStream("/imu", "g"), {}, {}).acceleration_unit == AccelerationUnit::Gravity);
+    QVERIFY(!guessedImu(imuStream("/imu", "m/s^2"), {}, {}).acceleration_unit);
     StreamSummary said = imuStream("/imu", "g");
     said.info.acceleration_unit = AccelerationUnit::Gravity;  // as the format says: nothing to be guessed
-    QVERIFY(!guessedImu(said, {}).acceleration_unit);
+    QVERIFY(!guessedImu(said, {}, {}).acceleration_unit);
   }
 
   void missingSensors_areThoseOfAKindThatTheSessionLacks() {

@@ -1,7 +1,10 @@
 #include "core/base/error.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/session_recording.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -47,6 +50,7 @@ class TestSessionRecording : public QObject {
   void intrinsicsOfAnotherResolution_areRefused();
   void samplesThatAreNoMeasurements_stayOutside();
   void strayStamps_moveNeitherBeginningNorEnd();
+  void simulatedRawFiles_haveTheirImuBeside();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -270,6 +274,29 @@ void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
   QVERIFY(recording.faults().front().kind == FaultKind::Corrupt);
   QVERIFY2(recording.faults().front().text.find("3 events left out") != std::string::npos,
            recording.faults().front().text.c_str());
+}
+
+// As who has a camera of Prophesee's has them: on one clock, and with all that was simulated.
+void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
+  scenario.duration_s = 0.5;
+  for (const char* const format : {"raw", "dat"}) {
+    const SimulationSummary made = simulate(scenario, path(format), RunContext{}, format);
+    QCOMPARE(made.recording, path(format) / (std::string("recording.") + format));
+    const Session session = evical::readSession(made.session);
+    QCOMPARE(session.imus.at(0).recording.filename(), std::filesystem::path("imu.csv"));
+    SessionRecording recording(session);
+    std::uint64_t events = 0, samples = 0;
+    SensorPacket packet;
+    while (recording.read(packet)) {
+      events += packet.events.size();
+      samples += packet.imu_samples.size();
+    }
+    QVERIFY(events > 10'000);
+    QCOMPARE(events, made.events);
+    QCOMPARE(samples, made.imu_samples);
+    QVERIFY(recording.faults().empty());
+  }
 }
 
 EVICAL_TEST(TestSessionRecording)

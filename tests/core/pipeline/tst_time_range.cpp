@@ -1,5 +1,7 @@
 // A part of a recording: what lies within time_range_s, and no more of the file than it takes.
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/calibration_checks.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session_recording.h"
 #include "core/pipeline/simulation.h"
@@ -12,6 +14,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 using namespace evical;
 
@@ -48,6 +52,53 @@ class TestTimeRange : public QObject {
     QVERIFY(std::ranges::any_of(to_the_end.faults, [](const RecordingFault& fault) {
       return fault.text.find("nothing behind it is read") != std::string::npos;
     }));
+  }
+
+  // A clock that doubles, or counts ms as us, is named with the repair; other durations are no reason.
+  void clockRates_areNamed_data() {
+    QTest::addColumn<double>("imu_s");
+    QTest::addColumn<double>("rate_hz");
+    QTest::addColumn<QString>("key");
+    QTest::addColumn<QString>("value");
+    QTest::newRow("IMU doubled") << 40.0 << 100.0 << "imus.imu.clock_scale"
+                                 << "0.5";
+    QTest::newRow("ms read as us") << 0.02 << 2e5 << "imus.imu.clock_scale"
+                                   << "1000";
+    QTest::newRow("events in ms") << 20000.0 << 200.0 << "cameras.camera.clock_scale"
+                                  << "1000";
+    QTest::newRow("as long") << 20.1 << 200.0 << ""
+                             << "";
+    QTest::newRow("another length") << 27.0 << 200.0 << ""
+                                    << "";
+  }
+  void clockRates_areNamed() {
+    QFETCH(double, imu_s);
+    QFETCH(double, rate_hz);
+    QFETCH(QString, key);
+    QFETCH(QString, value);
+    BoardObservations seen;
+    seen.camera = "camera";
+    seen.windows.resize(2);
+    seen.windows[1].time_s = 20.0;
+    ImuData imu;
+    imu.name = "imu";
+    for (int i = 0; i <= static_cast<int>(imu_s * rate_hz); i += 4)  // every fourth, for the test's memory
+      for (int k = 0; k < (imu_s > 1000.0 ? 1 : 4); ++k) {
+        imu.samples.emplace_back();
+        imu.samples.back().time_ns = std::llround(1e9 * (i + k) / rate_hz);
+      }
+    const CalibrationError error = calibrationFailed("imu", "nothing agrees", "Look");
+    const CalibrationError found = withClockRate(error, Session{}, seen, std::span(&imu, 1));
+    QCOMPARE(found.repair().has_value(), !key.isEmpty());
+    if (key.isEmpty()) {
+      QCOMPARE(std::string(found.what()), std::string(error.what()));
+      return;
+    }
+    QCOMPARE(QString::fromStdString(found.repair()->key), key);
+    QCOMPARE(QString::fromStdString(found.repair()->value), value);
+    Session cut;
+    cut.time_range_s = {0.0, 20.0};
+    QVERIFY(!withClockRate(error, cut, seen, std::span(&imu, 1)).repair());
   }
 
   // The range counts from the session's first event or sample, also where the IMU begins later and is read alone.

@@ -1,3 +1,4 @@
+#include "core/recording/read_out_load.h"
 #include "core/recording/stray_stamps.h"
 
 #include "core/base/time.h"
@@ -6,6 +7,7 @@
 #include "tests/support/test_program.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -56,6 +58,7 @@ bool sameTimes(const Events& a, const Events& b) {
 class TestStrayStamps : public QObject {
   Q_OBJECT
  private slots:
+  void readOutAtItsLimit_isTold();
   void goodEvents_areAllKept_data();
   void goodEvents_areAllKept();
   void strayStamps_areDropped_data();
@@ -167,6 +170,28 @@ void TestStrayStamps::fewEvents_countAsTheyAre() {
   const Events events = steadyEvents(5);
   QVERIFY(sameTimes(filtered(events, 2).kept, events));
   QVERIFY(filtered({}, 1).kept.empty());
+}
+
+// Three seconds at 2 million events a second, where the scene would give more half of the time; the same of a scene that never
+// reaches that.
+void TestStrayStamps::readOutAtItsLimit_isTold() {
+  for (const bool limited : {true, false}) {
+    ReadOutLoad load;
+    for (int ms = 0; ms < 3000; ++ms) {
+      const double wanted_per_ms = 2000.0 + 1500.0 * std::sin(0.01 * ms);
+      const auto count = static_cast<std::size_t>(limited ? std::min(wanted_per_ms, 2000.0) : wanted_per_ms);
+      Events events;
+      for (std::size_t i = 0; i < count; ++i)
+        events.push_back(
+            {kStrayStampsStart_ns + ms * 1'000'000 + static_cast<std::int64_t>(i * 1'000'000 / count), 0, 0,
+             true});
+      load.add(events);
+    }
+    QCOMPARE(load.limit().share > 0.0, limited);
+    if (!limited) continue;
+    QVERIFY(std::abs(load.limit().rate_hz - 2e6) < 0.02e6);
+    QVERIFY(std::abs(load.limit().share - 0.5) < 0.1);
+  }
 }
 
 }  // namespace

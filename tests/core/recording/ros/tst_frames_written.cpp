@@ -117,8 +117,9 @@ void TestFramesWritten::roundTrip_isExact() {
 void TestFramesWritten::otherFormats_refuseThem() {
   for (const RecordingFormat& format : recordingFormats()) {
     if (format.frames || format.isFolder()) continue;
-    const auto written =
-        createRecording(scratch_ / "none", format.name, {streamOf("events", StreamType::Events)});
+    StreamInfo events = streamOf("events", StreamType::Events);
+    events.resolution_px = {346, 260};
+    const auto written = createRecording(scratch_ / "none", format.name, {events});
     QVERIFY_EXCEPTION_THROWN(written->writeFrame(0, plainFrame(FrameFormat::Gray8, 1)), CalibrationError);
   }
 }

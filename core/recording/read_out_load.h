@@ -1,0 +1,56 @@
+// Whether a camera's read-out is at its limit: then events are lost, and the rest is stamped when its turn comes.
+#pragma once
+
+#include "core/data/event.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+// What is counted over hundredths of a second: a read-out at its limit gives the same number again and again, a scene does not.
+class ReadOutLoad {
+ public:
+  // In order of time.
+  void add(EventSpan events) {
+    for (auto event = events.begin(); event != events.end();) {
+      const std::int64_t bin = event->time_ns / kBin_ns;
+      const auto end =
+          std::lower_bound(event, events.end(), (bin + 1) * kBin_ns,
+                           [](const Event& e, std::int64_t time_ns) { return e.time_ns < time_ns; });
+      if (counts_.empty() || bin != last_bin_) counts_.push_back(0);
+      last_bin_ = bin;
+      counts_.back() += static_cast<std::uint32_t>(end - event);
+      event = end;
+    }
+  }
+
+  struct Limit {
+    double rate_hz = 0.0;
+    double share = 0.0;  // of the time, at the limit; 0: there is none
+  };
+  Limit limit() const {
+    constexpr std::size_t kFewest = 100;
+    constexpr double kLeastRate_hz = 1e6, kNear = 0.02, kLeastShare = 0.15;
+    if (counts_.size() < kFewest) return {};
+    std::vector<std::uint32_t> sorted = counts_;
+    const auto top = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size()));
+    std::nth_element(sorted.begin(), top, sorted.end());
+    const double most = *top;
+    const auto near = std::count_if(counts_.begin(), counts_.end(),
+                                    [&](std::uint32_t count) { return count >= (1.0 - kNear) * most; });
+    const Limit found{most * 1e9 / static_cast<double>(kBin_ns),
+                      static_cast<double>(near) / static_cast<double>(counts_.size())};
+    return found.rate_hz >= kLeastRate_hz && found.share >= kLeastShare ? found : Limit{};
+  }
+
+ private:
+  static constexpr std::int64_t kBin_ns = 10'000'000;
+
+  std::vector<std::uint32_t> counts_;
+  std::int64_t last_bin_ = 0;
+};
+
+}  // namespace evical
