@@ -4,6 +4,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/result_files.h"
+#include "core/pipeline/run_data.h"
 #include "core/pipeline/unfinished_run.h"
 #include "core/report/result_yaml.h"
 #include "python/arrays.h"
@@ -90,6 +91,19 @@ void bindIntrinsics(py::module_& module) {
           "(9,): sigmas of the same.")
       .def_readonly("reprojection_rms_px", &IntrinsicsResult::reprojection_rms_px)
       .def_readonly("views_used", &IntrinsicsResult::views_used)
+      .def(py::pickle(
+          [](const IntrinsicsResult& r) {
+            CalibrationRun run;
+            run.intrinsics = {r};
+            return py::make_tuple(py::bytes(runData(run)));
+          },
+          [](const py::tuple& state) {
+            const ReadRunData read = parseRunData(state[0].cast<py::bytes>());
+            if (read.run.intrinsics.size() != 1 || !read.run.intrinsics[0])
+              throw badInput("result", "comes from another version of Evical",
+                             "Use the same version in all processes");
+            return *read.run.intrinsics[0];
+          }))
       .def("__repr__", [](const IntrinsicsResult& r) {
         return fmt::format("<evical.IntrinsicsResult {}: {:.3f} px RMS>", statusName(r.status),
                            r.reprojection_rms_px);

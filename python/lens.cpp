@@ -12,6 +12,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -130,6 +132,27 @@ py::array undistortEvents(const CameraIntrinsics& camera, const py::array& event
   return undistorted;
 }
 
+py::tuple stateOfLens(const CameraIntrinsics& c) {
+  py::tuple distortion(c.distortion.size());
+  for (std::size_t i = 0; i < c.distortion.size(); ++i) distortion[i] = c.distortion[i];
+  return py::make_tuple(cameraModelName(c.model), c.resolution_px.width_px, c.resolution_px.height_px,
+                        c.focal_length_px.x(), c.focal_length_px.y(), c.principal_point_px.x(),
+                        c.principal_point_px.y(), distortion);
+}
+
+CameraIntrinsics lensFromState(const py::tuple& state) {
+  const auto name = state[0].cast<std::string>();
+  const auto model = std::find(kCameraModelNames.begin(), kCameraModelNames.end(), name);
+  if (model == kCameraModelNames.end()) throw py::value_error("a lens of a model that is not known: " + name);
+  CameraIntrinsics lens;
+  lens.model = static_cast<CameraModel>(model - kCameraModelNames.begin());
+  lens.resolution_px = {state[1].cast<int>(), state[2].cast<int>()};
+  lens.focal_length_px = {state[3].cast<double>(), state[4].cast<double>()};
+  lens.principal_point_px = {state[5].cast<double>(), state[6].cast<double>()};
+  lens.distortion = state[7].cast<std::array<double, 5>>();
+  return lens;
+}
+
 void bindNumbers(py::class_<CameraIntrinsics>& camera) {
   camera.def_property_readonly("model", [](const CameraIntrinsics& c) { return cameraModelName(c.model); })
       .def_property_readonly(
@@ -210,6 +233,8 @@ void bindLens(py::module_& module) {
            "records t, "
            "x, y, p of whole numbers. Raises InputError for events outside of the image.")
       .def(py::self == py::self)
+      .def("__hash__", [](const CameraIntrinsics& c) { return py::hash(stateOfLens(c)); })
+      .def(py::pickle(&stateOfLens, &lensFromState))
       .def("__repr__", [](const CameraIntrinsics& c) {
         return fmt::format("<evical.Camera {}, {} x {} px>", cameraModelName(c.model),
                            c.resolution_px.width_px, c.resolution_px.height_px);

@@ -3,6 +3,7 @@
 #include "core/frames/gray_image.h"
 #include "core/recording/inspection.h"
 #include "core/recording/inspection_json.h"
+#include "core/recording/recording_server.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
@@ -13,7 +14,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cstddef>
 #include <map>
+#include <type_traits>
 #include <utility>
 
 namespace evical::python {
@@ -51,10 +54,10 @@ py::dtype eventType() {
 
 // Three doubles stand at the beginning of Eigen's vector, which is all of it.
 py::dtype imuType() {
-  static_assert(sizeof(RawImuSample) == sizeof(std::int64_t) + 6 * sizeof(double));
-  return recordType({{"t", "<i8", 0},
-                     {"angular_rate", "(3,)<f8", sizeof(std::int64_t)},
-                     {"acceleration", "(3,)<f8", sizeof(std::int64_t) + 3 * sizeof(double)}},
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && std::is_standard_layout_v<RawImuSample>);
+  return recordType({{"t", "<i8", offsetof(RawImuSample, time_ns)},
+                     {"angular_rate", "(3,)<f8", offsetof(RawImuSample, angular_rate)},
+                     {"acceleration", "(3,)<f8", offsetof(RawImuSample, specific_force)}},
                     sizeof(RawImuSample));
 }
 
@@ -306,6 +309,8 @@ void bindRecording(py::module_& module) {
         return fmt::format("<evical.Recording '{}', {}{}>", r.path(), r.format(),
                            r.closed() ? ", closed" : "");
       });
+  module.def("_set_recording_server", setRecordingServer, py::arg("command"));
+  module.def("_serve_recording", serveRecording, py::arg("path"));
   module.def("_open", openForPython, py::arg("path"), py::arg("streams"));
   module.def("inspect", inspect, py::arg("path"), py::arg("progress") = py::none(),
              "What a recording holds and what is wrong with it: the dictionary of `evical inspect --json "

@@ -55,6 +55,23 @@ std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
   return result;
 }
 
+ResultState stateOf(const Result& result) {
+  CalibrationRun run;
+  run.result = result.numbers();
+  return {resultYaml(result.named), runData(run), result.missing};
+}
+
+std::shared_ptr<Result> resultFrom(const ResultState& state) {
+  auto result = std::make_shared<Result>();
+  result->named = parseResultYaml(state.yaml, "result");
+  ReadRunData data = parseRunData(state.data);
+  if (!data.has_result)
+    throw badInput("result", "comes from another version of Evical", "Use the same version in all processes");
+  result->named.result = std::make_shared<const CalibrationResult>(std::move(data.run.result));
+  result->missing = state.missing;
+  return result;
+}
+
 Trajectory trajectoryOf(const std::shared_ptr<const Result>& result) {
   if (result->hasTrajectory()) return {result};
   std::string why;

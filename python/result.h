@@ -25,6 +25,14 @@ std::shared_ptr<const Result> resultOf(const Session& session, const Calibration
 // A result folder, its result.yaml, or such a file by itself. Throws CalibrationError (BadInput).
 std::shared_ptr<const Result> loadResult(const std::filesystem::path& path);
 
+// What makes a result again in another process: result.yaml, and the numbers that it does not have.
+struct ResultState {
+  std::string yaml, data;
+  std::vector<std::string> missing;
+};
+ResultState stateOf(const Result& result);
+std::shared_ptr<Result> resultFrom(const ResultState& state);
+
 // The reference's motion: seconds since the recording's start on the reference's clock.
 struct Trajectory {
   std::shared_ptr<const Result> result;

@@ -76,7 +76,12 @@ void bindSensor(py::class_<Sensor>& sensor) {
           "What the offset grows by, us per s; time_offset_s holds at clock_drift_at_s.")
       .def_property_readonly("clock_drift_std_ppm",
                              [](const Sensor& s) { return s.sigma().time_offset_drift_std_ppm; })
-      .def_property_readonly("clock_drift_at_s", [](const Sensor& s) { return s.state().time_offset_at_s; });
+      .def_property_readonly("clock_drift_at_s", [](const Sensor& s) { return s.state().time_offset_at_s; })
+      .def(py::pickle(
+          [](const Sensor& s) { return py::make_tuple(std::const_pointer_cast<Result>(s.result), s.index); },
+          [](const py::tuple& state) {
+            return Sensor{state[0].cast<std::shared_ptr<Result>>(), state[1].cast<std::size_t>()};
+          }));
 }
 
 void bindCamera(py::module_& module) {
@@ -149,10 +154,10 @@ void bindImu(py::module_& module) {
 }
 
 template <class Sensor>
-py::dict byName(const std::shared_ptr<const Result>& result, const std::vector<SensorDescription>& known) {
+py::object byName(const std::shared_ptr<const Result>& result, const std::vector<SensorDescription>& known) {
   py::dict sensors;
   for (std::size_t i = 0; i < known.size(); ++i) sensors[py::str(known[i].name)] = Sensor{result, i};
-  return sensors;
+  return readOnly(sensors);
 }
 
 py::object covarianceOf(const Result& result) {
@@ -231,6 +236,15 @@ void bindResult(py::module_& module) {
       .def_property_readonly(
           "trajectory", [](const Shared& r) { return trajectoryOf(r); },
           "A Trajectory. Raises InputError where the folder has none.")
+      .def(py::pickle(
+          [](const Result& r) {
+            const ResultState state = stateOf(r);
+            return py::make_tuple(state.yaml, py::bytes(state.data), state.missing);
+          },
+          [](const py::tuple& state) {
+            return resultFrom({state[0].cast<std::string>(), state[1].cast<py::bytes>(),
+                               state[2].cast<std::vector<std::string>>()});
+          }))
       .def(
           "to_yaml", [](const Result& r) { return resultYaml(r.named); }, "The content of result.yaml.")
       .def("__repr__", [](const Result& r) {

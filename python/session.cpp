@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/session_guess.h"
+#include "core/pipeline/session_keys.h"
 #include "core/recording/recording_reader.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -26,10 +27,10 @@ py::object valueOf(const OptionRow& row) {
   return whole ? py::object(py::int_(text)) : py::object(py::float_(text));
 }
 
-py::dict optionsOf(const Session& session) {
+py::object optionsOf(const Session& session) {
   py::dict options;
   for (const OptionRow& row : optionRows(session.options)) options[py::str(row.name)] = valueOf(row);
-  return options;
+  return readOnly(options);
 }
 
 // All or nothing: a value that is refused changes nothing.
@@ -65,11 +66,11 @@ Session guess(const py::args& given, const py::object& progress) {
 
 // Sensors by name, as parts of the session, which they keep.
 template <class Sensor>
-py::dict sensorByName(std::vector<Sensor>& sensors, const py::object& session) {
+py::object sensorByName(std::vector<Sensor>& sensors, const py::object& session) {
   py::dict found;
   for (Sensor& sensor : sensors)
     found[py::str(sensor.name)] = py::cast(&sensor, py::return_value_policy::reference_internal, session);
-  return found;
+  return readOnly(found);
 }
 
 template <std::size_t Count>
@@ -83,6 +84,27 @@ std::size_t indexOf(const std::array<const char*, Count>& words, const std::stri
 }
 
 constexpr std::array kShades{"dark", "bright"};
+
+py::tuple stateOfBoard(const Board& board) {
+  std::vector<std::array<double, 2>> given_m;
+  for (const Eigen::Vector2d& point_m : board.given_m) given_m.push_back({point_m.x(), point_m.y()});
+  return py::make_tuple(boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,
+                        kShades[static_cast<std::size_t>(board.circles)], board.tag_size_m, given_m);
+}
+
+Board boardFromState(const py::tuple& state) {
+  Board board;
+  board.type = static_cast<BoardType>(indexOf(kBoardTypeNames, state[0].cast<std::string>(), "board.type"));
+  board.rows = state[1].cast<int>();
+  board.cols = state[2].cast<int>();
+  board.spacing_m = state[3].cast<double>();
+  board.radius_m = state[4].cast<double>();
+  board.circles = static_cast<CircleShade>(indexOf(kShades, state[5].cast<std::string>(), "board.circles"));
+  board.tag_size_m = state[6].cast<double>();
+  for (const auto& point_m : state[7].cast<std::vector<std::array<double, 2>>>())
+    board.given_m.emplace_back(point_m[0], point_m[1]);
+  return board;
+}
 
 void bindBoard(py::module_& module) {
   py::class_<Board>(module, "Board",
@@ -119,7 +141,12 @@ void bindBoard(py::module_& module) {
           },
           "(N, 3): centres of circles or corners by index, in the board's frame. Raises InputError where the "
           "numbers "
-          "make no board.");
+          "make no board.")
+      .def(py::pickle(&stateOfBoard, &boardFromState))
+      .def("__repr__", [](const Board& b) {
+        return fmt::format("<evical.Board {}, {} x {}, {} m>", boardTypeName(b.type), b.rows, b.cols,
+                           b.spacing_m);
+      });
 }
 
 void setResolution(SessionCamera& camera, const std::optional<std::array<int, 2>>& size_px) {
@@ -148,6 +175,9 @@ void bindSensors(py::module_& module) {
   py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
       .def_readonly("name", &SessionImu::name)
       .def_readwrite("stream", &SessionImu::stream)
+      .def_readwrite(
+          "accelerometer_stream", &SessionImu::accelerometer_stream,
+          "The accelerometer's, where it has a stream of its own; `stream` is the gyroscope's then.")
       .def_property(
           "gyroscope_noise_density", [](const SessionImu& i) { return i.noise.gyroscope_density; },
           [](SessionImu& i, double density) { i.noise.gyroscope_density = density; }, "rad/s/sqrt(Hz).")
@@ -182,7 +212,7 @@ void bindSession(py::module_& module) {
            "and axes, "
            "or \"time_range_s\". Raises InputError, and then changes nothing.")
       .def_property_readonly("options", &optionsOf,
-                             "All options by name, with their values; a copy: `set` changes them.")
+                             "All options by name, with their values; read-only: `set` changes them.")
       .def_readonly("source", &Session::source, "The file it was read from.")
       .def_readwrite("recording", &Session::recording)
       .def_readwrite("time_range_s", &Session::time_range_s,
@@ -192,13 +222,19 @@ void bindSession(py::module_& module) {
                      "The name of an IMU; of a camera where there is no IMU.")
       .def_property_readonly(
           "cameras", [](const py::object& self) { return sensorByName(self.cast<Session&>().cameras, self); },
-          "SessionCamera by name.")
+          "SessionCamera by name. The mapping is read-only, the cameras are not.")
       .def_property_readonly(
           "imus", [](const py::object& self) { return sensorByName(self.cast<Session&>().imus, self); },
           "SessionImu by name.")
       .def("copy", [](const Session& s) { return s; })
       .def("__copy__", [](const Session& s) { return s; })
       .def("__deepcopy__", [](const Session& s, const py::dict&) { return s; })
+      .def(py::pickle([](const Session& s) { return py::make_tuple(sessionYaml(s, "/"), s.source); },
+                      [](const py::tuple& state) {
+                        Session session = parseSession(state[0].cast<std::string>(), "/");
+                        session.source = state[1].cast<std::filesystem::path>();
+                        return session;
+                      }))
       .def("__repr__", [](const Session& s) {
         return fmt::format("<evical.Session of '{}': {} cameras, {} IMUs>", s.recording.string(),
                            s.cameras.size(), s.imus.size());

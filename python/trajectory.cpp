@@ -112,6 +112,9 @@ void bindTrajectory(py::module_& module) {
           "camera_at", cameraAt, py::arg("name"), py::arg("times_s"),
           "world_from_camera, (..., 4, 4) [m], at times (...) on that camera's own clock; its time offset is "
           "taken into account.")
+      .def(py::pickle(
+          [](const Trajectory& t) { return py::make_tuple(std::const_pointer_cast<Result>(t.result)); },
+          [](const py::tuple& state) { return trajectoryOf(state[0].cast<std::shared_ptr<Result>>()); }))
       .def("__repr__", [](const Trajectory& t) {
         return fmt::format("<evical.Trajectory of {:.1f} s>", stateOf(t).world_from_imu_rotation.endTime_s() -
                                                                   stateOf(t).world_from_imu_rotation.start_s);

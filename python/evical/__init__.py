@@ -8,6 +8,7 @@ lines go to the logger "evical" of Python's logging.
 from __future__ import annotations
 
 import os
+import sys
 from typing import Callable, Iterable, Optional, Union
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy.typing as npt
 
 from ._evical import (Board, Camera, CameraResult, Fault, Frame, ImuResult, IntrinsicsResult, Packet, Recording, Result, Session,
                       SessionCamera, SessionImu, Stream, Trajectory, __version__, inspect)
-from ._evical import _calibrate, _intrinsics, _open
+from ._evical import _calibrate, _intrinsics, _open, _set_recording_server
 from .covariance import Covariance
 from .errors import CalibrationFailed, ClosedError, Error, InputError
 
@@ -85,3 +86,12 @@ def undistort_events(events: npt.NDArray[np.void], camera: Union[Camera, CameraR
 
 def _session(session: Union[Session, Path]) -> Session:
     return session if isinstance(session, Session) else Session.load(os.fspath(session))
+
+
+# HDF5 files are read by an interpreter of their own: this one may have threads, and must not be copied.
+if sys.executable:
+    _set_recording_server([
+        sys.executable, "-c",
+        "import sys; sys.path.insert(0, sys.argv[1]); from evical import _evical; _evical._serve_recording(sys.argv[2])",
+        os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    ])

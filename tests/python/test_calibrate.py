@@ -1,5 +1,7 @@
 """evical.calibrate and evical.intrinsics: outcome, progress, interruption, errors."""
 
+import concurrent.futures
+import multiprocessing
 import os
 import pathlib
 import signal
@@ -217,3 +219,13 @@ def test_a_lens_alone(simulated):
     assert (np.abs(found.intrinsics.focal_length_px - true.focal_length_px) < 6 * found.std[:2]).all()
     with pytest.raises(evical.InputError, match="is no camera of the session. There are:"):
         evical.intrinsics(session, camera="none")
+
+
+def test_processes_return_results(session):
+    """As docs/python.md says, with the start method spawn."""
+    spawn = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(max_workers=1, mp_context=spawn) as pool:
+        lens = pool.submit(evical.intrinsics, session)
+        result = pool.submit(evical.calibrate, session).result(timeout=300)
+    assert result.status in ("ok", "doubtful") and result.trajectory.end_s > result.trajectory.begin_s
+    assert lens.result().intrinsics.model

@@ -1,5 +1,7 @@
 """evical.Result: from a run, from its folder, from older and damaged ones."""
 
+import copy
+import pickle
 import re
 
 import numpy as np
@@ -150,3 +152,29 @@ def test_what_is_no_result_is_refused(tmp_path, content):
         evical.Result.load(tmp_path / "nothing")
     with pytest.raises(TypeError):
         evical.Result.load(3)
+
+
+def test_a_result_goes_to_another_process(calibrated):
+    result, _ = calibrated
+    times = np.linspace(0.5, 5, 20)
+    for again in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):
+        assert again.to_yaml() == result.to_yaml() and again.missing == result.missing
+        np.testing.assert_array_equal(again.covariance.matrix, result.covariance.matrix)
+        np.testing.assert_array_equal(again.trajectory.at(times), result.trajectory.at(times))
+    trajectory = pickle.loads(pickle.dumps(result.trajectory))
+    np.testing.assert_array_equal(trajectory.at(times), result.trajectory.at(times))
+    left = pickle.loads(pickle.dumps(result.cameras["left"]))
+    np.testing.assert_array_equal(left.reference_from_camera, result.cameras["left"].reference_from_camera)
+    assert pickle.loads(pickle.dumps(result.imus["left_imu"])).name == "left_imu"
+
+
+def test_a_damaged_pickle_is_refused(calibrated):
+    result, _ = calibrated
+    yaml, data, missing = result.__getstate__()
+    with pytest.raises(evical.InputError, match="another version"):
+        evical.Result.__new__(evical.Result).__setstate__((yaml, data[:100], missing))
+
+
+def test_sensors_of_a_result_are_not_assigned(calibrated):
+    with pytest.raises(TypeError):
+        calibrated[0].cameras["left"] = None

@@ -2,7 +2,9 @@
 
 import copy
 import logging
+import os
 import pathlib
+import pickle
 
 import pytest
 
@@ -98,3 +100,39 @@ def test_the_boards_points_are_in_metres(session):
     session.board.rows = -1
     with pytest.raises(evical.InputError):
         session.board.points_m
+
+
+def test_an_assignment_that_would_be_lost_is_refused(session):
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        session.options["report.cross_validation"] = False
+    with pytest.raises(TypeError):
+        session.cameras["right"] = session.cameras["left"]
+    with pytest.raises(AttributeError):
+        session.cameras.pop("left")
+    with pytest.raises(TypeError):
+        del session.imus["left_imu"]
+
+
+def test_a_session_goes_to_another_process(session):
+    session.board.spacing_m = 0.06
+    session.set("grid.least_circles", 9)
+    again = pickle.loads(pickle.dumps(session))
+    assert again.to_yaml() == session.to_yaml()
+    assert again.source == session.source
+    lens = session.cameras["left"].intrinsics
+    for copied in (pickle.loads(pickle.dumps(lens)), copy.copy(lens), copy.deepcopy(lens)):
+        assert copied == lens and hash(copied) == hash(lens)
+    board = copy.deepcopy(session.board)
+    assert board.spacing_m == 0.06 and board.rows == session.board.rows and board.type == session.board.type
+
+
+def test_log_lines_that_are_not_utf8_do_not_end_anything(tmp_path, caplog):
+    caplog.set_level(logging.INFO, logger="evical")
+    folder = os.fsencode(tmp_path)
+    events = os.path.join(folder, b"l\xf6g.txt")
+    with open(events, "w") as file:
+        file.writelines(f"{0.001 * i:.6f} {i % 346} {i % 260} 1\n" for i in range(2000))
+        file.write("not a line\n")
+    guessed = evical.Session.guess(os.fsdecode(events))
+    assert list(guessed.cameras)
+    assert caplog.records
