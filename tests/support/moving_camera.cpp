@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/egomotion/edge_row.h"
+#include "core/egomotion/egomotion_options.h"
 #include "core/egomotion/window_motion.h"
 
 #include <cmath>

@@ -207,6 +207,12 @@ class TestGrowingRecording : public QObject {
     write(folder / "deeper" / "imu.txt", 20);
     QCOMPARE(bytesOf({folder}), std::uintmax_t{120});
     QCOMPARE(bytesOf({folder / "events.txt", folder / "not_there"}), std::uintmax_t{100});
+    // The session beside it is saved, and results are written: the recording does not grow by that.
+    std::filesystem::create_directories(folder / "2026-11-27");
+    write(folder / "session.yaml", 7);
+    write(folder / "2026-11-27" / "result.yaml", 11);
+    write(folder / "2026-11-27" / "report.html", 13);
+    QCOMPARE(bytesOf({folder}), std::uintmax_t{120});
   }
 };
 

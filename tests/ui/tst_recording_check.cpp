@@ -156,6 +156,26 @@ class TestRecordingCheck : public QObject {
     QVERIFY(test.window.close());
   }
 
+  // Of a camera alone nobody asks how far apart the sensors are, nor how an IMU was moved.
+  void cameraAlone_isJudgedWithoutTheRig() {
+    CheckFixture test;
+    test.window.workbench().lens.setAim(CalibrationAim::Camera);
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    const RecordingAssessment& assessment = test.check.checked()->assessment;
+    QVERIFY(assessment.can_be_calibrated && assessment.light != Light::Poor);
+    for (const Assessed& one : assessment.all)
+      QVERIFY2(one.thing != AssessedThing::Translation && one.thing != AssessedThing::Turns &&
+                   one.thing != AssessedThing::Obstacle,
+               nameOf(one.thing));
+    QVERIFY2(!test.card()->text().contains("how far apart"), qPrintable(test.card()->text()));
+    // The rig is judged anew.
+    test.window.workbench().lens.setAim(CalibrationAim::Rig);
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
+    QVERIFY(!test.check.checked()->assessment.sigmas.empty());
+    QVERIFY(test.window.close());
+  }
+
   void lights_areToldByShapeToo() {
     std::vector<QImage> shapes;
     for (const Light light : {Light::Good, Light::Fair, Light::Poor}) {

@@ -5,16 +5,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <utility>
 
 namespace evical::ui {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Copies of all detections so far: often enough to look alive, seldom enough to cost nothing.
-constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
 
 std::vector<JobStage> jobStages(RunStart start) {
   std::vector<JobStage> stages;
@@ -33,16 +27,13 @@ QString stepText(std::string_view text) {
 class CalibrationJob::LiveView final : public CalibrationObserver {
  public:
   LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows)
-      : windows_(std::move(windows)), detections_(cameras) {}
+      : windows_(std::move(windows)), copies_(cameras) {}
 
   FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
     return windows_ ? windows_->windowObserver(camera, tracker) : nullptr;
   }
   void windowsDetected(std::size_t camera, const BoardObservations& so_far) override {
-    if (Clock::now() < next_copy_) return;
-    next_copy_ = Clock::now() + kBetweenDetections;
-    detections_.at(camera) = so_far;
-    detections.put(std::make_shared<LiveDetections>(detections_));
+    copies_.take(camera, so_far, detections);
   }
   void detectionDone(const CalibrationInput&) override { detection_done = true; }
   void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
@@ -68,10 +59,9 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
 
  private:
   std::shared_ptr<CalibrationObserver> windows_;
-  LiveDetections detections_;
+  DetectionCopies copies_;
   Notes notes_;
   std::vector<IterationRecord> records_;
-  Clock::time_point next_copy_;
 };
 
 CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {

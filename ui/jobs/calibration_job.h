@@ -6,15 +6,13 @@
 #include "core/data/calibration_stage.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
+#include "ui/jobs/live_detections.h"
 
 #include <functional>
 #include <memory>
 #include <vector>
 
 namespace evical::ui {
-
-// One entry a camera: its windows and views so far.
-using LiveDetections = std::vector<BoardObservations>;
 
 struct LiveIterations {
   std::vector<IterationRecord> records;  // all so far

@@ -15,6 +15,13 @@ constexpr int kEnded_ms = 5000;       // without growth
 
 std::uintmax_t bytesOf(const std::vector<std::filesystem::path>& files) {
   namespace fs = std::filesystem;
+  // What this program writes beside a recording that is a folder does not make the recording grow.
+  const auto isOwnFile = [](const fs::path& file) { return file.extension() == ".yaml"; };
+  const auto isOwnFolder = [](const fs::path& folder) {
+    std::error_code ignored;
+    return fs::exists(folder / "result.yaml", ignored) || fs::exists(folder / "run_session.yaml", ignored) ||
+           folder.filename().string().starts_with('.');
+  };
   std::uintmax_t sum = 0;
   std::error_code error;
   const auto add = [&](const fs::path& file) {
@@ -28,7 +35,8 @@ std::uintmax_t bytesOf(const std::vector<std::filesystem::path>& files) {
     }
     fs::recursive_directory_iterator entry(path, fs::directory_options::skip_permission_denied, error), end;
     while (!error && entry != end) {
-      if (entry->is_regular_file(error)) add(entry->path());
+      if (entry->is_directory(error) && isOwnFolder(entry->path())) entry.disable_recursion_pending();
+      if (entry->is_regular_file(error) && !isOwnFile(entry->path())) add(entry->path());
       entry.increment(error);
     }
   }

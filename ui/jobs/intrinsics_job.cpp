@@ -6,14 +6,10 @@
 #include "core/pipeline/session_recording.h"
 #include "ui/jobs/mailbox.h"
 
-#include <chrono>
 #include <utility>
 
 namespace evical::ui {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr auto kBetweenLensDetections = std::chrono::milliseconds(150);
 
 // Of an everyday recording's time. Nobody knows how many passes there will be: most lenses settle in one or two.
 std::vector<JobStage> lensStages(int most_passes) {
@@ -77,16 +73,13 @@ FoundLens find(const Session& session, std::size_t camera, const RunContext& con
 class IntrinsicsJob::LiveView final : public CalibrationObserver {
  public:
   LiveView(std::size_t cameras, std::size_t camera, std::shared_ptr<CalibrationObserver> windows)
-      : camera_(camera), windows_(std::move(windows)), detections_(cameras) {}
+      : camera_(camera), windows_(std::move(windows)), copies_(cameras) {}
 
   FrontEndObserver* windowObserver(std::size_t, const BoardTracker& tracker) override {
     return windows_ ? windows_->windowObserver(camera_, tracker) : nullptr;
   }
   void windowsDetected(std::size_t, const BoardObservations& so_far) override {
-    if (Clock::now() < next_copy_) return;
-    next_copy_ = Clock::now() + kBetweenLensDetections;
-    detections_.at(camera_) = so_far;
-    detections.put(std::make_shared<LiveDetections>(detections_));
+    copies_.take(camera_, so_far, detections);
   }
   void intrinsicsPassDone(int pass, const IntrinsicsResult& so_far) override {
     passes_.push_back({pass, so_far.views_found, so_far.reprojection_rms_px, so_far.moved_px});
@@ -101,9 +94,8 @@ class IntrinsicsJob::LiveView final : public CalibrationObserver {
  private:
   std::size_t camera_;
   std::shared_ptr<CalibrationObserver> windows_;
-  LiveDetections detections_;
+  DetectionCopies copies_;
   std::vector<LensPass> passes_;
-  Clock::time_point next_copy_;
 };
 
 IntrinsicsJob::IntrinsicsJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {

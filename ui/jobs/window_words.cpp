@@ -30,6 +30,8 @@ constexpr std::array kWords = {
     Words{"Check type, rows and cols of the session's board",
           "Check the type, rows and columns of the board"},
     Words{"rows and cols", "rows and columns"},
+    Words{"Name both streams in the session, in place of stream: gyroscope:",
+          "Choose the role IMU for both streams on the Recording page, gyroscope:"},
     Words{" in time_range_s", " in the time range"},
     Words{" in the session", " on the Recording page"},
 };
@@ -39,6 +41,12 @@ constexpr std::array kWords = {
 QString inWindowWords(QString text) {
   for (const Words& words : kWords) text.replace(words.of_core, words.of_window);
   return text;
+}
+
+QStringList piecesOfCoresMessages() {
+  QStringList pieces;
+  for (const Words& words : kWords) pieces << words.of_core;
+  return pieces;
 }
 
 }  // namespace evical::ui

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <QString>
+#include <QStringList>
 
 namespace evical::ui {
 
 QString inWindowWords(QString text);
+
+// What is replaced: pieces of core's messages.
+QStringList piecesOfCoresMessages();
 
 }  // namespace evical::ui

@@ -174,7 +174,7 @@ void SignalsScreen::compute() {
                         samples.rate_hz(), samples.noise.gyroscope_density);
     drawing->accelerometer =
         makeSignalLines(prediction.time_s, prediction.measured_force_m_s2, prediction.predicted_force_m_s2,
-                        samples.rate_hz(), samples.noise.accelerometer_density);
+                        samples.accelerometerRate_hz(), samples.noise.accelerometer_density);
     const CameraLens& lens = run->pass.lenses.at(camera);
     if (lens.seen_with) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},

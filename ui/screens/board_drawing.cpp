@@ -108,7 +108,11 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   const QPointF begin(begin_px, above_px), end(begin_px + px_per_m * neighbour_m.x(), above_px);
   painter.drawLine(begin, end);
   for (const QPointF& tick : {begin, end}) painter.drawLine(tick - QPointF(0, 3), tick + QPointF(0, 3));
-  painter.drawText(QPointF(begin.x(), above_px - 7.0), boardMillimetres(neighbour_m.x()));
+  // As people have it from the form: of an asymmetric grid the spacing is that of rows, and neighbours are two of them apart.
+  const bool two = board_.type == BoardType::AsymmetricCircles;
+  painter.drawText(
+      QPointF(begin.x(), above_px - 7.0),
+      two ? tr("2 x %1").arg(boardMillimetres(board_.spacing_m)) : boardMillimetres(neighbour_m.x()));
 
   painter.setPen(theme().faint_text);
   const double below_px = origin.y() + px_per_m * last_m.y() + edge_px + 4.0;

@@ -409,11 +409,14 @@ void RecordingScreen::chooseRole(int row, int role) {
     return sensor.stream == summary.info.name && sensor.recording == own_recording;
   };
   std::erase_if(changed.cameras, isThis);
-  std::erase_if(changed.imus, isThis);
+  std::erase_if(changed.imus, [&](const SessionImu& imu) {
+    const bool is_accelerometer = imu.accelerometer_stream == summary.info.name;
+    return isThis(imu) || (is_accelerometer && imu.recording == own_recording);
+  });
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
     changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
   if (static_cast<StreamRole>(role) == StreamRole::Imu)
-    changed.imus.push_back(guessedImu(summary, changed, own_recording));
+    changed.imus.push_back(guessedImu(summary, *one->inspection, changed, own_recording));
   keepReference(changed);
   settleBoards(changed);
   emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});

@@ -52,7 +52,7 @@ QString fitText(const NamedResult& named) {
     if (fit.windows_rejected > 0)
       parts.back() += QObject::tr(", %1 rejected by hand").arg(fit.windows_rejected);
   }
-  parts << QObject::tr("took %1 s").arg(named.result->timing.total_s, 0, 'f', 1);
+  parts << QObject::tr("took %1 s with detection").arg(named.result->timing.total_s, 0, 'f', 1);
   return parts.join("; ") + ".";
 }
 

@@ -42,6 +42,10 @@ QString contentText(const StreamSummary& stream) {
       return QObject::tr("events, %1 x %2 px").arg(size.width_px).arg(size.height_px);
     }
     case StreamType::Imu:
+      if (imuStreamKind(stream) == ImuStreamKind::Gyroscope)
+        return QObject::tr("gyroscope, %1").arg(streamUnitText(stream.angular_rate_unit));
+      if (imuStreamKind(stream) == ImuStreamKind::Accelerometer)
+        return QObject::tr("accelerometer, %1").arg(streamUnitText(stream.acceleration_unit));
       return QObject::tr("IMU, %1, %2")
           .arg(streamUnitText(stream.acceleration_unit), streamUnitText(stream.angular_rate_unit));
     case StreamType::Frames:
@@ -176,7 +180,10 @@ void StreamTable::setSession(const Session& session) {
     };
     StreamRole role = StreamRole::Ignore;
     if (std::any_of(session.cameras.begin(), session.cameras.end(), isThis)) role = StreamRole::Camera;
-    if (std::any_of(session.imus.begin(), session.imus.end(), isThis)) role = StreamRole::Imu;
+    const auto isOfImu = [&](const SessionImu& imu) {
+      return isThis(imu) || (imu.accelerometer_stream == name && imu.recording.string() == recording);
+    };
+    if (std::any_of(session.imus.begin(), session.imus.end(), isOfImu)) role = StreamRole::Imu;
     QComboBox* const box = roleBoxOf(row);
     box->setCurrentIndex(std::max(0, box->findData(static_cast<int>(role))));
   }

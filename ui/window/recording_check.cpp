@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/recording_check.h"
 
+#include "core/pipeline/session_guess.h"
 #include "ui/screens/check_card.h"
 #include "ui/screens/recording_screen.h"
 #include "ui/window/print_board.h"
@@ -42,9 +43,22 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
   screen.setReservation({}, Light::Good);
 }
 
+// What is to be calibrated of what is open: where it is a camera alone, nothing else.
+Session aimedAt(const Workbench& workbench) {
+  Session session = workbench.document.session();
+  if (workbench.lens.aim() != CalibrationAim::Camera || session.cameras.empty()) return session;
+  SessionCamera camera = session.sensor(workbench.lens.camera());
+  camera.name = session.cameras[workbench.lens.camera()].name;
+  camera.same_sensor_as.clear();
+  session.cameras = {std::move(camera)};
+  session.imus.clear();
+  keepReference(session);
+  return session;
+}
+
 // A session that has all it needs, and whose recording has been looked through.
 void choose(Workbench& workbench) {
-  const Session& session = workbench.document.session();
+  const Session session = aimedAt(workbench);
   // At the end of a recording that was followed it is inspected once more, which changes nothing here.
   const bool inspected = !workbench.inspection.running() || workbench.growing.followedToEnd();
   const bool camera_alone = session.cameras.size() == 1 && session.imus.empty();
@@ -102,6 +116,7 @@ void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &check, anew);
   QObject::connect(&workbench.growing, &GrowingRecording::followingChanged, &screen,
                    [&screen, &workbench] { showReadiness(screen, workbench, false); });
+  QObject::connect(&workbench.lens, &LensDocument::aimChanged, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::inspected, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::started, &check, anew);
   QObject::connect(&workbench.runner, &JobRunner::started, &check, [&check] { check.giveWay(true); });

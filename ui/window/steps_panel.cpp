@@ -28,11 +28,19 @@ QString capitalised(QString text) {
   return text;
 }
 
-QString windowCounts(const std::vector<BoardObservations>& cameras) {
+const BoardObservations& observationsOf(const BoardObservations& camera) {
+  return camera;
+}
+const BoardObservations& observationsOf(const std::shared_ptr<const BoardObservations>& camera) {
+  return *camera;
+}
+
+template <class Cameras>
+QString windowCounts(const Cameras& cameras) {
   std::size_t views = 0, windows = 0;
-  for (const BoardObservations& camera : cameras) {
-    views += camera.views.size();
-    windows += camera.windows.size();
+  for (const auto& camera : cameras) {
+    views += observationsOf(camera).views.size();
+    windows += observationsOf(camera).windows.size();
   }
   return QObject::tr("board in %1 of %2 windows").arg(views).arg(windows);
 }

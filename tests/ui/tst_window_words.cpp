@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the window says in other words is still said by core: a changed message would show commands to people with a mouse.
+#include "tests/support/test_folders.h"
+#include "tests/support/test_program.h"
+#include "ui/jobs/window_words.h"
+
+#include <QDirIterator>
+#include <QFile>
+#include <QRegularExpression>
+
+#include <filesystem>
+
+using namespace evical;
+
+class TestWindowWords : public QObject {
+  Q_OBJECT
+
+  // All literals of core's sources; neighbours are one.
+  static QString literalsOfCore() {
+    const std::filesystem::path scenario =
+        evical::test::scenarioPath("davis346");  // config/scenarios/davis346.yaml
+    const std::filesystem::path root = scenario.parent_path().parent_path().parent_path();
+    const QString core = QString::fromStdString((root / "core").string());
+    const QRegularExpression between("\"\\s*\n\\s*\"");
+    QString all;
+    QDirIterator files(core, {"*.cpp"}, QDir::Files, QDirIterator::Subdirectories);
+    while (files.hasNext()) {
+      QFile file(files.next());
+      if (!file.open(QIODevice::ReadOnly)) qFatal("%s cannot be read", qPrintable(file.fileName()));
+      all += QString::fromUtf8(file.readAll()).replace(between, "") + '\n';
+    }
+    return all;
+  }
+
+ private slots:
+  void everyPiece_isSaidByCore() {
+    const QString core = literalsOfCore();
+    QVERIFY(core.size() > 1'000'000);
+    for (const QString& piece : ui::piecesOfCoresMessages())
+      QVERIFY2(core.contains(piece), qPrintable(piece));
+  }
+
+  void messages_speakOfPages() {
+    QCOMPARE(ui::inWindowWords("Check the recording with 'evical inspect'"),
+             QString("Look at its streams on the Recording page"));
+  }
+};
+
+EVICAL_TEST(TestWindowWords)
+#include "tst_window_words.moc"

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Detections while they are made, for pages that show them: copies, since the detecting thread goes on.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "ui/jobs/mailbox.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace evical::ui {
+
+// By camera, never null. A copy that is older than its camera's next one is shared.
+using LiveDetections = std::vector<std::shared_ptr<const BoardObservations>>;
+
+// Often enough to look alive, and seldom enough to cost nothing: the longer the recording, the longer a copy takes, and the more
+// seldom it is made.
+class DetectionCopies {
+ public:
+  explicit DetectionCopies(std::size_t cameras)
+      : copies_(cameras, std::make_shared<const BoardObservations>()) {}
+
+  void take(std::size_t camera, const BoardObservations& so_far, Mailbox<LiveDetections>& to) {
+    const Clock::time_point begin = Clock::now();
+    if (begin < next_) return;
+    copies_.at(camera) = std::make_shared<const BoardObservations>(so_far);
+    to.put(std::make_shared<LiveDetections>(copies_));
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max<Clock::duration>(kBetween, kLeastRest * (end - begin));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kBetween{150};
+  static constexpr int kLeastRest = 20;  // times what a copy takes: at most a twentieth of the thread
+
+  LiveDetections copies_;
+  Clock::time_point next_;
+};
+
+}  // namespace evical::ui
