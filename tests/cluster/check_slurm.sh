@@ -131,7 +131,7 @@ head -c $(($(stat -c %s "$recording") * 7 / 10)) "$recording" >"$scratch/data/cu
   echo "  - {name: cut, recording: data/cut.bag}"
 } >"$scratch/jobs.yaml"
 
-cluster=$scratch/cluster machine=$scratch/machine
+cluster="$scratch/my cluster, 50 %a" machine=$scratch/machine
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --slurm | tee "$scratch/log/submitted" || fail "it was not submitted"
 grep -q "Submitted 20 jobs" "$scratch/log/submitted" || fail "not all were submitted"
 
