@@ -5,7 +5,6 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/pipeline/calibration_options.h"
 #include "core/pipeline/maintain_files.h"
 #include "core/pipeline/maintain_imus.h"
@@ -69,7 +68,7 @@ MaintainInput inputFrom(const MaintainArguments& arguments) {
   validate(options);
   const std::vector<std::filesystem::path> logs(arguments.logs.begin(), arguments.logs.end());
   MaintainInput input = readMaintainInput(logs, arguments.result);
-  input.options = *options.maintain;
+  input.options = options.maintain;
   for (const std::string& imu : arguments.imus) input.settings.streams.insert(splitAtEquals("--imu", imu));
   input.settings.acceleration_unit =
       unitFrom<AccelerationUnit>(arguments.acceleration_unit, kAccelerationUnits);

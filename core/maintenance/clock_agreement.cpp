@@ -1,5 +1,7 @@
 #include "core/maintenance/clock_agreement.h"
 
+#include "core/maintenance/maintenance_options.h"
+
 #include <algorithm>
 #include <cmath>
 

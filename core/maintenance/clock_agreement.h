@@ -2,14 +2,14 @@
 // rotation between them is needed for that.
 #pragma once
 
-#include "core/maintenance/maintenance_options.h"
-
 #include <Eigen/Core>
 
 #include <cstddef>
 #include <vector>
 
 namespace evical {
+
+struct MaintenanceOptions;
 
 // Means of a rate's norm over hundredths of a second.
 class RateNorms {

@@ -1,6 +1,7 @@
 #include "core/maintenance/imu_pairs.h"
 
 #include "core/geometry/so3.h"
+#include "core/maintenance/maintenance_options.h"
 
 #include <algorithm>
 #include <cmath>

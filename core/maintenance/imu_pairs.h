@@ -5,7 +5,6 @@
 #include "core/data/calibration_state.h"
 #include "core/data/imu_sample.h"
 #include "core/maintenance/gaussian_smoother.h"
-#include "core/maintenance/maintenance_options.h"
 
 #include <Eigen/Core>
 
@@ -13,6 +12,8 @@
 #include <vector>
 
 namespace evical {
+
+struct MaintenanceOptions;
 
 // Order: rotation (about the reference's axes) [rad], translation [m], time offset [s], gyroscope's bias [rad/s],
 // accelerometer's bias [m/s^2]; the biases in the IMU's own frame, as what it shows more than the reference's.

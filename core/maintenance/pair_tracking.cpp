@@ -1,5 +1,6 @@
 #include "core/maintenance/pair_tracking.h"
 
+#include "core/maintenance/maintenance_options.h"
 #include "core/maintenance/pair_information.h"
 #include "core/numerics/angles.h"
 

@@ -1,5 +1,7 @@
 #include "core/maintenance/stop_calibration.h"
 
+#include "core/maintenance/maintenance_options.h"
+
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

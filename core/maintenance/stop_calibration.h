@@ -6,7 +6,6 @@
 #include "core/data/calibration_state.h"
 #include "core/data/maintenance.h"
 #include "core/maintenance/change_test.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/maintenance/stop_detection.h"
 
 #include <Eigen/Core>
@@ -17,6 +16,8 @@
 #include <vector>
 
 namespace evical {
+
+struct MaintenanceOptions;
 
 // Order: bias x, y, z [m/s^2]; scale x, y, z; misalignment xy, xz, yz (entries of M above the diagonal).
 inline constexpr Eigen::Index kAccelerometerNumbers = 9;

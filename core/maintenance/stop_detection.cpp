@@ -1,5 +1,6 @@
 #include "core/maintenance/stop_detection.h"
 
+#include "core/maintenance/maintenance_options.h"
 #include "core/numerics/angles.h"
 
 #include <algorithm>

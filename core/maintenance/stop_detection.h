@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/data/imu_sample.h"
-#include "core/maintenance/maintenance_options.h"
 
 #include <Eigen/Core>
 
@@ -11,6 +10,8 @@
 #include <vector>
 
 namespace evical {
+
+struct MaintenanceOptions;
 
 // Means over a quarter of a second: all that stops need, so that memory grows by a megabyte an hour.
 struct MeansWindow {

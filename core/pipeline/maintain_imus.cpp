@@ -7,6 +7,7 @@
 #include "core/geometry/so3.h"
 #include "core/maintenance/clock_agreement.h"
 #include "core/maintenance/imu_pairs.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/changed_reference.h"
 #include "core/pipeline/imu_unit_check.h"
@@ -65,8 +66,8 @@ class Maintainer {
 
   Maintenance run() {
     const Stopwatch all;
-    gravity_m_s2_ = input_.options.gravity_m_s2 > 0.0
-                        ? input_.options.gravity_m_s2
+    gravity_m_s2_ = input_.options->gravity_m_s2 > 0.0
+                        ? input_.options->gravity_m_s2
                         : input_.before.result->state.gravity_in_world_m_s2.norm();
     look();
     readAll();
@@ -75,11 +76,11 @@ class Maintainer {
     const double tests = 4.0 * static_cast<double>(imus_.size()) +
                          5.0 * static_cast<double>(imus_.size() - 1) +
                          (input_.trajectory.empty() ? 0.0 : 3.0);
-    const double one_test = 0.5 * input_.options.false_alarms / tests;
+    const double one_test = 0.5 * input_.options->false_alarms / tests;
     addStops(one_test);
     addTrajectory(one_test);
     addPairs(one_test);
-    maintenance_.false_alarms = input_.options.false_alarms;
+    maintenance_.false_alarms = input_.options->false_alarms;
     nameChangedReference(maintenance_);
     judge(maintenance_);
     advise();
@@ -165,16 +166,16 @@ void Maintainer::look() {
   for (const Looked& imu : seen)
     if (const double rate_hz = imu.rate_hz(); rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz))
       slowest_hz = rate_hz;
-  smoothing_s_ = smoothingFor(slowest_hz, input_.options);
+  smoothing_s_ = smoothingFor(slowest_hz, *input_.options);
   agreeClocks(seen);
 }
 
 void Maintainer::agreeClocks(const std::vector<Looked>& seen) {
   constexpr double kNear_s = 0.004;
   for (std::size_t k = 1; k < imus_.size(); ++k) {
-    const ClockAgreement clocks = clockAgreement(seen.front().norms, seen[k].norms, input_.options);
+    const ClockAgreement clocks = clockAgreement(seen.front().norms, seen[k].norms, *input_.options);
     if (!clocks.moved) continue;
-    if (clocks.correlation < input_.options.same_motion) {
+    if (clocks.correlation < input_.options->same_motion) {
       disagreeing_.push_back(name(imus_[k]));
       continue;
     }
@@ -197,7 +198,7 @@ void Maintainer::readAll() {
   passes_.assign(imus_.size(), {});
   std::vector<ImuState> states;
   for (const std::size_t imu : imus_) states.push_back(state(imu));
-  ImuPairs pairs(states, nominal_, smoothing_s_, input_.options);
+  ImuPairs pairs(states, nominal_, smoothing_s_, *input_.options);
   ImuLogPacket packet;
   while (logs.read(packet)) {
     context_.throwIfStopped();
@@ -230,7 +231,7 @@ void Maintainer::describe() {
     imu.to_s = passes_[k].last_s;
     imu.rate_hz = passes_[k].rate_hz();
     maintenance_.duration_s = std::max(maintenance_.duration_s, imu.to_s);
-    if (passes_[k].longest_gap_s > input_.options.gap_s)
+    if (passes_[k].longest_gap_s > input_.options->gap_s)
       maintenance_.notes.push_back(
           fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and perhaps "
                       "elsewhere; windows with gaps are left out",
@@ -250,11 +251,12 @@ void Maintainer::checkLogs() const {
 void Maintainer::addStops(double false_alarms) {
   for (std::size_t k = 0; k < imus_.size(); ++k) {
     const std::vector<MeansWindow>& windows = passes_[k].means.windows();
-    const StopCalibration found = calibrateFromStops(windows, state(imus_[k]), gravity_m_s2_, input_.options);
+    const StopCalibration found =
+        calibrateFromStops(windows, state(imus_[k]), gravity_m_s2_, *input_.options);
     MaintainedImu& imu = maintenance_.imus[k];
     if (found.stops.empty()) {
       maintenance_.notes.push_back(
-          fmt::format("{}: it never stands still for {:g} s", imu.name, input_.options.shortest_stop_s));
+          fmt::format("{}: it never stands still for {:g} s", imu.name, input_.options->shortest_stop_s));
       continue;
     }
     const MaintainedImu from_stops = maintainedImu(found);
@@ -262,7 +264,7 @@ void Maintainer::addStops(double false_alarms) {
     imu.weakest = from_stops.weakest;
     imu.weakest_sigma = from_stops.weakest_sigma;
     imu.misfit = from_stops.misfit;
-    addStopQuantities(found, before(), imus_[k], input_.options, false_alarms, maintenance_);
+    addStopQuantities(found, before(), imus_[k], *input_.options, false_alarms, maintenance_);
   }
 }
 
@@ -277,12 +279,12 @@ void Maintainer::addTrajectory(double false_alarms) {
   if (run.lags.empty())
     maintenance_.notes.push_back(
         fmt::format("the trajectory has no piece of {:g} s without gaps with samples of {}",
-                    0.5 * input_.options.lag_s, name(imu)));
+                    0.5 * input_.options->lag_s, name(imu)));
   if (run.sum.inflation > kWorthANote)
     maintenance_.notes.push_back(fmt::format(
         "pieces of the trajectory differ by more than their sigmas, which are {:.1f} times wider for that",
         std::sqrt(run.sum.inflation)));
-  addTrajectoryQuantities(run.lags, run.sum, before(), imu, input_.options, false_alarms, maintenance_);
+  addTrajectoryQuantities(run.lags, run.sum, before(), imu, *input_.options, false_alarms, maintenance_);
 }
 
 PairTrack Maintainer::trackOf(std::size_t k, double false_alarms) const {
@@ -292,13 +294,13 @@ PairTrack Maintainer::trackOf(std::size_t k, double false_alarms) const {
   };
   PairModel model;
   model.gyroscope_walk = walk(own.noise.gyroscope_random_walk, reference.noise.gyroscope_random_walk,
-                              input_.options.gyroscope_walk);
+                              input_.options->gyroscope_walk);
   model.accelerometer_walk =
       walk(own.noise.accelerometer_random_walk, reference.noise.accelerometer_random_walk,
-           input_.options.accelerometer_walk);
+           input_.options->accelerometer_walk);
   model.smoothing_s = smoothing_s_;
   model.lever_m = nominal_[k].reference_from_imu.translation_m;
-  return trackPair(windows_[k], model, false_alarms, input_.options);
+  return trackPair(windows_[k], model, false_alarms, *input_.options);
 }
 
 // Whether the pair is as near to where it was linearised as first order is good for.
@@ -313,7 +315,7 @@ bool Maintainer::isNearNominal(const PairTrack& track) const {
 
 void Maintainer::addPairs(double false_alarms) {
   if (imus_.size() < 2) return;
-  const double of_pair = 0.5 * input_.options.false_alarms / static_cast<double>(imus_.size() - 1);
+  const double of_pair = 0.5 * input_.options->false_alarms / static_cast<double>(imus_.size() - 1);
   constexpr int kRounds = 3;
   std::vector<PairTrack> tracks(imus_.size());
   for (int round = 0; round < kRounds; ++round) {
@@ -338,7 +340,7 @@ void Maintainer::addPairs(double false_alarms) {
       continue;
     }
     addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
-                      input_.options, false_alarms, maintenance_);
+                      *input_.options, false_alarms, maintenance_);
     double wider = 1.0;
     for (const NoiseColour& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
     if (wider > kWorthAdvice) shaken_ = pair;
@@ -353,7 +355,7 @@ void Maintainer::advise() {
   for (const std::string& imu : disagreeing_) {
     maintenance_.notes.push_back(fmt::format(
         "{} does not turn as {} does: their clocks differ by more than {:g} s, or they are not on one body",
-        imu, name(imus_.front()), input_.options.time_offset_search_s));
+        imu, name(imus_.front()), input_.options->time_offset_search_s));
     maintenance_.advice.emplace_back(
         "Record the IMUs on one clock, or search further: --set maintain.time_offset_search_s=...");
   }
@@ -382,6 +384,8 @@ void Maintainer::advise() {
 }
 
 }  // namespace
+
+MaintainInput::MaintainInput() = default;
 
 MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
                                 const std::filesystem::path& result) {

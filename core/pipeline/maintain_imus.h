@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/shared_options.h"
 #include "core/data/maintenance.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/pipeline/imu_logs.h"
 #include "core/report/result_yaml.h"
 
@@ -15,14 +15,18 @@
 
 namespace evical {
 
+struct MaintenanceOptions;
+
 struct MaintainInput {
   std::vector<std::filesystem::path> logs;
   NamedResult before;
   std::string before_name;  // as people know it
   ImuLogSettings settings;
   ImuReadings readings;  // of the calibration
-  MaintenanceOptions options;
+  SharedOptions<MaintenanceOptions> options;
   std::filesystem::path trajectory;  // of the reference IMU; empty: none
+
+  MaintainInput();
 };
 
 // The old result: result.yaml or the folder of a run. Throws CalibrationError (BadInput).

@@ -2,6 +2,7 @@
 
 #include "core/data/quantity.h"
 #include "core/geometry/so3.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/numerics/chi_squared.h"
 
 #include <fmt/format.h>

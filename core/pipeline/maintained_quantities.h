@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/data/maintenance.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/maintenance/pair_tracking.h"
 #include "core/maintenance/stop_calibration.h"
 #include "core/maintenance/trajectory_lag.h"
@@ -13,6 +12,8 @@
 #include <vector>
 
 namespace evical {
+
+struct MaintenanceOptions;
 
 // `false_alarms`: of one test.
 void addStopQuantities(const StopCalibration& found, const NamedResult& before, std::size_t imu,

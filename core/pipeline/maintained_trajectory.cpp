@@ -121,10 +121,10 @@ class TrajectoryCheck {
     RateNorms of_body;
     for (const BodyRate& rate : rates)
       for (double t = rate.from_s; t < rate.to_s; t += RateNorms::kBin_s) of_body.add(t, rate.rate_rad_s);
-    const ClockAgreement clocks = clockAgreement(of_imu, of_body, input_.options);
+    const ClockAgreement clocks = clockAgreement(of_imu, of_body, *input_.options);
     constexpr double kNear_s = 0.004;
     if (!clocks.moved) return 0.0;
-    if (clocks.correlation < input_.options.same_motion) sayOther(poses, turned);
+    if (clocks.correlation < input_.options->same_motion) sayOther(poses, turned);
     const double later_s = std::abs(clocks.later_s) > kNear_s ? clocks.later_s : 0.0;
     for (TimedPose& pose : poses) pose.time_s += later_s;
     checkTurns(poses, turned);
@@ -144,7 +144,7 @@ class TrajectoryCheck {
         accelerometerNumbers(input_.before.result->state.imus[imu_]).segment<3>(3);
     const double scale = (run.sum.now.segment<3>(3).array() / old_scale.array()).mean();
     const double sigma = std::sqrt(run.sum.covariance.diagonal().segment<3>(3).mean());
-    if (std::abs(scale - 1.0) > input_.options.trajectory_scale + kSigmas * sigma)
+    if (std::abs(scale - 1.0) > input_.options->trajectory_scale + kSigmas * sigma)
       throw badInput(
           place(),
           fmt::format("its positions are {:.3g} times what the accelerometer of {} says: it is not in "
@@ -152,7 +152,7 @@ class TrajectoryCheck {
                       1.0 / scale, name()),
           "Scale it to metres");
     const double lever_m = medianOf(std::move(levers));
-    if (far && 1e3 * lever_m > input_.options.trajectory_lever_mm)
+    if (far && 1e3 * lever_m > input_.options->trajectory_lever_mm)
       throw badInput(place(),
                      fmt::format("its positions are those of a point {:.0f} mm from {}, or not in metres",
                                  1e3 * lever_m, name()),
@@ -232,7 +232,7 @@ TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double 
   TrajectoryRun run;
   run.later_s = check.agree(poses, turned, norms);
   TrajectoryLags lags(std::move(poses), before, gravity_m_s2,
-                      input.before.imus[imu].noise.accelerometer_density, input.options);
+                      input.before.imus[imu].noise.accelerometer_density, *input.options);
   forSamples(input, imu, context, [&](double time_s, const ImuSample& sample) {
     lags.add(time_s, sample);
     return true;

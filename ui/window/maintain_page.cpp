@@ -2,7 +2,6 @@
 #include "ui/window/maintain_page.h"
 
 #include "core/base/error.h"
-#include "core/maintenance/maintenance_options.h"
 #include "core/pipeline/maintain_files.h"
 #include "ui/plots/maintenance_charts.h"
 #include "ui/screens/file_list.h"
@@ -28,7 +27,7 @@ void startMaintain(MaintainScreen& screen, Workbench& workbench, SessionFiles& f
   for (const QString& log : screen.logs().files()) logs.emplace_back(log.toStdString());
   try {
     const auto read = [logs, result = screen.result().path().toStdString(), settings = screen.settings(),
-                       options = *workbench.document.session().options.maintain,
+                       options = workbench.document.session().options.maintain,
                        trajectory = screen.trajectory().path().toStdString()] {
       MaintainInput input = readMaintainInput(logs, result);
       input.settings = settings;

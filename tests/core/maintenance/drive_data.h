@@ -1,6 +1,7 @@
 // Simulated drives (config/scenarios/maintain) as the estimators take them.
 #pragma once
 
+#include "core/maintenance/maintenance_options.h"
 #include "core/maintenance/pair_tracking.h"
 #include "core/maintenance/stop_calibration.h"
 #include "core/synthetic/drive_scenario.h"

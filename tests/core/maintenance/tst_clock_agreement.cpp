@@ -1,5 +1,6 @@
 // How two IMUs' clocks lie to each other, from the norms of their rates.
 #include "core/maintenance/clock_agreement.h"
+#include "core/maintenance/maintenance_options.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>
