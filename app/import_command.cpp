@@ -35,7 +35,7 @@ int run(const ImportArguments& arguments) {
 
 void addImportCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<ImportArguments>();
-  Command command = app.command("import", "A session from eKalibr's or Kalibr's files");
+  Command command = app.command("import", "A session or camera intrinsics from the files of other programs");
   command
       .option(
           "FILES", arguments->request.files,

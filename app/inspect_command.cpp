@@ -42,11 +42,11 @@ void printEvents(const StreamSummary& stream, bool checksum) {
 void printImu(const StreamSummary& stream) {
   print("    {:<22} {}, {:.5g} per s\n", "samples", stream.count, stream.rate_hz);
   const ImuStreamKind kind = imuStreamKind(stream);
-  if (kind == ImuStreamKind::Gyroscope) print("    {:<22} of a gyroscope only\n", "");
-  if (kind == ImuStreamKind::Accelerometer) print("    {:<22} of an accelerometer only\n", "");
+  if (kind == ImuStreamKind::Gyroscope) print("    {:<22} gyroscope only\n", "");
+  if (kind == ImuStreamKind::Accelerometer) print("    {:<22} accelerometer only\n", "");
   if (kind == ImuStreamKind::Alternating)
-    print("    {:<22} {} of the gyroscope and {} of the accelerometer, in turn\n", "", stream.without_force,
-          stream.without_rate);
+    print("    {:<22} {} of the gyroscope and {} of the accelerometer, alternating\n", "",
+          stream.without_force, stream.without_rate);
   if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Accelerometer)
     printVector("mean specific force", stream.mean_acceleration, stream.acceleration_unit);
   if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Gyroscope)

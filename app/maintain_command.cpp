@@ -118,7 +118,8 @@ void addMaintainCommand(Command& app, int& exit_code) {
   command.option("-o,--output", arguments->output, "Folder for maintenance.yaml and report.html").required();
   command
       .option("--imu", arguments->imus,
-              "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell")
+              "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell; "
+              "with a stream for each sensor NAME='GYROSCOPE + ACCELEROMETER'")
       .repeated();
   command.option(
       "--trajectory", arguments->trajectory,

@@ -5,7 +5,7 @@
 
 namespace evical::python {
 
-// A mapping that refuses to be assigned to: what people would assign to a copy would be lost.
+// A read-only mapping: an assignment to a copy would be lost.
 inline pybind11::object readOnly(const pybind11::dict& mapping) {
   return pybind11::module_::import("types").attr("MappingProxyType")(mapping);
 }

@@ -143,7 +143,7 @@ py::tuple stateOfLens(const CameraIntrinsics& c) {
 CameraIntrinsics lensFromState(const py::tuple& state) {
   const auto name = state[0].cast<std::string>();
   const auto model = std::find(kCameraModelNames.begin(), kCameraModelNames.end(), name);
-  if (model == kCameraModelNames.end()) throw py::value_error("a lens of a model that is not known: " + name);
+  if (model == kCameraModelNames.end()) throw py::value_error("unknown lens model: " + name);
   CameraIntrinsics lens;
   lens.model = static_cast<CameraModel>(model - kCameraModelNames.begin());
   lens.resolution_px = {state[1].cast<int>(), state[2].cast<int>()};

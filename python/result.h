@@ -25,7 +25,7 @@ std::shared_ptr<const Result> resultOf(const Session& session, const Calibration
 // A result folder, its result.yaml, or such a file by itself. Throws CalibrationError (BadInput).
 std::shared_ptr<const Result> loadResult(const std::filesystem::path& path);
 
-// What makes a result again in another process: result.yaml, and the numbers that it does not have.
+// Pickled form of a result: result.yaml, and the numbers that it does not hold.
 struct ResultState {
   std::string yaml, data;
   std::vector<std::string> missing;

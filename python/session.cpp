@@ -175,9 +175,8 @@ void bindSensors(py::module_& module) {
   py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
       .def_readonly("name", &SessionImu::name)
       .def_readwrite("stream", &SessionImu::stream)
-      .def_readwrite(
-          "accelerometer_stream", &SessionImu::accelerometer_stream,
-          "The accelerometer's, where it has a stream of its own; `stream` is the gyroscope's then.")
+      .def_readwrite("accelerometer_stream", &SessionImu::accelerometer_stream,
+                     "Stream of the accelerometer, if it has its own. Then `stream` is the gyroscope's.")
       .def_property(
           "gyroscope_noise_density", [](const SessionImu& i) { return i.noise.gyroscope_density; },
           [](SessionImu& i, double density) { i.noise.gyroscope_density = density; }, "rad/s/sqrt(Hz).")

@@ -1,5 +1,5 @@
-// Options that most code never looks at, so that it does not depend on them either: a value like any other, of a type that need
-// not be known where it is only copied.
+// Options that most code only copies. It holds them by pointer to a constant value, so a file that copies them does not
+// need their definition and is not rebuilt when they change.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class SharedOptions {
   }
 
  private:
-  std::shared_ptr<const Options> options_;  // nobody changes them: they are replaced
+  std::shared_ptr<const Options> options_;  // never changed, only replaced
 };
 
 }  // namespace evical

@@ -32,23 +32,24 @@ struct ImuData {
   std::vector<ImuSample> samples;  // in time order
   ImuPrior prior = {};
 
-  // How often each of the two sensors measures; the gyroscope's is what is said of the IMU.
-  double rate_hz() const { return rateOf_hz(MeasuredBy::Gyroscope); }
-  double accelerometerRate_hz() const { return rateOf_hz(MeasuredBy::Accelerometer); }
-  // One sample's noise, per axis.
+  // Sample rates of the two sensors. The gyroscope's rate is reported as the IMU's. They walk over all samples.
+  double rate_hz() const { return rateOf_hz(measuresRate<ImuSample>); }
+  double accelerometerRate_hz() const { return rateOf_hz(measuresForce<ImuSample>); }
+  // The noise of one sample, per axis. They walk over all samples, too.
   double gyroscopeSigma_rad_s() const { return noise.gyroscope_density * std::sqrt(rate_hz()); }
   double accelerometerSigma_m_s2() const {
     return noise.accelerometer_density * std::sqrt(accelerometerRate_hz());
   }
 
  private:
-  double rateOf_hz(MeasuredBy sensor) const {
-    const auto count = std::count_if(samples.begin(), samples.end(), [sensor](const ImuSample& sample) {
-      return sample.measured_by == sensor || sample.measured_by == MeasuredBy::Both;
-    });
-    return count < 2 ? 0.0
-                     : static_cast<double>(count - 1) * 1e9 /
-                           static_cast<double>(samples.back().time_ns - samples.front().time_ns);
+  // Between the first and the last sample of this sensor.
+  template <class Measures>
+  double rateOf_hz(Measures measures) const {
+    const auto count = std::count_if(samples.begin(), samples.end(), measures);
+    if (count < 2) return 0.0;
+    const auto first = std::find_if(samples.begin(), samples.end(), measures);
+    const auto last = std::find_if(samples.rbegin(), samples.rend(), measures);
+    return static_cast<double>(count - 1) * 1e9 / static_cast<double>(last->time_ns - first->time_ns);
   }
 };
 

@@ -7,8 +7,8 @@
 
 namespace evical {
 
-// Which of the two sensors measured at a sample's time. Where they have samples of their own, the other's values are
-// interpolated: good enough to be shown, never a measurement.
+// Which of the two sensors measured this sample. If they are sampled separately, the values of the other sensor are
+// interpolated. They are for display only; no estimator uses them.
 enum class MeasuredBy : std::uint8_t { Both, Gyroscope, Accelerometer };
 
 struct ImuSample {
@@ -17,5 +17,15 @@ struct ImuSample {
   Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  // +g upwards at rest
   MeasuredBy measured_by = MeasuredBy::Both;
 };
+
+// Whether the sample has the sensor's own measurement; also of RawImuSample.
+template <class Sample>
+bool measuresRate(const Sample& sample) {
+  return sample.measured_by != MeasuredBy::Accelerometer;
+}
+template <class Sample>
+bool measuresForce(const Sample& sample) {
+  return sample.measured_by != MeasuredBy::Gyroscope;
+}
 
 }  // namespace evical

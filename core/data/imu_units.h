@@ -64,7 +64,7 @@ struct RawImuSample {
   MeasuredBy measured_by = MeasuredBy::Both;
 };
 
-// Whether a sample tells nothing of one sensor: its format says so, or its values are all 0 or no numbers.
+// Whether a sample has no measurement of one sensor: its format says so, or its values are all 0 or not finite.
 bool lacksRate(const RawImuSample& sample);
 bool lacksForce(const RawImuSample& sample);
 

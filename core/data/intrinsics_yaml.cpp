@@ -107,8 +107,8 @@ CameraIntrinsics readKalibrSphere(const YamlNode& map, CameraModel model) {
   return kalibrLens(map["intrinsics"], model, 2);
 }
 
-// Also a camera of EuRoC or Kimera, which have Kalibr's keys but for two. Keys for other purposes (T_cam_imu, rostopic, ...)
-// are left alone.
+// Also reads cameras of EuRoC and Kimera, whose keys differ from Kalibr's in two names. Other keys (T_cam_imu, rostopic, ...)
+// are ignored.
 CameraIntrinsics readKalibr(const YamlNode& map) {
   const std::size_t kind = map["camera_model"].choice({"pinhole", "ds", "eucm", "omni"});
   CameraIntrinsics camera =

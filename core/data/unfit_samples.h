@@ -40,7 +40,7 @@ struct UnfitSamples {
   std::vector<std::size_t> gyroscope_spikes, accelerometer_spikes;
   // Repeats of the sample before, where a sensor is slower than its stream and each of its samples is held.
   std::vector<std::size_t> gyroscope_repeats, accelerometer_repeats;
-  std::vector<std::size_t> without_rate, without_force;  // that only the other sensor measured
+  std::vector<std::size_t> without_rate, without_force;  // only the other sensor measured these
 };
 
 // Of samples that are measurable.
@@ -64,7 +64,7 @@ SampleSelection fitSamples(std::span<const ImuSample> samples);
 // For who integrates rates: of a saturated sample two axes are right, and the third is nearer to the truth
 // than nothing.
 std::vector<ImuSample> withoutRateSpikes(std::span<const ImuSample> samples);
-// Only of times at which the accelerometer measured, and nothing unfit.
+// Takes only valid samples that the accelerometer measured.
 std::vector<ImuSample> withFitForces(std::span<const ImuSample> samples);
 
 }  // namespace evical

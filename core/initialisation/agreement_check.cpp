@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -27,14 +29,12 @@ double forceSpread_m_s2(const ImuData& imu) {
   return std::sqrt(std::max(0.0, squares / count - (sum / count).squaredNorm()) / 3.0);
 }
 
-}  // namespace
-
-// Drivers that stamp a message's samples when it arrives: nothing tells motion from their steps.
-void checkStampsApart(const ImuData& imu) {
-  if (imu.samples.size() < 3) return;
+// Of one sensor's samples.
+void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& times_ns) {
+  if (times_ns.size() < 3) return;
   std::vector<double> intervals_s;
-  for (std::size_t k = 1; k < imu.samples.size(); ++k)
-    intervals_s.push_back(secondsSince(imu.samples[k - 1].time_ns, imu.samples[k].time_ns));
+  for (std::size_t k = 1; k < times_ns.size(); ++k)
+    intervals_s.push_back(secondsSince(times_ns[k - 1], times_ns[k]));
   // Batches of 5 that were stamped as they arrived put circles 220 times their noise off. Those of up to 200 count, with gaps
   // of ten periods that are half of the time or more; rarer ones are losses. Chosen to be far from jitter, not measured.
   constexpr double kGap_periods = 10.0, kLeastTime = 0.5;
@@ -47,15 +47,28 @@ void checkStampsApart(const ImuData& imu) {
     ++gaps;
     in_gaps_s += interval_s;
   }
-  const double whole_s = secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
+  const double whole_s = secondsSince(times_ns.front(), times_ns.back());
   if (gaps * kLargestBatch < intervals_s.size() || in_gaps_s < kLeastTime * whole_s) return;
   throw calibrationFailed(
-      imu.name,
+      imu,
       fmt::format("samples are stamped in batches of about {}, {:.3g} ms apart and then none for {:.3g} ms: "
                   "as they arrived, not as they were measured",
-                  imu.samples.size() / std::max<std::size_t>(gaps, 1), 1e3 * period_s,
+                  times_ns.size() / std::max<std::size_t>(gaps, 1), 1e3 * period_s,
                   1e3 * in_gaps_s / static_cast<double>(gaps)),
       "Have the driver stamp each sample, or spread the stamps of a batch over its time");
+}
+
+}  // namespace
+
+// Drivers that stamp a message's samples when it arrives: nothing tells motion from their steps.
+void checkStampsApart(const ImuData& imu) {
+  std::vector<std::int64_t> rates_ns, forces_ns;
+  for (const ImuSample& sample : imu.samples) {
+    if (measuresRate(sample)) rates_ns.push_back(sample.time_ns);
+    if (measuresForce(sample)) forces_ns.push_back(sample.time_ns);
+  }
+  checkStampsApart(imu.name, rates_ns);
+  checkStampsApart(imu.name, forces_ns);
 }
 
 void checkAxesAlive(const ImuData& imu) {

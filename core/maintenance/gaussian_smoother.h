@@ -3,8 +3,11 @@
 // more sums to the integral to better than 1e-15: nothing is interpolated.
 #pragma once
 
+#include "core/data/imu_sample.h"
+
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -21,22 +24,30 @@ class GaussianSmoother {
 
   double reach_s() const { return 5.0 * sigma_s_; }
 
-  // In order of time; samples that are not are left out.
-  void add(double time_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2);
+  // In order of time; samples that are not are left out. Each sensor is smoothed over its own samples.
+  void add(double time_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2,
+           MeasuredBy measured_by = MeasuredBy::Both);
   // Nothing where samples are missing.
   std::optional<SmoothPoint> at(double time_s) const;
   void forgetBefore(double time_s);  // times before it are not asked for any more
 
-  bool empty() const { return samples_.empty(); }
-  double latest_s() const { return samples_.back().time_s; }
+  bool empty() const { return rates_.empty() || forces_.empty(); }
+  double latest_s() const { return std::min(rates_.back().time_s, forces_.back().time_s); }
 
  private:
   struct Sample {
     double time_s;
-    Eigen::Vector3d rate_rad_s, force_m_s2;
+    Eigen::Vector3d value;
   };
+  // Sums over one sensor's samples: its mean, its slope, and of the products of components.
+  struct Smoothed {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero(), slope = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  };
+  std::optional<Smoothed> at(double time_s, const std::deque<Sample>& samples) const;
+
   double sigma_s_;
-  std::deque<Sample> samples_;
+  std::deque<Sample> rates_, forces_;
 };
 
 }  // namespace evical

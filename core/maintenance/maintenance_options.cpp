@@ -15,13 +15,13 @@ constexpr std::tuple kFields{
     Field{"shortest_stop_s", &Options::shortest_stop_s, 1.5, within(0.5, 1000.0), "s",
           "Stops that are shorter are not used."},
     Field{"still_rate_deg_s", &Options::still_rate_deg_s, 0.5, within(0.01, 20.0), "deg/s",
-          "In a stop the gyroscope's means stay within this of each other."},
+          "The gyroscope's means in a stop stay within four times this of the stop's mean, and the means of "
+          "stops within twice this of each other."},
     Field{"still_force_m_s2", &Options::still_force_m_s2, 0.15, within(1e-4, 5.0), "m/s^2",
           "The same of the accelerometer's means, beside five of their sigmas."},
     Field{"stop_above_quietest", &Options::stop_above_quietest, 4.0, within(1.0, 1e4), "",
-          "In a stop the accelerometer's variance is at most so many times that of the log's quietest tenth. "
-          "Larger "
-          "multiples are tried, too: the first that finds the most stops counts."},
+          "A window is still if the accelerometer's variance is at most this multiple of the log's quietest "
+          "tenth. Larger multiples are also tried: the smallest one that finds the most stops is used."},
     Field{"stop_rate_rad_s", &Options::stop_rate_rad_s, 0.05, within(1e-4, 10.0), "rad/s",
           "No stop is more restless than this (one sigma within a quarter of a second)."},
     Field{"stop_force_m_s2", &Options::stop_force_m_s2, 0.5, within(1e-3, 50.0), "m/s^2",

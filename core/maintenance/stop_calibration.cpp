@@ -21,7 +21,7 @@ constexpr std::array<const char*, kAccelerometerNumbers> kWords = {
     "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
     "scale z", "misalignment xy", "misalignment xz", "misalignment yz"};
 
-// Variances of a window's means about its stop's.
+// Variances of the windows' means about the mean of their stop.
 struct StopNoise {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero();
 };

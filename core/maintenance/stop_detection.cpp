@@ -15,7 +15,8 @@ bool hasBoth(const MeansWindow& window) {
   return window.samples >= kFewest && window.forces >= kFewest;
 }
 
-// Means over the windows within half a second: one restless quarter of a second does not end a stop.
+// Averages over the windows within half a second, so that one disturbed quarter of a second does not end a stop. Windows
+// with too few samples, and those on the other side of a gap, do not count.
 std::vector<double> smoothed(std::span<const MeansWindow> windows, double MeansWindow::*variance) {
   constexpr std::ptrdiff_t kBeside = 2;
   std::vector<double> means;
@@ -24,13 +25,20 @@ std::vector<double> smoothed(std::span<const MeansWindow> windows, double MeansW
     const std::ptrdiff_t begin = std::max<std::ptrdiff_t>(i - kBeside, 0),
                          end = std::min(i + kBeside + 1, count);
     double sum = 0.0;
-    for (std::ptrdiff_t k = begin; k < end; ++k) sum += windows[static_cast<std::size_t>(k)].*variance;
-    means.push_back(sum / static_cast<double>(end - begin));
+    int used = 0;
+    for (std::ptrdiff_t k = begin; k < end; ++k) {
+      const MeansWindow& window = windows[static_cast<std::size_t>(k)];
+      const double apart_s = std::abs(window.time_s - windows[static_cast<std::size_t>(i)].time_s);
+      if (!hasBoth(window) || apart_s > (kBeside + 1) * WindowMeans::kLength_s) continue;
+      sum += window.*variance;
+      ++used;
+    }
+    means.push_back(sum / std::max(used, 1));
   }
   return means;
 }
 
-// Of the windows that have samples enough.
+// Uses only windows with enough samples.
 double lowQuantile(std::span<const MeansWindow> windows, const std::vector<double>& variances) {
   std::vector<double> values;
   for (std::size_t i = 0; i < windows.size(); ++i)
@@ -41,8 +49,8 @@ double lowQuantile(std::span<const MeansWindow> windows, const std::vector<doubl
   return *place;
 }
 
-// Which windows are still: the accelerometer decides, against the log's own quietest tenth. A hand that holds an IMU still turns
-// it ten times as restlessly as a table does, so the gyroscope has an absolute limit only.
+// Finds the windows in which the IMU is still. The accelerometer decides, relative to the log's quietest tenth. A hand
+// rotates an IMU ten times as much as a table does, so the gyroscope has only an absolute limit.
 std::vector<bool> stillWindows(std::span<const MeansWindow> windows, double above_quietest,
                                const MaintenanceOptions& options) {
   // Of quantised numbers a window may have no variance at all.
@@ -103,13 +111,13 @@ void WindowMeans::add(double time_s, const ImuSample& sample) {
     rate_origin_ = sample.angular_rate_rad_s;
     force_origin_ = sample.specific_force_m_s2;
   }
-  if (sample.measured_by != MeasuredBy::Accelerometer) {
+  if (measuresRate(sample)) {
     const Eigen::Vector3d rate = sample.angular_rate_rad_s - rate_origin_;
     ++current_.samples;
     current_.rate_rad_s += rate;
     current_.rate_variance += rate.squaredNorm();
   }
-  if (sample.measured_by != MeasuredBy::Gyroscope) {
+  if (measuresForce(sample)) {
     const Eigen::Vector3d force = sample.specific_force_m_s2 - force_origin_;
     ++current_.forces;
     current_.force_m_s2 += force;
@@ -136,7 +144,7 @@ void WindowMeans::finish() {
 
 std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
                                  const MaintenanceOptions& options) {
-  constexpr double kWithinStop = 4.0;  // times what means of whole stops may differ by: hands sway
+  constexpr double kWithinStop = 4.0;  // times the allowed difference of whole stops: hands sway
   const std::vector<bool> still = stillWindows(windows, above_quietest, options);
   const double still_rate = options.still_rate_deg_s * kRadPerDeg;
   std::vector<StopRange> stops;

@@ -15,7 +15,7 @@ struct MaintenanceOptions;
 
 // Means over a quarter of a second: all that stops need, so that memory grows by a megabyte an hour.
 struct MeansWindow {
-  double time_s = 0.0;          // its begin
+  double time_s = 0.0;          // start
   int samples = 0, forces = 0;  // of the gyroscope, of the accelerometer
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
   double rate_variance = 0.0, force_variance = 0.0;  // within it, per axis
@@ -44,7 +44,7 @@ struct StopRange {
   std::size_t first = 0, last = 0;
   std::size_t count() const { return last - first + 1; }
 };
-// `above_quietest`: how many times the accelerometer's variance in the log's quietest tenth counts as still.
+// `above_quietest`: a window counts as still up to this multiple of the accelerometer's variance in the log's quietest tenth.
 std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
                                  const MaintenanceOptions& options);
 

@@ -220,8 +220,14 @@ bool TrajectoryLags::isWhole() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
   constexpr double kGap = 0.3;  // of the interval of poses
   if (samples_.size() < 3 || times_s_.front() > from.time_s || times_s_.back() < to.time_s) return false;
-  for (std::size_t k = 1; k < times_s_.size(); ++k)
-    if (times_s_[k] - times_s_[k - 1] > kGap * options_.pose_interval_s) return false;
+  // A sensor with samples of its own has gaps of its own.
+  double rate_s = times_s_.front(), force_s = times_s_.front(), longest_s = 0.0;
+  for (std::size_t k = 1; k < times_s_.size(); ++k) {
+    longest_s = std::max({longest_s, times_s_[k] - rate_s, times_s_[k] - force_s});
+    if (measuresRate(samples_[k])) rate_s = times_s_[k];
+    if (measuresForce(samples_[k])) force_s = times_s_[k];
+  }
+  if (longest_s > kGap * options_.pose_interval_s) return false;
   return to.time_s - from.time_s < options_.trajectory_gap * options_.pose_interval_s;
 }
 

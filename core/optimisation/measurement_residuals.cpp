@@ -90,10 +90,8 @@ ImuRole roleOf(const ProblemBuilder& builder, const SampleRun& run) {
   return builder.isReference(run.imu) ? ImuRole::Reference : ImuRole::Further;
 }
 
-void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
+void addGyroscope(ProblemBuilder& builder, const SampleRun& run, double sigma) {
   ImuState& state = builder.parameters.moved().imus[run.imu];
-  const ImuData& data = builder.input.imus[run.imu];
-  const double sigma = builder.weights.scales.gyroscopes[run.imu] * data.gyroscopeSigma_rad_s();
   std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::angular_rate_rad_s,
                                                             builder.weights.used_samples[run.imu].gyroscope);
   if (measurements.empty()) return;
@@ -112,11 +110,9 @@ void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
       {builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Gyroscope, run.imu, run.time_s});
 }
 
-void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
+void addAccelerometer(ProblemBuilder& builder, const SampleRun& run, double sigma) {
   CalibrationState& all = builder.parameters.moved();
   ImuState& state = all.imus[run.imu];
-  const ImuData& data = builder.input.imus[run.imu];
-  const double sigma = builder.weights.scales.accelerometers[run.imu] * data.accelerometerSigma_m_s2();
   std::vector<InertialMeasurement> measurements = samplesOf(
       builder, run, &ImuSample::specific_force_m_s2, builder.weights.used_samples[run.imu].accelerometer);
   if (measurements.empty()) return;
@@ -175,8 +171,14 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
 
 void addImu(ProblemBuilder& builder, std::size_t imu) {
   const CalibrationState& state = builder.parameters.moved();
-  for (const SampleRun& run : gyroscopeRuns(builder.input, state, imu)) addGyroscope(builder, run);
-  for (const SampleRun& run : accelerometerRuns(builder.input, state, imu)) addAccelerometer(builder, run);
+  const NoiseScales& scales = builder.weights.scales;
+  const ImuData& data = builder.input.imus[imu];
+  const double rate_sigma = scales.gyroscopes[imu] * data.gyroscopeSigma_rad_s();
+  const double force_sigma = scales.accelerometers[imu] * data.accelerometerSigma_m_s2();
+  for (const SampleRun& run : gyroscopeRuns(builder.input, state, imu))
+    addGyroscope(builder, run, rate_sigma);
+  for (const SampleRun& run : accelerometerRuns(builder.input, state, imu))
+    addAccelerometer(builder, run, force_sigma);
 }
 
 }  // namespace evical

@@ -27,6 +27,14 @@ struct Range {
   std::size_t begin, end;
 };
 
+// The range around `i` with `kNeighbours` fit samples on either side.
+Range neighboursOf(std::size_t i, const std::vector<std::uint8_t>& fit) {
+  Range range{i, i + 1};
+  for (std::size_t left = kNeighbours; left > 0 && range.begin > 0;) left -= fit[--range.begin] ? 1 : 0;
+  for (std::size_t left = kNeighbours; left > 0 && range.end < fit.size();) left -= fit[range.end++] ? 1 : 0;
+  return range;
+}
+
 // Of the samples that are fit, without one of them.
 std::vector<double> normsIn(Range range, const std::vector<double>& norms,
                             const std::vector<std::uint8_t>& fit, std::size_t without) {
@@ -43,8 +51,7 @@ std::vector<std::uint8_t> select(const std::vector<double>& norms, const std::ve
   std::vector<std::uint8_t> used = fit;
   for (std::size_t i = 0; i < norms.size(); ++i) {
     if (!fit[i] || !(norms[i] > outlier_sigma * usual)) continue;
-    const Range beside{i > kNeighbours ? i - kNeighbours : 0, std::min(i + kNeighbours + 1, norms.size())};
-    if (norms[i] > outlier_sigma * scaleOfNorms(normsIn(beside, norms, fit, i))) used[i] = 0;
+    if (norms[i] > outlier_sigma * scaleOfNorms(normsIn(neighboursOf(i, fit), norms, fit, i))) used[i] = 0;
   }
   return used;
 }

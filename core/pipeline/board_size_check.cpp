@@ -18,7 +18,7 @@ struct AxisCheck {
   const char* line;  // "row" or "column"
   const LatticeEnds& ends;
   std::vector<bool> seen;  // by line, in any view
-  bool whole = false;      // both outermost lines are there in views enough
+  bool whole = false;      // enough views show both outermost lines
 };
 
 std::vector<bool> circlesSeen(const BoardObservations& observations, const Board& board) {
@@ -28,8 +28,8 @@ std::vector<bool> circlesSeen(const BoardObservations& observations, const Board
   return seen;
 }
 
-// Views in which both outermost lines are there, along rows or along columns. A board that ends earlier has none,
-// wherever on the session's lattice it was placed; a right board has some, however many bursts a read-out loses.
+// Counts the views that show both outermost lines, of rows or of columns. A board that is smaller than the session says
+// never has such a view. A board of the right size has some, even if the read-out loses many bursts of events.
 int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double least_line) {
   const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
   const double least = std::max(2.0, least_line * in_line);

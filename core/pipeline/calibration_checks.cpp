@@ -51,9 +51,42 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   }
 }
 
-// Drivers that give each of the two sensors messages of its own leave the other's numbers at 0.
+// Two streams may be exchanged, empty, or of different times.
+void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
+  const auto check = [&](const std::string& stream, const char* sensor, auto measures,
+                         Eigen::Vector3d ImuSample::*value) {
+    bool any = false;
+    std::pair<std::int64_t, std::int64_t> span{0, 0};
+    for (const ImuSample& sample : imu.samples) {
+      if (!measures(sample) || (sample.*value).isZero(0.0)) continue;
+      if (!any) span.first = sample.time_ns;
+      any = true;
+      span.second = sample.time_ns;
+    }
+    if (!any)
+      throw badInput(imu.name, fmt::format("the stream {} has no measurements of the {}", stream, sensor),
+                     "Check the lines gyroscope: and accelerometer: of the session: they may be exchanged");
+    return span;
+  };
+  const auto rates =
+      check(session.stream, "gyroscope", measuresRate<ImuSample>, &ImuSample::angular_rate_rad_s);
+  const auto forces = check(session.accelerometer_stream, "accelerometer", measuresForce<ImuSample>,
+                            &ImuSample::specific_force_m_s2);
+  constexpr double kLeastShared = 0.5;  // of the longer one's time
+  const double shared_s =
+      secondsSince(std::max(rates.first, forces.first), std::min(rates.second, forces.second));
+  const double whole_s =
+      std::max(secondsSince(rates.first, rates.second), secondsSince(forces.first, forces.second));
+  if (shared_s < kLeastShared * whole_s)
+    throw badInput(imu.name,
+                   fmt::format("{} and {} share only {:.2f} s of {:.2f} s", session.stream,
+                               session.accelerometer_stream, std::max(shared_s, 0.0), whole_s),
+                   "Check the timestamps of the two streams, or give time_range_s where both have samples");
+}
+
+// Drivers that publish the two sensors separately set the values of the other sensor to 0.
 void checkBothSensors(const ImuData& imu, const SessionImu& session) {
-  if (!session.accelerometer_stream.empty()) return;
+  if (!session.accelerometer_stream.empty()) return checkSeparateSensors(imu, session);
   const ImuStreamKind kind = imuStreamKind(imu.samples);
   if (kind == ImuStreamKind::Whole) return;
   const bool gyroscope = kind != ImuStreamKind::Accelerometer,

@@ -18,7 +18,7 @@ auto& partOf(Options& options) {
   return static_cast<std::conditional_t<std::is_const_v<Options>, const Part, Part>&>(options);
 }
 
-// Those that are held apart: what the visitor changes is put back.
+// Visits a copy of shared options and stores it if the visitor changed it.
 template <class Options, class Visitor>
 void visitShared(const char* name, const char* help, const SharedOptions<Options>& shared, Visitor&& visit) {
   visit(name, help, *shared);
@@ -57,10 +57,9 @@ void forEachGroup(Options& all, Visitor&& visit) {
         partOf<VerdictOptions>(all.optimisation));
   visit("report", "What is worked out for the report only", all.report);
   visitShared("check", "Whether an old calibration still holds", all.check, visit);
-  visitShared("edge_slopes", "Without a board: how fast edges move, whatever they belong to", all.edge_slopes,
-              visit);
-  visitShared("egomotion", "Without a board: how the camera turns, beside the gyroscope", all.egomotion,
-              visit);
+  visitShared("edge_slopes", "Without a board: the speed of edges in the scene", all.edge_slopes, visit);
+  visitShared("egomotion", "Without a board: how the camera turns, compared with the gyroscope",
+              all.egomotion, visit);
   visitShared("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain,
               visit);
 }

@@ -30,7 +30,7 @@ struct CalibrationOptions {
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;
   ReportOptions report;
-  // Of other commands: who reads them includes their own headers.
+  // Options of other commands. Code that reads them includes their headers.
   SharedOptions<CheckOptions> check;
   SharedOptions<EdgeSlopeOptions> edge_slopes;
   SharedOptions<EgomotionOptions> egomotion;

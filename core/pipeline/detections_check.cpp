@@ -228,7 +228,7 @@ std::vector<OptionRow> detectionOptions(const CalibrationOptions& options) {
 
 bool isOfImu(const RecordingFault& fault, const Session& session) {
   return std::any_of(session.imus.begin(), session.imus.end(), [&](const SessionImu& imu) {
-    return fault.stream == imu.stream || fault.stream == imu.name;
+    return fault.stream == imu.stream || fault.stream == imu.joinedStream() || fault.stream == imu.name;
   });
 }
 

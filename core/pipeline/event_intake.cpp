@@ -60,9 +60,9 @@ void EventIntake::report(std::vector<RecordingFault>& faults) const {
     faults.push_back(
         {session_.stream, FaultKind::SaturatedReadOut, 0.0,
          fmt::format(
-             "{}: for {:.0f} % of the time events come at {:.2g} million a second, and never faster: the "
-             "read-out is at its limit. Events are lost, and others are stamped late, which the time offset "
-             "includes. Move more slowly, or raise the camera's contrast thresholds",
+             "{}: for {:.0f} % of the time, events arrive at {:.2g} million per second and never faster. The "
+             "read-out is at its limit: events are lost, and others have late timestamps, which shifts the "
+             "time offset. Move more slowly, or raise the camera's contrast thresholds",
              session_.stream, 100.0 * limit.share, 1e-6 * limit.rate_hz)});
   if (outside_ > 0) {
     faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,

@@ -62,7 +62,7 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
                     1e3 * board.radius_m));
 }
 
-// Files of Kimera and EuRoC name no topic: then the recording's only IMU is meant.
+// Files of Kimera and EuRoC name no topic. Then the recording's only IMU is used.
 std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
   std::vector<std::string> streams;
   if (!request.recording.empty())

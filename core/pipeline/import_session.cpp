@@ -66,7 +66,24 @@ struct ImportedIntrinsics {
   CameraIntrinsics intrinsics;
 };
 
-// Names are the file's own where it has some, and paths can hold them.
+// No camera has them: then numbers are in another unit, or of another image size.
+void checkPlausible(const CameraIntrinsics& lens, const std::string& place) {
+  constexpr double kLeastFocal_px = 5.0;
+  const Eigen::Vector2d& centre = lens.principal_point_px;
+  if (lens.focal_length_px.minCoeff() < kLeastFocal_px)
+    throw badInput(
+        place, fmt::format("a focal length of {:.3g} px cannot be right", lens.focal_length_px.minCoeff()),
+        "Give it in pixels");
+  const Resolution size = lens.resolution_px;
+  if (size.known() &&
+      !(centre.x() > 0.0 && centre.x() < size.width_px && centre.y() > 0.0 && centre.y() < size.height_px))
+    throw badInput(place,
+                   fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image of {} x {}",
+                               centre.x(), centre.y(), size.width_px, size.height_px),
+                   "Check that the resolution and the intrinsics belong together");
+}
+
+// Takes names from the file, if it has names that can be part of a path.
 void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
   const std::vector<ReadCamera>& found = file.read.cameras;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -76,14 +93,16 @@ void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
     if (name.empty()) name = found.size() > 1 ? fmt::format("cam{}", i) : file.read.path.stem().string();
     CameraIntrinsics lens = *found[i].lens;
     CameraIntrinsics checked = lens;
-    constexpr int kMost_px = 30000;  // a resolution that the file does not say the recording will
+    constexpr int kMost_px = 30000;  // used if the file has no resolution: the recording knows it
     if (!checked.resolution_px.known()) checked.resolution_px = {kMost_px, kMost_px};
-    validate(checked, fmt::format("{}: {}", file.read.path.string(), name));
+    const std::string place = fmt::format("{}: {}", file.read.path.string(), name);
+    validate(checked, place);
+    checkPlausible(lens, place);
     cameras.push_back({name, lens});
   }
 }
 
-// What beyond the lens is in it, and is left out.
+// Contents other than the lens, which are not imported.
 void noteLeftOut(const LensFile& file, std::vector<std::string>& notes) {
   const std::string name = file.read.path.filename().string();
   const auto any = [&](const auto& has) {
@@ -97,7 +116,7 @@ void noteLeftOut(const LensFile& file, std::vector<std::string>& notes) {
   if (!file.read.imus.empty()) left_out.emplace_back("IMU parameters");
   notes.push_back(fmt::format("{}: read as {}", name, file.layout));
   if (!left_out.empty())
-    notes.push_back(fmt::format("{}: {} are left out and estimated anew", name, joined(left_out)));
+    notes.push_back(fmt::format("{}: {} are not imported and will be estimated", name, joined(left_out)));
 }
 
 std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
@@ -191,6 +210,10 @@ ImportedSession importSession(const ImportRequest& request) {
 }
 
 ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output) {
+  std::error_code ignored;
+  for (const std::filesystem::path& file : request.files)
+    if (std::filesystem::equivalent(file, output, ignored))
+      throw badInput(output.string(), "input and output are the same", "Choose another output");
   const std::vector<ImportSource> sources = readSources(request);
   if (intrinsicsAlone(sources)) return importIntrinsics(sources, output);
   const ImportedSession imported = sessionOf(sources, request);

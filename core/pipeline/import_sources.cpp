@@ -20,7 +20,7 @@ ImportSource recogniseSource(const std::filesystem::path& path) {
   }
   throw root.error(
       root.isMap() && root.has("evical_session") ? "is a session already"
-                                                 : "is of no layout that can be imported",
+                                                 : "has no layout that can be imported",
       "Give an eKalibr configuration; Kalibr's target, imu and camchain files; or intrinsics of " +
           lensLayouts());
 }

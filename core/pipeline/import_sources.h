@@ -16,7 +16,7 @@ enum class ImportKind { EkalibrConfiguration, KalibrTarget, KalibrImu, KalibrCam
 
 struct ImportSource {
   std::filesystem::path path;
-  YamlNode root;  // empty of lens files
+  YamlNode root;  // empty for lens files
   ImportKind kind;
   std::optional<LensFile> lenses = {};
 };

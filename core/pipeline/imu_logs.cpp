@@ -22,12 +22,6 @@ std::vector<std::string> namesOf(const NamedResult& before) {
   return names;
 }
 
-std::size_t imuStreams(const RecordingReader& reader) {
-  std::size_t count = 0;
-  for (const StreamInfo& stream : reader.streams()) count += stream.type == StreamType::Imu ? 1 : 0;
-  return count;
-}
-
 std::optional<std::size_t> onlyOne(const std::vector<std::size_t>& found) {
   return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
 }
@@ -51,7 +45,7 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
     Source& source = sources_.emplace_back();
     source.path = log;
     source.reader = openLog(log);
-    streams += imuStreams(*source.reader);
+    streams += imuStreams(source);
   }
   match(streams == 1);
   for (Source& source : sources_) {
@@ -68,8 +62,8 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   start_ns_ = first_ns;
 }
 
-// A table whose own header does not tell its columns may be like the calibration's. Sensors that the calibration had from
-// streams of their own are joined where the log has both.
+// A table whose header does not identify its columns is assumed to have those of the calibration. If the calibration used
+// separate streams for the two sensors and the log has both, they are joined.
 std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& log) const {
   try {
     std::unique_ptr<RecordingReader> reader = openRecording(log);
@@ -78,11 +72,9 @@ std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& l
         return stream.type == StreamType::Imu && stream.name == name;
       });
     };
-    std::vector<SeparateImu> separate;
-    for (const auto& [name, reading] : readings_)
-      if (!reading.accelerometer_stream.empty() && has(reading.gyroscope_stream) &&
-          has(reading.accelerometer_stream))
-        separate.push_back({reading.gyroscope_stream, reading.accelerometer_stream});
+    std::vector<SeparateImu> separate = separateImus();
+    std::erase_if(separate,
+                  [&](const SeparateImu& imu) { return !has(imu.gyroscope) || !has(imu.accelerometer); });
     return withSeparateImus(std::move(reader), separate);
   } catch (const CalibrationError&) {
     for (const auto& [name, reading] : readings_)
@@ -95,7 +87,7 @@ std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& l
 std::optional<std::size_t> ImuLogs::imuOf(const Source& source, const StreamInfo& stream,
                                           bool only_one) const {
   const std::filesystem::path& log = source.path;
-  const bool alone = imuStreams(*source.reader) == 1;
+  const bool alone = imuStreams(source) == 1;
   for (std::size_t i = 0; i < before_.imus.size(); ++i) {
     const auto said = settings_.streams.find(before_.imus[i].name);
     if (said == settings_.streams.end()) continue;
@@ -116,13 +108,35 @@ std::optional<std::size_t> ImuLogs::imuOf(const Source& source, const StreamInfo
   return only_one ? onlyOne(open) : std::nullopt;
 }
 
-// Its samples come in with the other sensor's.
-bool ImuLogs::isJoined(const std::string& stream) const {
-  return std::ranges::any_of(readings_, [&](const auto& each) {
-    const ImuReading& reading = each.second;
-    return !reading.accelerometer_stream.empty() &&
-           (reading.gyroscope_stream == stream || reading.accelerometer_stream == stream);
+// As the calibration had them, and as --imu NAME='GYROSCOPE + ACCELEROMETER' names them.
+std::vector<SeparateImu> ImuLogs::separateImus() const {
+  std::vector<SeparateImu> imus;
+  const auto add = [&](const SeparateImu& imu) {
+    const auto same = [&](const SeparateImu& other) { return nameOf(other) == nameOf(imu); };
+    if (std::ranges::none_of(imus, same)) imus.push_back(imu);
+  };
+  for (const auto& [name, reading] : readings_)
+    if (!reading.accelerometer_stream.empty()) add({reading.gyroscope_stream, reading.accelerometer_stream});
+  for (const auto& [name, stream] : settings_.streams)
+    if (const std::size_t plus = stream.find(" + "); plus != std::string::npos)
+      add({stream.substr(0, plus), stream.substr(plus + 3)});
+  return imus;
+}
+
+// Its samples arrive with those of the other sensor, as another stream of the log.
+bool ImuLogs::isPartOfJoined(const Source& source, const std::string& stream) const {
+  const std::vector<StreamInfo>& streams = source.reader->streams();
+  return std::ranges::any_of(separateImus(), [&](const SeparateImu& imu) {
+    return (imu.gyroscope == stream || imu.accelerometer == stream) &&
+           std::ranges::any_of(streams, [&](const StreamInfo& one) { return one.name == nameOf(imu); });
   });
+}
+
+std::size_t ImuLogs::imuStreams(const Source& source) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(source.reader->streams(), [&](const StreamInfo& stream) {
+        return stream.type == StreamType::Imu && !isPartOfJoined(source, stream.name);
+      }));
 }
 
 void ImuLogs::match(bool only_one) {
@@ -130,8 +144,8 @@ void ImuLogs::match(bool only_one) {
     const std::vector<StreamInfo>& streams = source.reader->streams();
     for (std::size_t s = 0; s < streams.size(); ++s) {
       if (streams[s].type != StreamType::Imu || !streams[s].readable) continue;
+      if (isPartOfJoined(source, streams[s].name)) continue;
       const auto imu = imuOf(source, streams[s], only_one);
-      if (!imu && isJoined(streams[s].name)) continue;
       if (!imu) {
         notes_.push_back(fmt::format("{}: the stream {} is left out: the old result knows no IMU of it",
                                      source.path.filename().string(), streams[s].name));
@@ -165,10 +179,16 @@ void ImuLogs::refuseUnknown() const {
   const std::vector<std::string> names = namesOf(before_);
   if (names.empty())
     throw badInput(where, "the old result has no IMUs", "Give the result of a calibration with IMUs");
-  throw badInput(where,
-                 fmt::format("the old result does not know the IMU of it: streams {}, IMUs of the result {}",
-                             joined(streams), joined(names)),
-                 fmt::format("Say which it is: --imu {}={}", names.front(), streams.front()));
+  throw badInput(
+      where,
+      fmt::format("the old result does not know the IMU of it: streams {}, IMUs of the result {}",
+                  joined(streams), joined(names)),
+      streams.size() < 2
+          ? fmt::format("Say which it is: --imu {}={}", names.front(), streams.front())
+          : fmt::format(
+                "Say which it is: --imu {0}={1}; if the gyroscope and the accelerometer have separate "
+                "streams: --imu {0}='GYROSCOPE + ACCELEROMETER'",
+                names.front(), streams.front()));
 }
 
 const StreamInfo& ImuLogs::stream(std::size_t imu) const {

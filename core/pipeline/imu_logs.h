@@ -5,6 +5,7 @@
 #include "core/data/imu_sample.h"
 #include "core/data/imu_units.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/separate_imu.h"
 #include "core/recording/stray_stamps.h"
 #include "core/report/result_yaml.h"
 
@@ -32,7 +33,7 @@ struct ImuReading {
   std::optional<AngularRateUnit> angular_rate_unit = {};
   AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
   std::string columns = {};  // of a text table
-  // Where the recording keeps the two sensors apart; the other is empty else.
+  // Set if the recording has separate streams for the two sensors; otherwise the second is empty.
   std::string gyroscope_stream = {}, accelerometer_stream = {};
 };
 using ImuReadings = std::map<std::string, ImuReading>;  // by the IMU's name
@@ -73,7 +74,9 @@ class ImuLogs {
 
   std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
   std::optional<std::size_t> imuOf(const Source& source, const StreamInfo& stream, bool only_one) const;
-  bool isJoined(const std::string& stream) const;
+  std::vector<SeparateImu> separateImus() const;
+  bool isPartOfJoined(const Source& source, const std::string& stream) const;
+  std::size_t imuStreams(const Source& source) const;
   void match(bool only_one);
   void advance(Source& source);
   void toSamples(const StreamInfo& info, const std::vector<RawImuSample>& raw, ImuLogPacket& packet) const;

@@ -15,6 +15,7 @@
 #include "core/pipeline/maintained_trajectory.h"
 #include "core/pipeline/saved_run.h"
 #include "core/pipeline/session_keys.h"
+#include "core/recording/inspection.h"
 
 #include <fmt/format.h>
 
@@ -30,13 +31,12 @@ namespace {
 constexpr double kWorthANote = 1.5;
 constexpr double kWorthAdvice = 4.0;
 
-// Of one IMU, over the whole log.
-struct ImuPass {
-  WindowMeans means;
+// When one sensor has measured.
+struct SampleTimes {
   double first_s = 0.0, last_s = 0.0, longest_gap_s = 0.0, longest_gap_at_s = 0.0;
   std::uint64_t samples = 0;
 
-  void add(double time_s, const ImuSample& sample) {
+  void add(double time_s) {
     if (samples == 0) first_s = last_s = time_s;
     if (time_s - last_s > longest_gap_s) {
       longest_gap_s = time_s - last_s;
@@ -44,21 +44,66 @@ struct ImuPass {
     }
     ++samples;
     last_s = std::max(last_s, time_s);
-    means.add(time_s, sample);
   }
   double rate_hz() const {
     return last_s > first_s ? static_cast<double>(samples - 1) / (last_s - first_s) : 0.0;
   }
 };
 
+// Of the two sensors of an IMU, which may have samples of their own.
+struct ImuTimes {
+  SampleTimes rates, forces;
+
+  void add(double time_s, const ImuSample& sample) {
+    if (measuresRate(sample)) rates.add(time_s);
+    if (measuresForce(sample)) forces.add(time_s);
+  }
+  double from_s() const { return std::min(rates.first_s, forces.first_s); }
+  double to_s() const { return std::max(rates.last_s, forces.last_s); }
+  const SampleTimes& withLongestGap() const {
+    return forces.longest_gap_s > rates.longest_gap_s ? forces : rates;
+  }
+};
+
+// Of one IMU, over the whole log.
+struct ImuPass {
+  WindowMeans means;
+  ImuTimes times;
+
+  void add(double time_s, const ImuSample& sample) {
+    times.add(time_s, sample);
+    means.add(time_s, sample);
+  }
+};
+
 // Of the log's beginning.
 struct Looked {
   RateNorms norms;
-  std::uint64_t samples = 0;
-  double from_s = 0.0, to_s = 0.0;
-
-  double rate_hz() const { return to_s > from_s ? static_cast<double>(samples - 1) / (to_s - from_s) : 0.0; }
+  ImuTimes times;
+  std::vector<ImuSample> samples;
 };
+
+// A stream of one sensor, or of a dead one, would look like a large change.
+void checkBothSensors(const std::string& imu, const std::string& stream,
+                      const std::vector<ImuSample>& samples) {
+  bool rates = false, forces = false;
+  std::vector<ImuSample> whole;
+  for (const ImuSample& sample : samples) {
+    rates = rates || (measuresRate(sample) && !sample.angular_rate_rad_s.isZero(0.0));
+    forces = forces || (measuresForce(sample) && !sample.specific_force_m_s2.isZero(0.0));
+    if (sample.measured_by == MeasuredBy::Both) whole.push_back(sample);
+  }
+  const bool alternating = imuStreamKind(whole) == ImuStreamKind::Alternating;
+  if (samples.empty() || (rates && forces && !alternating)) return;
+  const std::string advice = fmt::format("Name both streams: --imu {}='GYROSCOPE + ACCELEROMETER'", imu);
+  if (alternating)
+    throw badInput(imu,
+                   fmt::format("the messages of {} alternate between gyroscope and accelerometer", stream),
+                   fmt::format("Say so: --imu {}='{} + {}'", imu, stream, stream));
+  throw badInput(
+      imu, fmt::format("{} has no measurements of the {}", stream, rates ? "accelerometer" : "gyroscope"),
+      advice);
+}
 
 class Maintainer {
  public:
@@ -134,6 +179,7 @@ PairNominal Maintainer::nominalOf(std::size_t imu) const {
 
 void Maintainer::look() {
   constexpr double kLook_s = 90.0;
+  constexpr std::size_t kLooked = 20'000;  // samples in which both sensors must have measured
   context_.progress.stageStarted("look");
   ImuLogs logs(input_.logs, before(), input_.settings, input_.readings, context_.stop);
   imus_ = logs.imus();
@@ -154,18 +200,22 @@ void Maintainer::look() {
         static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.imu) - imus_.begin());
     for (const ImuSample& sample : packet.samples) {
       const double time_s = secondsSince(logs.start_ns(), sample.time_ns);
-      if (seen[k].samples++ == 0) seen[k].from_s = time_s;
-      seen[k].to_s = time_s;
+      seen[k].times.add(time_s, sample);
+      if (seen[k].samples.size() < kLooked) seen[k].samples.push_back(sample);
+      if (!measuresRate(sample)) continue;
       seen[k].norms.add(time_s + nominal_[k].time_offset_s,
                         sample.angular_rate_rad_s - state(packet.imu).gyroscope_bias_rad_s);
     }
-    if (std::all_of(seen.begin(), seen.end(), [](const Looked& imu) { return imu.to_s > kLook_s; })) break;
+    if (std::all_of(seen.begin(), seen.end(), [](const Looked& imu) { return imu.times.to_s() > kLook_s; }))
+      break;
   }
   context_.throwIfStopped();
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    checkBothSensors(name(imus_[k]), streams_[k], std::exchange(seen[k].samples, {}));
   double slowest_hz = 0.0;
   for (const Looked& imu : seen)
-    if (const double rate_hz = imu.rate_hz(); rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz))
-      slowest_hz = rate_hz;
+    for (const double rate_hz : {imu.times.rates.rate_hz(), imu.times.forces.rate_hz()})
+      if (rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz)) slowest_hz = rate_hz;
   smoothing_s_ = smoothingFor(slowest_hz, *input_.options);
   agreeClocks(seen);
 }
@@ -227,15 +277,17 @@ void Maintainer::describe() {
     MaintainedImu& imu = maintenance_.imus.emplace_back();
     imu.name = name(imus_[k]);
     imu.stream = streams_[k];
-    imu.from_s = passes_[k].first_s;
-    imu.to_s = passes_[k].last_s;
-    imu.rate_hz = passes_[k].rate_hz();
+    const ImuTimes& times = passes_[k].times;
+    const SampleTimes& gaps = times.withLongestGap();
+    imu.from_s = times.from_s();
+    imu.to_s = times.to_s();
+    imu.rate_hz = times.rates.rate_hz();
     maintenance_.duration_s = std::max(maintenance_.duration_s, imu.to_s);
-    if (passes_[k].longest_gap_s > input_.options->gap_s)
+    if (gaps.longest_gap_s > input_.options->gap_s)
       maintenance_.notes.push_back(
           fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and perhaps "
                       "elsewhere; windows with gaps are left out",
-                      imu.name, passes_[k].longest_gap_s, passes_[k].longest_gap_at_s));
+                      imu.name, gaps.longest_gap_s, gaps.longest_gap_at_s));
   }
 }
 

@@ -33,8 +33,8 @@ struct SessionCamera {
 };
 
 struct SessionImu {
-  std::string name, stream;  // where the accelerometer has a stream of its own, the gyroscope's
-  // The accelerometer's, where the recording keeps it apart; the gyroscope's again where they alternate on one. Else empty.
+  std::string name, stream;  // the gyroscope's stream, if the accelerometer has its own
+  // The accelerometer's own stream. Equal to `stream` if the two alternate on one stream, empty if samples are complete.
   std::string accelerometer_stream = {};
   ImuNoise noise;
   std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
@@ -46,7 +46,7 @@ struct SessionImu {
   std::string columns = {};         // of a text table: a header line that counts instead of the file's
   ImuPrior prior = {};              // the file's prior.imus.<name>
 
-  // As the opened recording calls the stream of both.
+  // The name of the joined stream in the opened recording.
   std::string joinedStream() const;
 };
 

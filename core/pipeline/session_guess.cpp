@@ -31,9 +31,8 @@ bool isSensor(const StreamSummary& stream, StreamType type) {
   return stream.info.type == type && stream.count > 0;
 }
 
-// The stream of the other sensor of an IMU whose sensors have streams of their own: the one whose name begins most like
-// this one's. Nothing where there is none.
-const StreamSummary* otherSensor(const StreamSummary& stream, const Inspection& inspection) {
+// For an IMU with separate streams: the stream of the other sensor with the longest common start of the name.
+const StreamSummary* mostAlike(const StreamSummary& stream, const Inspection& inspection) {
   const ImuStreamKind kind = imuStreamKind(stream);
   if (kind != ImuStreamKind::Gyroscope && kind != ImuStreamKind::Accelerometer) return nullptr;
   const ImuStreamKind wanted =
@@ -49,6 +48,13 @@ const StreamSummary* otherSensor(const StreamSummary& stream, const Inspection& 
     most_alike = alike;
   }
   return best;
+}
+
+// Null if there is none, or if it belongs to another stream: two gyroscopes do not share an accelerometer.
+const StreamSummary* otherSensor(const StreamSummary& stream, const Inspection& inspection) {
+  const StreamSummary* const other = mostAlike(stream, inspection);
+  const StreamSummary* const back = other != nullptr ? mostAlike(*other, inspection) : nullptr;
+  return back != nullptr && back->info.name == stream.info.name ? other : nullptr;
 }
 
 // "/camera/imu" of "/camera/gyro/sample" and "/camera/accel/sample".

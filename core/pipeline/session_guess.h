@@ -19,7 +19,7 @@ Session guessedSession(const std::filesystem::path& recording, const Inspection&
 // file, where it is not the session's.
 SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
                             const std::filesystem::path& own_recording = {});
-// Of a stream of one of its sensors, together with the stream of the other that the recording has.
+// From the stream of one sensor and the recording's matching stream of the other.
 SessionImu guessedImu(const StreamSummary& stream, const Inspection& inspection, const Session& session,
                       const std::filesystem::path& own_recording = {});
 

@@ -50,7 +50,7 @@ void readStream(const YamlNode& map, SessionCamera& camera) {
   camera.stream = nameFrom(map["stream"]);
 }
 
-// One, or one for each of the two sensors.
+// One stream, or one for each of the two sensors.
 void readStream(const YamlNode& map, SessionImu& imu) {
   const auto gyroscope = map.find("gyroscope"), accelerometer = map.find("accelerometer");
   if (!gyroscope && !accelerometer) {
@@ -58,7 +58,7 @@ void readStream(const YamlNode& map, SessionImu& imu) {
     return;
   }
   if (const auto node = map.find("stream"))
-    throw node->error("is there beside a stream of one of its sensors",
+    throw node->error("cannot be combined with gyroscope or accelerometer",
                       "Give either stream, or gyroscope and accelerometer");
   imu.stream = nameFrom(map["gyroscope"]);
   imu.accelerometer_stream = nameFrom(map["accelerometer"]);

@@ -86,7 +86,11 @@ ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) con
     if (!sensor.columns.empty() && isIn(path, sensor)) names[sensor.stream] = sensor.columns;
   };
   for (const SessionCamera& camera : session_.cameras) add(camera);
-  for (const SessionImu& imu : session_.imus) add(imu);
+  for (const SessionImu& imu : session_.imus) {
+    add(imu);
+    if (!imu.accelerometer_stream.empty() && !imu.columns.empty() && isIn(path, imu))
+      names[imu.accelerometer_stream] = imu.columns;
+  }
   return names;
 }
 
@@ -242,7 +246,7 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) {
     toSi(raw.imu_samples, session_.imus[imu].acceleration_unit.value_or(stream.acceleration_unit),
          session_.imus[imu].angular_rate_unit.value_or(stream.angular_rate_unit), packet.imu_samples);
     for (ImuSample& sample : packet.imu_samples) {
-      // What messages say of themselves is believed only where the session says that the sensors are apart.
+      // A message's own statement of what it measured counts only if the session names separate streams.
       if (session_.imus[imu].accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
       sample.angular_rate_rad_s = readAs(session_.imus[imu].gyroscope_axes, sample.angular_rate_rad_s);
       sample.specific_force_m_s2 = readAs(session_.imus[imu].accelerometer_axes, sample.specific_force_m_s2);

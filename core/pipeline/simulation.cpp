@@ -90,8 +90,9 @@ void writePicture(const std::filesystem::path& path, const std::string& content)
 }
 
 // Frames of all frame cameras: files named by their stamps in ns, as Kalibr wants them.
-void writeFrames(const Scenario& scenario, const std::filesystem::path& folder, SimulationSummary& summary,
-                 const RunContext& context) {
+// `start_ns`: of the other streams, as they were written.
+void writeFrames(const Scenario& scenario, std::int64_t start_ns, const std::filesystem::path& folder,
+                 SimulationSummary& summary, const RunContext& context) {
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
     if (!scenario.cameras[k].frames) continue;
     const std::filesystem::path own = folder / kFramesFolder / scenario.cameras[k].stream;
@@ -101,7 +102,8 @@ void writeFrames(const Scenario& scenario, const std::filesystem::path& folder, 
         scenario, k,
         [&](const Frame& frame) {
           const bool lossless = quality == 0;
-          writePicture(own / fmt::format("{}.{}", frame.time_ns, lossless ? "png" : "jpg"),
+          writePicture(own / fmt::format("{}.{}", frame.time_ns - scenario.start_ns + start_ns,
+                                         lossless ? "png" : "jpg"),
                        lossless ? encodedPng(frame) : encodedJpeg(frame, quality));
           ++summary.frames;
         },
@@ -147,7 +149,7 @@ class Workshop {
   std::filesystem::path folder_;
 };
 
-// `imu_writer`: the same one, or that of a file that holds the IMUs alone.
+// `imu_writer`: the same writer, or one for a separate file with the IMUs.
 void writeRecording(const Scenario& scenario, RecordingWriter& writer, RecordingWriter& imu_writer,
                     SimulationSummary& summary, const RunContext& context) {
   const bool apart = &writer != &imu_writer;
@@ -175,13 +177,17 @@ void writeRecording(const Scenario& scenario, RecordingWriter& writer, Recording
   if (apart) imu_writer.finish();
 }
 
-// As who has a camera of Prophesee's has them: its file, and the IMU's own table beside it.
+// Writes what users of Prophesee cameras have: the camera's file, and a table of the IMU next to it.
 void writeApart(const std::filesystem::path& made, const RecordingFormat& format, Scenario& named,
                 SimulationSummary& summary, const RunContext& context) {
   std::vector<StreamInfo> events = streamsOf(named), imus;
   const auto is_imu = [](const StreamInfo& stream) { return stream.type == StreamType::Imu; };
   std::copy_if(events.begin(), events.end(), std::back_inserter(imus), is_imu);
   std::erase_if(events, is_imu);
+  if (events.size() != 1)
+    throw badInput("--format " + std::string(format.name),
+                   fmt::format("holds the events of one camera, and the scenario has {}", events.size()),
+                   "Choose another format");
   const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, events);
   const std::unique_ptr<RecordingWriter> table = createCsv(made.parent_path(), imus);
   writeRecording(named, *writer, *table, summary, context);
@@ -210,14 +216,15 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   if (streams.empty()) {
     summary.recording = folder / kFramesFolder;
   } else if (format.one_camera) {
-    named.start_ns = kSecond_ns;  // such files have no room for more
+    named.start_ns =
+        200 * kSecond_ns;  // these files cannot hold absolute times; names of frames need 12 digits
     writeApart(made, format, named, summary, context);
   } else {
     const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);
     writeRecording(scenario, *writer, *writer, summary, context);
     takeNames(writer->streamNames(), named);
   }
-  writeFrames(scenario, workshop.folder(), summary, context);
+  writeFrames(scenario, named.start_ns, workshop.folder(), summary, context);
   writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
   writeFileWhole(workshop.folder() / "session.yaml",
                  sessionYaml(named, streams.empty() ? kFramesFolder : file,

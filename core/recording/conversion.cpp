@@ -2,11 +2,15 @@
 
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/base/time.h"
 #include "core/recording/recording_writer.h"
+#include "core/recording/stray_stamps.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,8 +47,11 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Reco
                    fmt::format("It has: {}", names.empty() ? "none" : names));
   }
   if (chosen.empty())
-    throw badInput(request.input.string(), fmt::format("the recording has neither events nor IMU samples{}",
-                                                       format.frames ? " nor frames with times" : ""));
+    throw badInput(request.input.string(),
+                   format.one_camera
+                       ? fmt::format("the recording has no events, and {} holds nothing else", format.name)
+                       : fmt::format("the recording has neither events nor IMU samples{}",
+                                     format.frames ? " nor frames with times" : ""));
   return chosen;
 }
 
@@ -107,8 +114,18 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
   }
 }
 
+// Formats for one camera count times from its start, so they cannot hold events with wrong timestamps.
+void sayStrays(const StampFilter<Event>& stamps, const RunContext& context) {
+  if (stamps.strays() == 0) return;
+  context.progress.log(
+      LogLevel::Warning,
+      fmt::format("{} events are left out: their timestamps are {:.3g} s away from those of the others.",
+                  stamps.strays(), std::abs(secondsSince(stamps.strayFrom_ns(), stamps.strayTime_ns()))));
+}
+
 void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::vector<std::size_t>& targets,
-                 ConversionSummary& summary, const RunContext& context) {
+                 bool drop_strays, ConversionSummary& summary, const RunContext& context) {
+  StampFilter<Event> stamps(kEventStamps);
   Packet packet;
   std::vector<ImuSample> samples;
   bool exposed = false;
@@ -118,6 +135,7 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
     const std::size_t target = targets.at(packet.stream);
     if (target == kNotWritten) continue;
     const StreamInfo& info = reader.streams()[packet.stream];
+    if (drop_strays) stamps.filter(packet.events);
     samples.clear();
     toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, samples);
     if (!packet.events.empty()) writer.write(target, EventSpan(packet.events));
@@ -129,6 +147,12 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
     summary.events += packet.events.size();
     summary.imu_samples += samples.size();
     summary.frames += packet.frames.size();
+  }
+  if (drop_strays) {
+    stamps.finish(packet.events);
+    if (!packet.events.empty()) writer.write(0, EventSpan(packet.events));
+    summary.events += packet.events.size();
+    sayStrays(stamps, context);
   }
   if (exposed)
     context.progress.log(LogLevel::Warning, "How long frames were exposed has no place in the new file.");
@@ -171,8 +195,13 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
   if (format.isFolder()) folder.emplace(request.output);
   const std::unique_ptr<RecordingWriter> writer =
       createRecording(request.output, format.name, summary.streams);
-  copyPackets(*reader, *writer, targets, summary, context);
+  copyPackets(*reader, *writer, targets, format.one_camera, summary, context);
   writer->finish();
+  if (const std::int64_t origin_ns = writer->origin_ns(); origin_ns != 0)
+    context.progress.log(LogLevel::Info,
+                         fmt::format("{} cannot hold these times: they count from the first event now. In a "
+                                     "session with other sensors, give the camera clock_offset_s: {:.6f}.",
+                                     format.name, 1e-9 * static_cast<double>(origin_ns)));
   if (!format.isFolder()) sayNewNames(summary.streams, writer->streamNames(), context);
   return summary;
 }

@@ -80,7 +80,7 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   }
 }
 
-// Where the two sensors have samples of their own, each has its own times.
+// If the two sensors are sampled separately, each has its own times.
 void checkTimesOfSensors(const std::string& name, const Samples& samples, const InspectionOptions& options,
                          Faults& faults) {
   const auto isOfBoth = [](const ImuSample& sample) { return sample.measured_by == MeasuredBy::Both; };
@@ -127,9 +127,10 @@ void checkSaturated(const std::string& name, const Samples& samples, const ImuAx
 }
 
 void checkSpikes(const std::string& name, const Samples& samples, const char* sensor,
-                 const std::vector<std::size_t>& spikes, Faults& faults) {
+                 bool (*measures)(const ImuSample&), const std::vector<std::size_t>& spikes, Faults& faults) {
   constexpr std::size_t kMostTimes = 5;
   if (spikes.empty()) return;
+  const auto count = std::count_if(samples.begin(), samples.end(), measures);
   std::string times;
   for (std::size_t k = 0; k < std::min(spikes.size(), kMostTimes); ++k)
     times += fmt::format("{}{:.3f} s", k > 0 ? ", " : "",
@@ -138,7 +139,7 @@ void checkSpikes(const std::string& name, const Samples& samples, const char* se
       {name, FaultKind::Corrupt, secondsSince(samples.front().time_ns, samples[spikes.front()].time_ns),
        fmt::format(
            "{} of {} samples of the {} contradict those beside them (at {}{}): calibrations leave them out.",
-           spikes.size(), samples.size(), sensor, times, spikes.size() > kMostTimes ? ", ..." : "")});
+           spikes.size(), count, sensor, times, spikes.size() > kMostTimes ? ", ..." : "")});
 }
 
 void checkUnits(const std::string& name, const Samples& samples, const InspectionOptions& options,
@@ -190,8 +191,8 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
   }
   const Faults held = heldFaults(name, good, unfit);
   faults.insert(faults.end(), held.begin(), held.end());
-  checkSpikes(name, good, "gyroscope", unfit.gyroscope_spikes, faults);
-  checkSpikes(name, good, "accelerometer", unfit.accelerometer_spikes, faults);
+  checkSpikes(name, good, "gyroscope", measuresRate<ImuSample>, unfit.gyroscope_spikes, faults);
+  checkSpikes(name, good, "accelerometer", measuresForce<ImuSample>, unfit.accelerometer_spikes, faults);
   checkUnits(name, good, options, faults);
   return faults;
 }

@@ -58,11 +58,12 @@ ImuStreamKind kindOf(std::uint64_t samples, std::uint64_t without_rate, std::uin
                no_force = static_cast<double>(without_force) / count;
   if (no_force > kNearlyAll && no_rate < kNearlyAll) return ImuStreamKind::Gyroscope;
   if (no_rate > kNearlyAll && no_force < kNearlyAll) return ImuStreamKind::Accelerometer;
-  const bool alternating = no_rate > kFew && no_force > kFew && no_rate + no_force > kNearlyAll;
+  const bool nothing = no_rate > kNearlyAll && no_force > kNearlyAll;
+  const bool alternating = !nothing && no_rate > kFew && no_force > kFew && no_rate + no_force > kNearlyAll;
   return alternating ? ImuStreamKind::Alternating : ImuStreamKind::Whole;
 }
 
-// Of a stream whose kind is known, which sensor measured each sample.
+// Marks which sensor measured each sample of a stream of known kind.
 void setMeasuredBy(const std::vector<RawImuSample>& raw, ImuStreamKind kind,
                    std::vector<ImuSample>& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i)

@@ -40,13 +40,13 @@ struct StreamSummary {
   Eigen::Vector3d mean_acceleration = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_angular_rate = Eigen::Vector3d::Zero();
   double median_acceleration = 0.0;                   // of the norm
-  std::uint64_t without_rate = 0, without_force = 0;  // samples that tell nothing of one of the sensors
+  std::uint64_t without_rate = 0, without_force = 0;  // samples without a measurement of that sensor
 };
 
-// Which of an IMU's sensors a stream is of. Alternating: of both, but never at the same time.
+// Which sensors of an IMU a stream holds. Alternating: both, but each sample has only one.
 enum class ImuStreamKind { Whole, Gyroscope, Accelerometer, Alternating };
 ImuStreamKind imuStreamKind(const StreamSummary& stream);
-ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples);  // by what is 0 throughout
+ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples);  // by the values that are always 0
 
 struct Inspection {
   std::string format;

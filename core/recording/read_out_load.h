@@ -1,4 +1,4 @@
-// Whether a camera's read-out is at its limit: then events are lost, and the rest is stamped when its turn comes.
+// Detects a camera whose read-out is at its limit. It loses events, and the others get late timestamps.
 #pragma once
 
 #include "core/data/event.h"
@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// What is counted over hundredths of a second: a read-out at its limit gives the same number again and again, a scene does not.
+// Counts events in windows of 10 ms. At its limit a read-out gives the same count in many windows; a scene does not.
 class ReadOutLoad {
  public:
   // In order of time.
@@ -29,7 +29,7 @@ class ReadOutLoad {
 
   struct Limit {
     double rate_hz = 0.0;
-    double share = 0.0;  // of the time, at the limit; 0: there is none
+    double share = 0.0;  // of the time at the limit; 0 if there is no limit
   };
   Limit limit() const {
     constexpr std::size_t kFewest = 100;

@@ -1,5 +1,5 @@
-// The program that reads HDF5 files for this one, in a process of its own: this program again, or, of Python, the interpreter. What
-// has no server reads them in a copy of itself (fork), which is sound only before other threads have begun.
+// The separate process that reads HDF5 files: this program again, or the interpreter of the Python module. A program that sets
+// no server forks instead, which is safe only before it starts threads.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace evical {
 
-// First in main(): where the arguments ask for it, this process serves a recording and never returns; else it is known from now
-// on that it can.
+// Call this first in main(). If the arguments ask for a server, it serves a recording and does not return. Otherwise it
+// registers this program as the server.
 void beRecordingServer(int argc, char** argv);
 
-// The command, without the path that is added; empty: none.
+// The command without the path of the recording; empty if there is none.
 void setRecordingServer(std::vector<std::string> command);
 const std::vector<std::string>& recordingServer();
 

@@ -5,6 +5,7 @@
 #include "core/data/recording.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -27,6 +28,9 @@ class RecordingWriter {
   // As it is stored; of one stream either all encoded or none. Only where RecordingFormat::frames says so.
   virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
+
+  // The time that is 0 in the file, once something has been written. Other than 0 only for formats that cannot hold the times.
+  virtual std::int64_t origin_ns() const { return 0; }
 
   // What readers will call the streams given at creation, in their order: not every format keeps names.
   virtual std::vector<std::string> streamNames() const = 0;
@@ -65,8 +69,8 @@ std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
 std::unique_ptr<RecordingWriter> createCsv(const std::filesystem::path& folder,
                                            const std::vector<StreamInfo>& streams);
 
-// Prophesee's RAW (EVT 3.0) and DAT: the events of one camera, which needs its resolution. Times are rounded down to the us, and
-// count from the first event where that is later than 16 s.
+// Prophesee's RAW (EVT 3.0) and DAT: the events of one camera whose resolution is known. Times are rounded down to 1 us. They
+// count from the first event if it is later than one hour.
 std::unique_ptr<RecordingWriter> createRaw(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams);
 std::unique_ptr<RecordingWriter> createDat(const std::filesystem::path& path,
@@ -80,7 +84,7 @@ struct RecordingFormat {
   std::unique_ptr<RecordingWriter> (*create)(const std::filesystem::path& path,
                                              const std::vector<StreamInfo>& streams);
   bool frames = false;      // also holds frames
-  bool one_camera = false;  // holds the events of one camera, and no IMU samples
+  bool one_camera = false;  // can only hold the events of one camera
   bool isFolder() const { return *extension == '\0'; }
 };
 std::span<const RecordingFormat> recordingFormats();

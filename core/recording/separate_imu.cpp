@@ -10,20 +10,21 @@
 namespace evical {
 namespace {
 
-// Samples that wait for the other sensor's: more, and its stream is stored somewhere else in the file, or has ended.
+// Most samples that wait for the other sensor. If there are more, its stream is stored elsewhere in the file or has ended.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 20;
 constexpr std::size_t kPacket_samples = 256;
 
-// One sensor's samples: those that wait, and the last that was handed out.
+// Samples of one sensor: those that wait, and the last one that was returned.
 struct Half {
   std::deque<RawImuSample> waiting;
   std::optional<RawImuSample> last;
 
-  // What it would have measured then, by its samples on either side.
+  // Interpolated from the samples before and after.
   Eigen::Vector3d at(std::int64_t time_ns, Eigen::Vector3d RawImuSample::*value) const {
     if (!last && waiting.empty()) return Eigen::Vector3d::Zero();
     if (!last) return waiting.front().*value;
-    if (waiting.empty()) return *last.*value;
+    if (waiting.empty() || !(waiting.front().*value).allFinite()) return *last.*value;
+    if (!(*last.*value).allFinite()) return waiting.front().*value;
     const double span_s = secondsSince(last->time_ns, waiting.front().time_ns);
     const double part =
         span_s > 0.0 ? std::clamp(secondsSince(last->time_ns, time_ns) / span_s, 0.0, 1.0) : 1.0;
@@ -36,7 +37,7 @@ struct Half {
   }
 };
 
-// Both sensors' samples in order of time.
+// Samples of both sensors, ordered by time.
 class JoinedHalves {
  public:
   void addRates(const std::vector<RawImuSample>& samples) {
@@ -55,7 +56,7 @@ class JoinedHalves {
   }
   void finish() { finished_ = true; }
 
-  // Those whose place in time is certain. False where none is.
+  // Returns the next sample whose order is certain, or false if there is none.
   bool take(std::vector<RawImuSample>& samples) {
     samples.clear();
     while (samples.size() < kPacket_samples && isCertain()) samples.push_back(next());
@@ -115,7 +116,7 @@ class SeparateImuReader : public RecordingReader {
     for (Joined& imu : imus_) imu.wanted = false;
     std::vector<std::size_t> own;
     for (const std::size_t stream : streams) {
-      static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller's
+      static_cast<void>(streams_.at(stream));  // throws for a wrong index, which is a bug in the caller
       if (stream < plain_.size()) {
         plain_[stream] = true;
         own.push_back(stream);
@@ -157,7 +158,7 @@ class SeparateImuReader : public RecordingReader {
     JoinedHalves halves;
   };
 
-  // Some of what streams say comes to be known while they are read.
+  // Some properties of streams are known only while they are read.
   void takeStreams() {
     streams_ = reader_->streams();
     for (const Joined& imu : imus_) {
@@ -197,7 +198,7 @@ class SeparateImuReader : public RecordingReader {
   std::unique_ptr<RecordingReader> reader_;
   std::vector<Joined> imus_;
   std::vector<StreamInfo> streams_;
-  std::vector<bool> plain_;  // by the recording's own streams: handed out as they are
+  std::vector<bool> plain_;  // per stream of the recording: not joined
   std::vector<RawImuSample> joined_;
   bool finished_ = false;
 };

@@ -1,5 +1,5 @@
-// A gyroscope and an accelerometer that a recording keeps apart, as one IMU: RealSense, OAK and ZED write each to a topic of its
-// own, or alternate on one. Each keeps its own samples and times.
+// Joins a gyroscope and an accelerometer with separate samples to one IMU. RealSense, OAK and ZED publish them on two topics, or
+// alternate on one. Each sensor keeps its own samples and times.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// Names of the two sensors' streams; the same one where messages alternate.
+// Names of the streams of the two sensors; equal if they alternate on one stream.
 struct SeparateImu {
   std::string gyroscope, accelerometer;
 };
@@ -18,8 +18,8 @@ struct SeparateImu {
 // The joined stream's name.
 std::string nameOf(const SeparateImu& imu);
 
-// The recording with the joined streams behind its own ones. Throws CalibrationError (BadInput) where a stream is missing, or is
-// no IMU's.
+// The recording's streams, followed by the joined ones. Throws CalibrationError (BadInput) if a stream is missing or is not
+// of an IMU.
 std::unique_ptr<RecordingReader> withSeparateImus(std::unique_ptr<RecordingReader> reader,
                                                   const std::vector<SeparateImu>& imus);
 

@@ -51,13 +51,25 @@ bool sendAll(int socket, std::string_view bytes) {
 
 enum class Silence { Awaited, Limited };
 
+// A program that was stopped for a while (Ctrl-Z) has not waited: time counts in short pieces, and one that took much longer
+// than asked does not count.
+bool isReadable(int socket, Silence silence) {
+  constexpr int kPiece_ms = 100;
+  for (int waited_ms = 0; waited_ms < SeparateReader::longest_silence_ms;) {
+    pollfd waiting{socket, POLLIN, 0};
+    const auto begin = std::chrono::steady_clock::now();
+    const int ready = ::poll(&waiting, 1, silence == Silence::Limited ? kPiece_ms : -1);
+    if (ready > 0) return true;
+    if (ready < 0 && errno != EINTR) return false;
+    if (std::chrono::steady_clock::now() - begin < 10 * std::chrono::milliseconds(kPiece_ms))
+      waited_ms += kPiece_ms;
+  }
+  return false;
+}
+
 bool receiveAll(int socket, char* bytes, std::size_t count, Silence silence) {
   while (count > 0) {
-    pollfd waiting{socket, POLLIN, 0};
-    const int ready =
-        ::poll(&waiting, 1, silence == Silence::Limited ? SeparateReader::longest_silence_ms : -1);
-    if (ready < 0 && errno == EINTR) continue;
-    if (ready <= 0) return false;
+    if (!isReadable(socket, silence)) return false;
     const ssize_t got = ::recv(socket, bytes, count, 0);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return false;
@@ -214,7 +226,7 @@ std::string answerTo(const std::string& question, RecordingReader& reader) {
   return answer + stateOf(reader);
 }
 
-// What libraries say when they fall is not for people, who are told what it means.
+// Libraries' own messages at a crash are hidden: this program says what they mean.
 void beQuiet() {
   const int nothing = ::open("/dev/null", O_WRONLY);
   if (nothing >= 0) ::dup2(nothing, STDERR_FILENO);
@@ -233,8 +245,8 @@ void beQuiet() {
   throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
 }
 
-// The program again, with the socket in the place that it looks for it. Another process from its first instruction on: a fork would
-// have the locks that other threads hold now.
+// Starts the server with the socket at the descriptor that it expects. A fork would inherit locks that other threads hold; a new
+// process does not.
 pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path, int socket) {
   std::vector<std::string> words = command;
   words.push_back(path.string());
@@ -244,8 +256,18 @@ pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, socket, kServerSocket);
+  // Ctrl-C is for this program, which ends the server; until the server ignores it, it waits.
+  sigset_t held;
+  ::sigemptyset(&held);
+  for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&held, signal);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setsigmask(&attributes, &held);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t process = -1;
-  const int error = ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  const int error =
+      ::posix_spawnp(&process, arguments.front(), &actions, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   errno = error;
   return error == 0 ? process : -1;
@@ -324,9 +346,17 @@ void SeparateReader::takeFirstState() {
     end();
     throwError(path_, rest);
   }
-  const std::string reason = reasonOfEnd();
+  const End how = howItEnded();
   end();
-  throw badInput(path_.string(), fmt::format("the file is damaged so that its library ends ({})", reason),
+  if (how.kind == End::Kind::Silent)
+    throw calibrationFailed(path_.string(), "cannot be read: " + how.reason,
+                            "Check the disk or the network, and try again");
+  if (how.kind == End::Kind::Exit)
+    throw calibrationFailed(
+        path_.string(), fmt::format("the process that reads HDF5 files cannot be started ({})", how.reason),
+        "Install Evical again");
+  throw badInput(path_.string(),
+                 fmt::format("the process that reads it ended ({}): the file is damaged", how.reason),
                  "Copy it again, or record again");
 }
 
@@ -358,8 +388,9 @@ void SeparateReader::select(const std::vector<std::size_t>& streams) {
   putInto(question, Question::Select);
   putInto(question, static_cast<std::uint32_t>(streams.size()));
   for (const std::size_t stream : streams) putInto(question, static_cast<std::uint64_t>(stream));
-  finished_ = !sendMessage(socket_, question) || !receiveMessage(socket_, answer);
-  if (!finished_ && static_cast<Answer>(answer.front()) == Answer::Error)
+  // Where it has ended, the next read says so.
+  const bool answered = sendMessage(socket_, question) && receiveMessage(socket_, answer);
+  if (answered && static_cast<Answer>(answer.front()) == Answer::Error)
     throwError(path_, std::string_view(answer).substr(1));
 }
 
@@ -376,11 +407,19 @@ bool SeparateReader::read(Packet& packet) {
   if (!asked_) static_cast<void>(ask());
   if (!receiveMessage(socket_, message_)) {
     finished_ = true;
+    const End end = howItEnded();
+    if (end.kind == End::Kind::Killed)
+      throw calibrationFailed(path_.string(), "the process that reads it was killed",
+                              "Close other programs: perhaps memory ran out. Then try again");
+    const double percent = 100.0 * fraction_read_;
     faults_.push_back(
         {"", FaultKind::Corrupt, 0.0,
-         fmt::format("The file is damaged so that its library ended ({}) after {:.0f} % of it: the "
-                     "rest is lost.",
-                     reasonOfEnd(), 100.0 * fraction_read_)});
+         end.kind == End::Kind::Silent
+             ? fmt::format("The file cannot be read further than {:.0f} %: {}. The rest is lost.", percent,
+                           end.reason)
+             : fmt::format("The file is damaged: the process that reads it ended ({}) after {:.0f} % of it. "
+                           "The rest is lost.",
+                           end.reason, percent)});
     return false;
   }
   const auto kind = static_cast<Answer>(message_.front());
@@ -412,9 +451,8 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
   for (Frame& frame : packet.frames) takeFrame(cursor, frame);
 }
 
-// What its process ended by.
-std::string SeparateReader::reasonOfEnd() {
-  constexpr int kRounds = 100;  // of 10 ms: one that has closed its socket ends soon
+SeparateReader::End SeparateReader::howItEnded() {
+  constexpr int kRounds = 100;  // of 10 ms: a process that has closed its socket exits soon
   int status = 0;
   pid_t ended = 0;
   for (int round = 0; process_ > 0 && ended == 0 && round < kRounds; ++round) {
@@ -425,11 +463,14 @@ std::string SeparateReader::reasonOfEnd() {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
-    return fmt::format("it has not answered for {:g} s", 1e-3 * longest_silence_ms);
+    return {End::Kind::Silent, fmt::format("no answer for {:g} s", 1e-3 * longest_silence_ms)};
   }
   const bool known = process_ > 0 && ended == process_;
   process_ = -1;
-  return known && WIFSIGNALED(status) ? fmt::format("by signal {}", WTERMSIG(status)) : "without a word";
+  if (!known) return {End::Kind::Signal, "for an unknown reason"};
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return {End::Kind::Killed, "killed"};
+  if (WIFSIGNALED(status)) return {End::Kind::Signal, fmt::format("signal {}", WTERMSIG(status))};
+  return {End::Kind::Exit, fmt::format("exit code {}", WEXITSTATUS(status))};
 }
 
 }  // namespace evical

@@ -16,13 +16,13 @@
 
 namespace evical {
 
-// The file descriptor at which a server finds its socket.
+// The file descriptor of a server's socket.
 inline constexpr int kServerSocket = 3;
 
 class SeparateReader : public RecordingReader {
  public:
   using Open = std::function<std::unique_ptr<RecordingReader>()>;
-  // A process that is silent for so long hangs, and is ended. Disks that wake up and networks take less.
+  // A process that does not answer for so long is considered hanging and is killed. Sleeping disks and networks are faster.
   static inline int longest_silence_ms = 30'000;
 
   // Calls `open` in a copy of this process; what it throws is thrown here. `path` for messages.
@@ -47,7 +47,12 @@ class SeparateReader : public RecordingReader {
   bool ask();
   void takeState(std::string_view message);
   void takePacket(std::string_view message, Packet& packet);
-  std::string reasonOfEnd();
+  struct End {
+    // Killed: from outside. Silent: it did not answer, and was ended.
+    enum class Kind { Exit, Signal, Killed, Silent } kind;
+    std::string reason;
+  };
+  End howItEnded();
 
   std::filesystem::path path_;
   pid_t process_ = -1;
@@ -59,7 +64,7 @@ class SeparateReader : public RecordingReader {
   std::string format_, message_;
 };
 
-// In the other process: answers until nobody asks any more, and exits.
+// In the other process: answers requests until the socket is closed, then exits.
 [[noreturn]] void serveReader(int socket, const SeparateReader::Open& open);
 
 }  // namespace evical

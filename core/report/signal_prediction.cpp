@@ -4,6 +4,16 @@
 #include "core/data/imu_prediction.h"
 
 namespace evical {
+namespace {
+
+void add(double time_s, const Eigen::Vector3d& measured, const Eigen::Vector3d& predicted,
+         SensorSignal& signal) {
+  signal.time_s.push_back(time_s);
+  signal.measured.push_back(measured);
+  signal.predicted.push_back(predicted);
+}
+
+}  // namespace
 
 SignalPrediction predictSignals(const ImuData& data, std::int64_t start_ns, const CalibrationState& state,
                                 std::size_t imu, const RunContext& context) {
@@ -17,11 +27,8 @@ SignalPrediction predictSignals(const ImuData& data, std::int64_t start_ns, cons
     const auto rate = predictedRate_rad_s(state, imu_state, stamp_s);
     const auto force = predictedForce_m_s2(state, imu_state, stamp_s);
     if (!rate || !force) continue;
-    prediction.time_s.push_back(stamp_s);
-    prediction.measured_rate_rad_s.push_back(sample.angular_rate_rad_s);
-    prediction.predicted_rate_rad_s.push_back(*rate);
-    prediction.measured_force_m_s2.push_back(sample.specific_force_m_s2);
-    prediction.predicted_force_m_s2.push_back(*force);
+    if (measuresRate(sample)) add(stamp_s, sample.angular_rate_rad_s, *rate, prediction.rate_rad_s);
+    if (measuresForce(sample)) add(stamp_s, sample.specific_force_m_s2, *force, prediction.force_m_s2);
   }
   return prediction;
 }

@@ -14,12 +14,16 @@
 
 namespace evical {
 
-// One entry a sample within both splines' range, in the IMU's own frame; scale, misalignment, bias, lever arm,
-// time offset and delay are in the predictions, so that measured - predicted is noise if all is well.
-struct SignalPrediction {
+// One entry for each sample of this sensor within both splines' range.
+struct SensorSignal {
   std::vector<double> time_s;  // the IMU's own clock, since start_ns
-  std::vector<Eigen::Vector3d> measured_rate_rad_s, predicted_rate_rad_s;
-  std::vector<Eigen::Vector3d> measured_force_m_s2, predicted_force_m_s2;
+  std::vector<Eigen::Vector3d> measured, predicted;
+};
+
+// In the IMU's own frame. Scale, misalignment, bias, lever arm, time offset and delay are in the predictions, so that
+// measured - predicted is noise if all is well.
+struct SignalPrediction {
+  SensorSignal rate_rad_s, force_m_s2;
 };
 
 // `imu` is the index of `data` among state.imus. Throws Cancelled when asked to stop.

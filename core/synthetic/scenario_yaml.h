@@ -21,7 +21,7 @@ std::string truthYaml(const Scenario& scenario);
 inline constexpr const char* kFramesFolder = "frames";
 
 // A session for the recording `recording_file` in the same folder.
-// `imu_file`: where the IMUs have one of their own; empty: in the recording.
+// `imu_file`: the file of the IMUs; empty if the recording holds them.
 std::string sessionYaml(const Scenario& scenario, const std::string& recording_file,
                         const std::string& imu_file = {});
 

@@ -88,10 +88,12 @@ def _session(session: Union[Session, Path]) -> Session:
     return session if isinstance(session, Session) else Session.load(os.fspath(session))
 
 
-# HDF5 files are read by an interpreter of their own: this one may have threads, and must not be copied.
-if sys.executable:
+# HDF5 files are read by a separate interpreter, because this one may have threads and must not be forked. It gets this one's path
+# and nothing else (-I): a file in the current folder must not replace a module. A frozen program has no interpreter.
+if sys.executable and not getattr(sys, "frozen", False):
+    _here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     _set_recording_server([
-        sys.executable, "-c",
-        "import sys; sys.path.insert(0, sys.argv[1]); from evical import _evical; _evical._serve_recording(sys.argv[2])",
-        os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        sys.executable, "-I", "-c",
+        "import sys; sys.path[:] = sys.argv[1].split('\\n'); from evical import _evical; _evical._serve_recording(sys.argv[2])",
+        "\n".join([os.path.abspath(folder) for folder in sys.path if folder] + [_here])
     ])

@@ -137,7 +137,12 @@ grep -q "Submitted 20 jobs" "$scratch/log/submitted" || fail "not all were submi
 
 # The second node goes down while it works, after it has done something.
 some_done() { [ "$(find "$cluster/jobs" -name 'r*.yaml' ! -name '*.session.yaml' | wc -l)" -ge 3 ]; }
-busy_on() { squeue --noheader --states=R --format=%N | grep -qx "$1"; }
+# A job has begun its work there, and not ended it.
+busy_on() {
+  local task
+  task=$(squeue --noheader --states=R --format='%N %K' | sed -n "s/^$1 //p")
+  [ -n "$task" ] && tail -n 1 "$cluster/jobs/slurm-$task.txt" | grep -q ': started$'
+}
 within 240 some_done || fail "nothing is done: $(squeue 2>&1)"
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect --quiet >"$scratch/log/early" && fail "a part was called the whole"
 grep -q "is in Slurm's queue: " "$scratch/log/early" || fail "nobody says what waits: $(cat "$scratch/log/early")"

@@ -93,6 +93,26 @@ class TestMaintainCommand : public QObject {
     QVERIFY(QString::fromUtf8(readFile(path("out/report.html"))).contains("<svg"));
   }
 
+  // Half an IMU would look like a large change.
+  void logsOfOneSensor_areRefused_data() {
+    QTest::addColumn<bool>("gyroscope");
+    QTest::addColumn<QString>("problem");
+    QTest::newRow("no gyroscope") << false << "has no measurements of the gyroscope";
+    QTest::newRow("no accelerometer") << true << "has no measurements of the accelerometer";
+  }
+  void logsOfOneSensor_areRefused() {
+    QFETCH(bool, gyroscope);
+    QFETCH(QString, problem);
+    const QString log = changedLog("half", [gyroscope](QList<double>& values) {
+      for (int k = 0; k < 3; ++k) values[gyroscope ? k + 3 : k] = 0.0;
+    });
+    const Outcome outcome = runProgram(
+        {"maintain", log, "--result", path("stops_csv/calibration"), "-o", path("out_half"), "--quiet"});
+    VERIFY_OUTCOME(outcome, 2);
+    QVERIFY2(outcome.errors.contains(problem), qPrintable(outcome.errors));
+    QVERIFY(!QFile::exists(path("out_half/maintenance.yaml")));
+  }
+
   // A calibration that read the IMU's axes otherwise than the log has them: stops say the same.
   void axesOfTheCalibration_areThoseOfTheLog() {
     const QString log = changedLog("turned", [](QList<double>& values) {

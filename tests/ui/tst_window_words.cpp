@@ -15,19 +15,21 @@ using namespace evical;
 class TestWindowWords : public QObject {
   Q_OBJECT
 
-  // All literals of core's sources; neighbours are one.
+  // The string literals of core's sources; neighbours are joined.
   static QString literalsOfCore() {
     const std::filesystem::path scenario =
         evical::test::scenarioPath("davis346");  // config/scenarios/davis346.yaml
     const std::filesystem::path root = scenario.parent_path().parent_path().parent_path();
     const QString core = QString::fromStdString((root / "core").string());
-    const QRegularExpression between("\"\\s*\n\\s*\"");
+    const QRegularExpression between("\"\\s*\n\\s*\""), literal("\"(?:[^\"\\\\\n]|\\\\.)*\"");
     QString all;
     QDirIterator files(core, {"*.cpp"}, QDir::Files, QDirIterator::Subdirectories);
     while (files.hasNext()) {
       QFile file(files.next());
       if (!file.open(QIODevice::ReadOnly)) qFatal("%s cannot be read", qPrintable(file.fileName()));
-      all += QString::fromUtf8(file.readAll()).replace(between, "") + '\n';
+      const QString text = QString::fromUtf8(file.readAll()).replace(between, "");
+      for (QRegularExpressionMatchIterator found = literal.globalMatch(text); found.hasNext();)
+        all += found.next().captured() + '\n';
     }
     return all;
   }
@@ -35,7 +37,7 @@ class TestWindowWords : public QObject {
  private slots:
   void everyPiece_isSaidByCore() {
     const QString core = literalsOfCore();
-    QVERIFY(core.size() > 1'000'000);
+    QVERIFY(core.size() > 200'000);
     for (const QString& piece : ui::piecesOfCoresMessages())
       QVERIFY2(core.contains(piece), qPrintable(piece));
   }

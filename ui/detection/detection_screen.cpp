@@ -45,7 +45,8 @@ bool sameEvents(const Session& a, const Session& b) {
     return same_source(x, y) && x.resolution_px == y.resolution_px && same_size(x.intrinsics, y.intrinsics);
   };
   const auto same_imu = [&](const SessionImu& x, const SessionImu& y) {
-    return same_source(x, y) && x.angular_rate_unit == y.angular_rate_unit;
+    return same_source(x, y) && x.accelerometer_stream == y.accelerometer_stream &&
+           x.angular_rate_unit == y.angular_rate_unit;
   };
   return a.recording == b.recording && a.reference == b.reference &&
          std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(), same_camera) &&

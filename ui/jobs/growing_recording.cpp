@@ -15,7 +15,7 @@ constexpr int kEnded_ms = 5000;       // without growth
 
 std::uintmax_t bytesOf(const std::vector<std::filesystem::path>& files) {
   namespace fs = std::filesystem;
-  // What this program writes beside a recording that is a folder does not make the recording grow.
+  // Results of this program in a recording's folder do not count as growth.
   const auto isOwnFile = [](const fs::path& file) { return file.extension() == ".yaml"; };
   const auto isOwnFolder = [](const fs::path& folder) {
     std::error_code ignored;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detections while they are made, for pages that show them: copies, since the detecting thread goes on.
+// Copies of the detections so far, for pages that show them while detection goes on.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -13,11 +13,11 @@
 
 namespace evical::ui {
 
-// By camera, never null. A copy that is older than its camera's next one is shared.
+// By camera, never null. Copies are shared and never changed.
 using LiveDetections = std::vector<std::shared_ptr<const BoardObservations>>;
 
-// Often enough to look alive, and seldom enough to cost nothing: the longer the recording, the longer a copy takes, and the more
-// seldom it is made.
+// A copy takes longer the longer the recording is, so copies become less frequent: they take at most a twentieth of the
+// detecting thread's time.
 class DetectionCopies {
  public:
   explicit DetectionCopies(std::size_t cameras)
@@ -35,7 +35,7 @@ class DetectionCopies {
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kBetween{150};
-  static constexpr int kLeastRest = 20;  // times what a copy takes: at most a twentieth of the thread
+  static constexpr int kLeastRest = 20;  // times the duration of a copy
 
   LiveDetections copies_;
   Clock::time_point next_;

@@ -26,8 +26,8 @@ AxisStatistics statisticsOf(const std::vector<double>& residual, double rate_hz)
 
 }  // namespace
 
-SignalLines makeSignalLines(const std::vector<double>& time_s, const std::vector<Eigen::Vector3d>& measured,
-                            const std::vector<Eigen::Vector3d>& predicted, double rate_hz, double density) {
+SignalLines makeSignalLines(const SensorSignal& signal, double rate_hz, double density) {
+  const std::vector<double>& time_s = signal.time_s;
   SignalLines lines;
   lines.rate_hz = rate_hz;
   lines.density = density;
@@ -39,8 +39,8 @@ SignalLines makeSignalLines(const std::vector<double>& time_s, const std::vector
   std::vector<double> a(time_s.size()), b(time_s.size()), difference(time_s.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < time_s.size(); ++k) {
-      a[k] = component(measured[k], axis);
-      b[k] = component(predicted[k], axis);
+      a[k] = component(signal.measured[k], axis);
+      b[k] = component(signal.predicted[k], axis);
       difference[k] = a[k] - b[k];
     }
     lines.measured[axis] = makePlotLine(time_s, a);

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "core/numerics/spectrum.h"
+#include "core/report/signal_prediction.h"
 #include "ui/plots/plot_panel.h"
-
-#include <Eigen/Core>
 
 #include <array>
 #include <memory>
@@ -30,7 +29,6 @@ struct SignalLines {
   double rate_hz = 0.0, density = 0.0;  // of the noise as given, unit per sqrt(Hz)
 };
 
-SignalLines makeSignalLines(const std::vector<double>& time_s, const std::vector<Eigen::Vector3d>& measured,
-                            const std::vector<Eigen::Vector3d>& predicted, double rate_hz, double density);
+SignalLines makeSignalLines(const SensorSignal& signal, double rate_hz, double density);
 
 }  // namespace evical::ui

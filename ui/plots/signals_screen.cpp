@@ -166,15 +166,14 @@ void SignalsScreen::compute() {
     const CalibrationState& state = run->result.state;
     const ImuData& samples = run->pass.imus[imu];
     SignalPrediction prediction = predictSignals(samples, run->pass.start_ns, state, imu, context);
-    for (double& time_s : prediction.time_s)
-      time_s = sensorTime_s(state.cameras[camera], referenceTime_s(state.imus[imu], time_s));
+    for (SensorSignal* const signal : {&prediction.rate_rad_s, &prediction.force_m_s2})
+      for (double& time_s : signal->time_s)
+        time_s = sensorTime_s(state.cameras[camera], referenceTime_s(state.imus[imu], time_s));
     const auto drawing = std::make_shared<Drawing>();
     drawing->gyroscope =
-        makeSignalLines(prediction.time_s, prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s,
-                        samples.rate_hz(), samples.noise.gyroscope_density);
-    drawing->accelerometer =
-        makeSignalLines(prediction.time_s, prediction.measured_force_m_s2, prediction.predicted_force_m_s2,
-                        samples.accelerometerRate_hz(), samples.noise.accelerometer_density);
+        makeSignalLines(prediction.rate_rad_s, samples.rate_hz(), samples.noise.gyroscope_density);
+    drawing->accelerometer = makeSignalLines(prediction.force_m_s2, samples.accelerometerRate_hz(),
+                                             samples.noise.accelerometer_density);
     const CameraLens& lens = run->pass.lenses.at(camera);
     if (lens.seen_with) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},

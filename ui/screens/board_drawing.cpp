@@ -108,7 +108,7 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   const QPointF begin(begin_px, above_px), end(begin_px + px_per_m * neighbour_m.x(), above_px);
   painter.drawLine(begin, end);
   for (const QPointF& tick : {begin, end}) painter.drawLine(tick - QPointF(0, 3), tick + QPointF(0, 3));
-  // As people have it from the form: of an asymmetric grid the spacing is that of rows, and neighbours are two of them apart.
+  // Shows the number in the form. In an asymmetric grid it is the spacing of rows, and neighbours in a row are two spacings apart.
   const bool two = board_.type == BoardType::AsymmetricCircles;
   painter.drawText(
       QPointF(begin.x(), above_px - 7.0),

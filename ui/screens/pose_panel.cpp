@@ -123,7 +123,7 @@ QWidget* PosePanel::makeBar() {
   copy_->setMenu(copy_menu_);
   auto* const save = new QToolButton(bar);
   save->setObjectName("save_rig");
-  save->setText(tr("Save drawing"));
+  save->setText(tr("Drawing"));
   save->setIcon(icon("save"));
   save->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   save->setFocusPolicy(Qt::StrongFocus);

@@ -63,7 +63,7 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   groups_ = std::move(groups);
   setColumnHidden(kDifference, !compared);
   setColumnHidden(kSigmas, !compared);
-  // What people compare for comes first, so that it is seen where the table is narrow.
+  // The comparison comes first, so that it is visible in a narrow table.
   header()->moveSection(header()->visualIndex(kDifference), compared ? kValue : kDifference);
   header()->moveSection(header()->visualIndex(kSigmas), compared ? kValue + 1 : kSigmas);
   QList<QTreeWidgetItem*> headings;

@@ -415,8 +415,15 @@ void RecordingScreen::chooseRole(int row, int role) {
   });
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
     changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
-  if (static_cast<StreamRole>(role) == StreamRole::Imu)
-    changed.imus.push_back(guessedImu(summary, *one->inspection, changed, own_recording));
+  if (static_cast<StreamRole>(role) == StreamRole::Imu) {
+    const SessionImu guessed = guessedImu(summary, *one->inspection, changed, own_recording);
+    // Of an IMU with two streams, the other stream may already be an IMU: it becomes this one.
+    std::erase_if(changed.imus, [&](const SessionImu& imu) {
+      return imu.recording == own_recording &&
+             (imu.stream == guessed.stream || imu.stream == guessed.accelerometer_stream);
+    });
+    changed.imus.push_back(guessed);
+  }
   keepReference(changed);
   settleBoards(changed);
   emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});

@@ -60,7 +60,8 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
   }
   if (quantity.info->shape != QuantityShape::Rotation) return;
   const Eigen::Vector3d angles_deg = rollPitchYaw_deg(rotation);
-  if (!anglesWarning(angles_deg).empty()) return;  // where they are not unique they say nothing
+  if (!anglesWarning(angles_deg).empty())
+    return;  // roll, pitch and yaw are meaningless if they are not unique
   const QString names[] = {QObject::tr("Roll"), QObject::tr("Pitch"), QObject::tr("Yaw")};
   for (int axis = 0; axis < 3; ++axis)
     group.rows.push_back({{}, names[axis], "deg", angles_deg[axis], 0.0, {}});

@@ -43,7 +43,7 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
   screen.setReservation({}, Light::Good);
 }
 
-// What is to be calibrated of what is open: where it is a camera alone, nothing else.
+// The quantities that will be calibrated: those of a single camera, or of the rig.
 Session aimedAt(const Workbench& workbench) {
   Session session = workbench.document.session();
   if (workbench.lens.aim() != CalibrationAim::Camera || session.cameras.empty()) return session;

@@ -47,7 +47,7 @@ inline constexpr std::size_t kAedat2Record_bytes = 8;
 std::uint32_t bigEndian32(const char* bytes);
 
 bool isDavisImuWord(std::uint32_t address);
-// The word's number: 0 to 2 are the acceleration's x, y and z.
+// The number of the word: 0 to 2 are x, y and z of the acceleration.
 unsigned davisImuCode(std::uint32_t address);
 // An acceleration's, at a full scale of 4 g.
 double davisAcceleration_g(std::uint32_t address);

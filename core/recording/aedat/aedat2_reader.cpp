@@ -76,8 +76,8 @@ struct Look {
   std::vector<double> accelerations;  // norms, at a full scale of 4 g
 };
 
-// The full scales that the median acceleration, gravity, supports: jAER sets 4 g and 500 deg/s, and for some of a DAVIS240C 8 g and
-// 1000 deg/s.
+// The full scales at which the median acceleration is closest to gravity. jAER sets 4 g and 500 deg/s, and for some DAVIS240C
+// 8 g and 1000 deg/s.
 double imuRanges(const Look& look) {
   constexpr double kNear_g = 0.1;
   return !look.accelerations.empty() && std::abs(medianOf(look.accelerations) - 0.5) < kNear_g ? 2.0 : 1.0;
@@ -162,10 +162,10 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
     format.notes.push_back(
         {"imu", FaultKind::Guess, 0.0,
          fmt::format(
-             "The numbers are taken for those of the full scales {:g} g and {:g} deg/s, which jAER "
-             "sets{}; at rest the norm of the acceleration must be 1 g.",
+             "The file does not state the IMU's full scales. {:g} g and {:g} deg/s are assumed, which jAER "
+             "sets{}. Check that the acceleration at rest is 1 g.",
              4.0 * ranges, 500.0 * ranges,
-             ranges == 1.0 ? "" : " for some sensors, since gravity is half as large by its usual ones")});
+             ranges == 1.0 ? "" : " for some sensors: at its usual ones gravity would be half as large")});
   }
   if (layout == AddressLayout::Davis && look.frames) {
     format.streams.push_back(aedat2Stream("frames", StreamType::Frames, chip));

@@ -169,10 +169,8 @@ void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization se
   numbers[3] = 1.0;   // no rotation, and
   numbers[4] = -1.0;  // by the convention of sensor_msgs: there is no estimate of the orientation
   for (int i = 0; i < 3; ++i) {
-    if (sample.measured_by != MeasuredBy::Accelerometer)
-      numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
-    if (sample.measured_by != MeasuredBy::Gyroscope)
-      numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];
+    numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
+    numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];
   }
   if (sample.measured_by == MeasuredBy::Accelerometer) numbers[16] = -1.0;
   if (sample.measured_by == MeasuredBy::Gyroscope) numbers[28] = -1.0;

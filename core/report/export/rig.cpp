@@ -29,7 +29,7 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
 }
 
 [[noreturn]] void throwNotFinite(const std::string& place) {
-  throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
+  throw badInput(place, "has values that are not finite (NaN or infinity)", "Calibrate again");
 }
 
 // Of all that exports may say of a sensor.
@@ -68,7 +68,7 @@ RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>&
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  // Of sensors with topics of their own, "A + B", programs that name one have the gyroscope's.
+  // For separate topics, "A + B", a program that takes one topic gets the gyroscope's.
   const std::string topic = known.stream.substr(0, known.stream.find(" + "));
   return {name, fileName(name, taken), topic, known.noise, known.rate_hz, state};
 }
@@ -148,10 +148,14 @@ Rig rigOf(const NamedResult& result) {
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
                         [&](const RigImu& imu) { return imu.name == result.reference; });
   rig.timing = timingRemarks(result);
+  const auto apart = [](const std::string& stream) {
+    const std::size_t plus = stream.find(" + ");
+    return plus != std::string::npos && stream.substr(0, plus) != stream.substr(plus + 3);
+  };
   for (std::size_t i = 0; i < result.imus.size(); ++i)
-    if (result.imus[i].stream.find(" + ") != std::string::npos)
+    if (apart(result.imus[i].stream))
       rig.timing.push_back(
-          fmt::format("{}: gyroscope and accelerometer have topics of their own, {}: where a program names "
+          fmt::format("{}: gyroscope and accelerometer have separate topics, {}. If a program takes "
                       "one, it is the "
                       "gyroscope's",
                       result.imus[i].name, result.imus[i].stream));

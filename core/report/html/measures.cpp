@@ -128,22 +128,25 @@ ImuMeasures measureImu(const ReportData& data, std::size_t index) {
   if (given.samples.empty()) return imu;
   imu.rate_hz = given.rate_hz();
   imu.duration_s = 1e-9 * static_cast<double>(given.samples.back().time_ns - given.samples.front().time_ns);
-  imu.rate_rad_s =
-      moments(given.samples.size(), [&](std::size_t i) { return given.samples[i].angular_rate_rad_s; });
-  imu.force_m_s2 =
-      moments(given.samples.size(), [&](std::size_t i) { return given.samples[i].specific_force_m_s2; });
+  std::vector<Eigen::Vector3d> rates, forces;
+  for (const ImuSample& sample : given.samples) {
+    if (measuresRate(sample)) rates.push_back(sample.angular_rate_rad_s);
+    if (measuresForce(sample)) forces.push_back(sample.specific_force_m_s2);
+  }
+  imu.rate_rad_s = moments(rates.size(), [&](std::size_t i) { return rates[i]; });
+  imu.force_m_s2 = moments(forces.size(), [&](std::size_t i) { return forces[i]; });
   imu.rate_sigma_rad_s = given.gyroscopeSigma_rad_s();
   imu.force_sigma_m_s2 = given.accelerometerSigma_m_s2();
   const CalibrationState& state = data.named.result->state;
   if (index >= state.imus.size() || state.imu_in_world_m.segmentCount() < 1) return imu;
   imu.signals = predictSignals(given, data.start_ns, state, index);
-  const SignalPrediction& s = imu.signals;
-  imu.rate_residual = moments(s.time_s.size(), [&](std::size_t i) -> Eigen::Vector3d {
-    return s.measured_rate_rad_s[i] - s.predicted_rate_rad_s[i];
-  });
-  imu.force_residual = moments(s.time_s.size(), [&](std::size_t i) -> Eigen::Vector3d {
-    return s.measured_force_m_s2[i] - s.predicted_force_m_s2[i];
-  });
+  const auto residual = [](const SensorSignal& signal) {
+    return moments(signal.time_s.size(), [&](std::size_t i) -> Eigen::Vector3d {
+      return signal.measured[i] - signal.predicted[i];
+    });
+  };
+  imu.rate_residual = residual(imu.signals.rate_rad_s);
+  imu.force_residual = residual(imu.signals.force_m_s2);
   return imu;
 }
 

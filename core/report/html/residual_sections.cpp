@@ -261,20 +261,20 @@ void writeReprojection(const ReportData& data, const Measures& measures, ReportP
 
 void writeInertial(const ReportData& data, const Measures& measures, ReportPage& page) {
   if (std::all_of(measures.imus.begin(), measures.imus.end(),
-                  [](const auto& imu) { return imu.signals.time_s.empty(); }))
+                  [](const auto& imu) { return imu.signals.rate_rad_s.time_s.empty(); }))
     return;
   page.beginSection("inertial", "Gyroscope and accelerometer against the spline");
   for (std::size_t i = 0; i < measures.imus.size(); ++i) {
     const ImuMeasures& imu = measures.imus[i];
-    if (imu.signals.time_s.empty()) continue;
+    const auto& [rate, force] = imu.signals;
+    if (rate.time_s.empty()) continue;
     page.heading("IMU " + imuName(data, i));
-    writeSignal({fmt::format("imu{}_gyroscope", i + 1), "Gyroscope", "rad/s", imu.signals.measured_rate_rad_s,
-                 imu.signals.predicted_rate_rad_s, imu.rate_residual, imu.rate_sigma_rad_s},
-                imu.signals.time_s, page);
-    writeSignal({fmt::format("imu{}_accelerometer", i + 1), "Accelerometer", "m/s\u00b2",
-                 imu.signals.measured_force_m_s2, imu.signals.predicted_force_m_s2, imu.force_residual,
-                 imu.force_sigma_m_s2},
-                imu.signals.time_s, page);
+    writeSignal({fmt::format("imu{}_gyroscope", i + 1), "Gyroscope", "rad/s", rate.measured, rate.predicted,
+                 imu.rate_residual, imu.rate_sigma_rad_s},
+                rate.time_s, page);
+    writeSignal({fmt::format("imu{}_accelerometer", i + 1), "Accelerometer", "m/s\u00b2", force.measured,
+                 force.predicted, imu.force_residual, imu.force_sigma_m_s2},
+                force.time_s, page);
   }
   page.endSection();
 }

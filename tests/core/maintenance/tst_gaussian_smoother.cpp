@@ -59,6 +59,21 @@ class TestGaussianSmoother : public QObject {
     QVERIFY(!smoother.at(100.0).has_value());
   }
 
+  // Sensors that are sampled separately: the other one's interpolated values do not hide a gap, and do not count.
+  void gapsOfOneSensor_giveNothing() {
+    GaussianSmoother smoother(kSigma_s);
+    const Eigen::Vector3d rate(0.1, 0.2, 0.3), force(0.0, 0.0, 9.81), invented(9.0, 9.0, 9.0);
+    for (int k = 0; k < 1000; ++k) {
+      const double t = k / 200.0;
+      smoother.add(t, rate, invented, MeasuredBy::Gyroscope);
+      if (t < 2.0 || t > 2.1) smoother.add(t + 0.001, invented, force, MeasuredBy::Accelerometer);
+    }
+    const auto point = smoother.at(1.0);
+    QVERIFY(point.has_value());
+    QVERIFY((point->rate_rad_s - rate).norm() < 1e-9 && (point->force_m_s2 - force).norm() < 1e-9);
+    QVERIFY(!smoother.at(2.05).has_value());
+  }
+
   void memory_isThatOfTheReach() {
     GaussianSmoother smoother = smootherOf(200.0, 0.0);
     smoother.forgetBefore(4.0);

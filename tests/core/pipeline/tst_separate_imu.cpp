@@ -1,9 +1,12 @@
 // Gyroscope and accelerometer with streams of their own, at rates and times of their own: as accurate as one message of both.
 #include "core/base/error.h"
+#include "core/initialisation/agreement_check.h"
 #include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/imu_logs.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/session_guess.h"
 #include "core/pipeline/session_keys.h"
+#include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 #include "core/recording/separate_imu.h"
 #include "core/report/truth_comparison.h"
@@ -183,6 +186,97 @@ class TestSeparateImu : public QObject {
     const Session again = written(session);
     QCOMPARE(again.imus[0].stream, session.imus[0].stream);
     QCOMPARE(again.imus[0].accelerometer_stream, session.imus[0].accelerometer_stream);
+  }
+
+  // Each sensor has stamps and residuals of its own: pairs of stamps 20 us apart are no batches.
+  void equalRates_areNoBatches() {
+    ImuData imu = pass_.imus.front();
+    imu.samples.clear();
+    for (std::size_t i = 0; i < 2000; i += 5) {
+      imu.samples.push_back(all()[i]);
+      imu.samples.back().measured_by = MeasuredBy::Gyroscope;
+      imu.samples.push_back(all()[i]);
+      imu.samples.back().measured_by = MeasuredBy::Accelerometer;
+      imu.samples.back().time_ns += 20'000;
+    }
+    for (const std::size_t left_out : {std::size_t{0}, std::size_t{1}}) {
+      imu.samples.resize(imu.samples.size() - left_out);
+      checkStampsApart(imu);
+      QVERIFY(std::abs(imu.rate_hz() - 200.0) < 0.1);
+      QVERIFY(std::abs(imu.accelerometerRate_hz() - 200.0) < 0.1);
+    }
+  }
+
+  // A message's claim that a sensor did not measure counts only in sessions that name the streams: conversions keep values.
+  void conversion_keepsValuesBehindACovarianceOfMinusOne() {
+    ImuSample sample = all().front();
+    sample.measured_by = MeasuredBy::Gyroscope;
+    const auto bag = createBag(path("claim.bag"), {imuStream(kBoth)}, false);
+    bag->write(0, std::span(&sample, 1));
+    bag->finish();
+    ConversionRequest request;
+    request.input = path("claim.bag");
+    request.output = path("claim.mcap");
+    convertRecording(request, RunContext{});
+    const Samples read = readStream(*openRecording(path("claim.mcap")), kBoth);
+    QCOMPARE(read.size(), std::size_t{1});
+    QVERIFY(read[0].measured_by == MeasuredBy::Gyroscope);
+    QVERIFY(gapBetween(read[0], sample) == 0.0);
+  }
+
+  // A log that is called like the IMU holds three streams then, of which one is the IMU.
+  void logCalledLikeTheImu_isTheJoinedStream() {
+    writeTwoTopics();
+    std::filesystem::rename(path("two.bag"), path("left_imu.bag"));
+    NamedResult before;
+    before.imus.push_back({});
+    before.imus.back().name = "left_imu";
+    before.imus.back().stream = nameOf({kGyroscope, kAccelerometer});
+    const ImuReadings readings{
+        {"left_imu", {.gyroscope_stream = kGyroscope, .accelerometer_stream = kAccelerometer}}};
+    ImuLogs logs({path("left_imu.bag")}, before, {}, readings, {});
+    std::size_t rates = 0, forces = 0;
+    ImuLogPacket packet;
+    while (logs.read(packet))
+      for (const ImuSample& sample : packet.samples) {
+        QVERIFY(sample.measured_by != MeasuredBy::Both);
+        (sample.measured_by == MeasuredBy::Gyroscope ? rates : forces) += 1;
+      }
+    QCOMPARE(rates, ratesOf(all()).size());
+    QCOMPARE(forces, forcesOf(all()).size());
+  }
+
+  void exchangedOrApartStreams_areSaid_data() {
+    QTest::addColumn<bool>("exchanged");
+    QTest::addColumn<QString>("problem");
+    QTest::newRow("exchanged") << true << "has no measurements of the gyroscope";
+    QTest::newRow("apart in time") << false << "share only 0.00 s";
+  }
+  void exchangedOrApartStreams_areSaid() {
+    QFETCH(bool, exchanged);
+    QFETCH(QString, problem);
+    Session session = test::sessionFor(scenario_);
+    session.imus[0].stream = exchanged ? kAccelerometer : kGyroscope;
+    session.imus[0].accelerometer_stream = exchanged ? kGyroscope : kAccelerometer;
+    Samples rates = ratesOf(all()), forces = forcesOf(all());
+    for (ImuSample& sample : rates) {
+      if (!exchanged) continue;
+      sample.measured_by = MeasuredBy::Accelerometer;
+      sample.specific_force_m_s2.setZero();
+      sample.angular_rate_rad_s.setZero();
+    }
+    for (ImuSample& sample : forces) {
+      if (exchanged) sample.measured_by = MeasuredBy::Gyroscope;
+      sample.angular_rate_rad_s.setZero();
+      if (!exchanged) sample.time_ns += 20'000'000'000;
+    }
+    pass_.imus.front().samples = inOrder(rates, forces);
+    try {
+      calibrate(session, pass_, RunContext{});
+      QFAIL("it was not refused");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains(problem), error.what());
+    }
   }
 
   // Four recordings: each error within 3.5 sigmas, and all of them as large as their sigmas say.

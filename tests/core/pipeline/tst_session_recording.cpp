@@ -51,6 +51,7 @@ class TestSessionRecording : public QObject {
   void samplesThatAreNoMeasurements_stayOutside();
   void strayStamps_moveNeitherBeginningNorEnd();
   void simulatedRawFiles_haveTheirImuBeside();
+  void simulatedRawFiles_haveFramesOnTheirClock();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -276,7 +277,19 @@ void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
            recording.faults().front().text.c_str());
 }
 
-// As who has a camera of Prophesee's has them: on one clock, and with all that was simulated.
+// Users of Prophesee cameras have these two files. Both are on one clock and hold everything that was simulated.
+void TestSessionRecording::simulatedRawFiles_haveFramesOnTheirClock() {
+  Scenario scenario = readScenario(test::scenarioPath("davis346_frames"));
+  scenario.duration_s = 0.5;
+  const Session session =
+      evical::readSession(simulate(scenario, path("frames"), RunContext{}, "raw").session);
+  SessionRecording recording(session);  // refuses clocks that have nothing to do with each other
+  std::uint64_t frames = 0;
+  SensorPacket packet;
+  while (recording.read(packet)) frames += packet.frames.size();
+  QVERIFY(frames > 3);
+}
+
 void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 0.5;

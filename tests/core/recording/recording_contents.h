@@ -1,6 +1,7 @@
 // A whole recording in memory, as tests compare it, and a scratch folder to keep files in.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/recording/recording_reader.h"
 
 #include <QTemporaryDir>
@@ -10,9 +11,19 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical::test {
+
+// What a conversion reports.
+class Log : public ProgressSink {
+ public:
+  void stageStarted(std::string_view /*stage*/) override {}
+  void stageProgress(double /*fraction*/) override {}
+  void log(LogLevel /*level*/, std::string_view text) override { said += text; }
+  std::string said;
+};
 
 struct Contents {
   std::vector<StreamInfo> streams;

@@ -78,6 +78,7 @@ class TestSeparateReader : public QObject {
   void reader_thatFalls_endsTheRecording();
   void fallAtOpening_isBadInput();
   void reader_thatHangs_isEnded();
+  void serverThatCannotStart_isSaid();
   void error_isThrownHere();
   void reader_thatIsNotReadToItsEnd_leavesNoProcess();
 };
@@ -149,9 +150,23 @@ void TestSeparateReader::reader_thatHangs_isEnded() {
   });
   QCOMPARE(readAll(reader).size(), std::size_t{4});
   SeparateReader::longest_silence_ms = usual_ms;
-  QVERIFY2(reader.faults().back().text.find("it has not answered for 0.2 s") != std::string::npos,
+  QVERIFY2(reader.faults().back().text.find("no answer for 0.2 s") != std::string::npos,
            reader.faults().back().text.c_str());
   QVERIFY(::waitpid(-1, nullptr, WNOHANG) < 0);  // no process is left
+}
+
+void TestSeparateReader::serverThatCannotStart_isSaid() {
+  for (const auto& [server, problem] :
+       {std::pair{"/nowhere/server", "No such file"}, std::pair{"/bin/false", "exit code 1"}}) {
+    try {
+      SeparateReader reader("some.h5", std::vector<std::string>{server});
+      QFAIL("opened");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::CalibrationFailed);
+      QVERIFY2(error.problem().find(problem) != std::string::npos, error.what());
+    }
+  }
+  QVERIFY(::waitpid(-1, nullptr, WNOHANG) < 0);
 }
 
 void TestSeparateReader::error_isThrownHere() {

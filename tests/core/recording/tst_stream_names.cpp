@@ -12,14 +12,6 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-class Log : public ProgressSink {
- public:
-  void stageStarted(std::string_view /*stage*/) override {}
-  void stageProgress(double /*fraction*/) override {}
-  void log(LogLevel /*level*/, std::string_view text) override { said += text; }
-  std::string said;
-};
-
 class TestStreamNames : public QObject {
   Q_OBJECT
 

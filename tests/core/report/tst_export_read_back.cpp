@@ -315,7 +315,7 @@ class TestExportReadBack : public QObject {
         "left: the time offset is off by 14.6 ms");
     row("kimera", "ImuParams.yaml", "gyroscope_random_walk: 2", "gyroscope_random_walk: 3", "gyroscope");
     row("kimera", "PipelineParams.yaml", "frontend_type: 1", "frontend: 1", "frontend_type");
-    row("dm-vio", "camera.txt", "RadTan ", "", "is no model");
+    row("dm-vio", "camera.txt", "RadTan ", "", "is not supported");
     row("dm-vio", "camera.txt", "RadTan ", "EquiDistant ", "left: the lens is off");
     row("dm-vio", "camera.txt", "346 260", "346 261", "the resolution is 346 x 261");
     row("dm-vio", "camera.txt", "\n336 256", "\n335 256", "no three levels of a pyramid");

@@ -174,7 +174,8 @@ class TestExportRefusals : public QObject {
     QVERIFY(reason(rig({}), "opnvins").find("Did you mean 'openvins'?") != std::string::npos);
     NamedResult unset = rig({});
     test::ownResult(unset).state.cameras[1].time_offset_s = std::numeric_limits<double>::quiet_NaN();
-    QVERIFY(reason(unset, "kalibr").find("cameras.right: has numbers that are none") != std::string::npos);
+    QVERIFY(reason(unset, "kalibr").find("cameras.right: has values that are not finite") !=
+            std::string::npos);
     unset = rig({});
     test::ownResult(unset).state.imus[1].accelerometer_mapping(0, 2) =
         std::numeric_limits<double>::infinity();

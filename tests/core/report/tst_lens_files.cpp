@@ -133,6 +133,36 @@ const Sample kSamples[] = {
      "<image_height>260</image_height>\n</DAVIS346_00000499>\n<type>camera</type>\n"
      "<use_fisheye_model>0</use_fisheye_model>\n</opencv_storage>\n",
      CameraModel::PinholeRadtan, 261.5, -0.0002},
+    {"calibration_camera_fisheye.xml",
+     "<?xml version=\"1.0\"?>\n<opencv_storage>\n<DAVIS346_00000499>\n<camera_matrix "
+     "type_id=\"opencv-matrix\">\n"
+     "<rows>3</rows><cols>3</cols><dt>d</dt>\n<data>261.5 0. 172.5 0. 262.5 131.5 0. 0. "
+     "1.</data></camera_matrix>\n"
+     "<distortion_coefficients type_id=\"opencv-matrix\">\n<rows>1</rows><cols>4</cols><dt>d</dt>\n"
+     "<data>0.01 0.02 0.03 0.04</data></distortion_coefficients>\n</DAVIS346_00000499>\n"
+     "<image_width>346</image_width>\n<image_height>260</image_height>\n"
+     "<use_fisheye_model>1</use_fisheye_model>\n<comment></comment>\n</opencv_storage>\n",
+     CameraModel::PinholeEquidistant, 261.5, 0.04},
+    // As DV's newer module writes it: the flag is always 0.
+    {"calibration_imu_DAVIS346.xml",
+     "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=\"opencv-matrix\">\n"
+     "<rows>3</rows><cols>3</cols><dt>d</dt>\n<data>261.5 0. 172.5 0. 262.5 131.5 0. 0. "
+     "1.</data></camera_matrix>\n"
+     "<distortion_coefficients type_id=\"opencv-matrix\">\n<rows>1</rows><cols>4</cols><dt>d</dt>\n"
+     "<data>0.01 0.02 0.03 0.04</data></distortion_coefficients>\n<image_width>346</image_width>\n"
+     "<image_height>260</image_height>\n<use_fisheye_model>0</use_fisheye_model>\n"
+     "<distortion_model>Equidistant</distortion_model>\n</opencv_storage>\n",
+     CameraModel::PinholeEquidistant, 261.5, 0.04},
+    // Stereo settings of ORB-SLAM2 for EuRoC: Camera.* is the rectified camera.
+    {"EuRoC.yaml",
+     "%YAML:1.0\nCamera.fx: 435.2046959714599\nCamera.fy: 435.2046959714599\nCamera.cx: 367.4517211914062\n"
+     "Camera.cy: 252.2008514404297\nCamera.k1: 0.0\nCamera.k2: 0.0\nCamera.p1: 0.0\nCamera.p2: 0.0\n"
+     "Camera.width: 752\nCamera.height: 480\nLEFT.height: 480\nLEFT.width: 752\n"
+     "LEFT.D: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n"
+     "   data: [ -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0 ]\n"
+     "LEFT.K: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+     "   data: [ 458.654, 0.0, 367.215, 0.0, 457.296, 248.375, 0.0, 0.0, 1.0 ]\n",
+     CameraModel::PinholeRadtan, 458.654, 1.76187114e-05},
     {"intrinsics.json",
      "{\"image_size\": [1280, 720], \"camera_matrix\": {\"type_id\": \"opencv-matrix\", \"rows\": 3, "
      "\"cols\": 3, \"dt\": "
@@ -256,11 +286,23 @@ class TestLensFiles : public QObject {
                 "distortion_coefficients: !!opencv-matrix\n   rows: 8\n   cols: 1\n   dt: d\n"
                 "   data: [ 0.1, 0.2, 0., 0., 0.3, 0.1, 0.2, 0.3 ]\n");
     QVERIFY2(rational.contains("rational"), qPrintable(rational));
+    const QByteArray four =
+        "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+        "   data: [ 535., 0., 320., 0., 535., 240., 0., 0., 1. ]\n"
+        "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n"
+        "   data: [ 0.1, 0.2, 0., 0. ]\n";
+    const QString either = refusal("either.yml", "%YAML:1.0\n---\n" + four);
+    QVERIFY2(either.contains("fits two lens models"), qPrintable(either));
+    const QString unknown = refusal("unknown.yml", "%YAML:1.0\n---\nfisheye_model: \"yes\"\n" + four);
+    QVERIFY2(unknown.contains("must be 0 or 1"), qPrintable(unknown));
+    const QString flat =
+        refusal("flat.yml", "%YAML:1.0\n---\nfisheye_model: 1\nimage_width: 640\nimage_height: 0\n" + four);
+    QVERIFY2(flat.contains("whole number of pixels"), qPrintable(flat));
     const QString config =
         refusal("vins.yaml",
                 "%YAML:1.0\n---\nimu: 1\nbody_T_cam0: !!opencv-matrix\n   rows: 1\n   cols: 1\n   dt: d\n"
                 "   data: [ 1. ]\n");
-    QVERIFY2(config.contains("holds no camera"), qPrintable(config));
+    QVERIFY2(config.contains("holds no complete camera"), qPrintable(config));
   }
 };
 

@@ -48,11 +48,11 @@ class TestSignalPrediction : public QObject {
   void prediction_fromTheTruthIsWhatWasMeasured() {
     QFETCH(int, imu);
     const SignalPrediction prediction = predict(rig_, rig_.truth, static_cast<std::size_t>(imu));
-    QVERIFY(prediction.time_s.size() > 1000);
+    QVERIFY(prediction.rate_rad_s.time_s.size() > 1000);
     // What a spline of 20 ms leaves of the sinusoids' second derivatives; the prediction are some
     // 2 rad/s and 10 m/s^2.
-    QVERIFY2(rms(prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s) < 1e-3, "rad/s");
-    QVERIFY2(rms(prediction.measured_force_m_s2, prediction.predicted_force_m_s2) < 0.02, "m/s^2");
+    QVERIFY2(rms(prediction.rate_rad_s.measured, prediction.rate_rad_s.predicted) < 1e-3, "rad/s");
+    QVERIFY2(rms(prediction.force_m_s2.measured, prediction.force_m_s2.predicted) < 0.02, "m/s^2");
   }
 
   void prediction_ofAStateThatIsOffIsOffAsTheOptimiserSays() {
@@ -60,10 +60,10 @@ class TestSignalPrediction : public QObject {
     for (std::size_t imu = 0; imu < 2; ++imu) {
       const SignalPrediction prediction = predict(rig_, off, imu);
       const SampleErrors errors = sampleErrors(rig_.input, off, imu);
-      QCOMPARE(static_cast<int>(prediction.time_s.size()), errors.accelerometer_samples);
-      QCOMPARE(rms(prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s),
+      QCOMPARE(static_cast<int>(prediction.force_m_s2.time_s.size()), errors.accelerometer_samples);
+      QCOMPARE(rms(prediction.rate_rad_s.measured, prediction.rate_rad_s.predicted),
                errors.gyroscope_rms_rad_s);
-      QCOMPARE(rms(prediction.measured_force_m_s2, prediction.predicted_force_m_s2),
+      QCOMPARE(rms(prediction.force_m_s2.measured, prediction.force_m_s2.predicted),
                errors.accelerometer_rms_m_s2);
       QVERIFY(errors.gyroscope_rms_rad_s > 5e-3);
     }
@@ -72,12 +72,23 @@ class TestSignalPrediction : public QObject {
   void times_areOfTheImusOwnClockAndWithinTheSplines() {
     const SignalPrediction prediction = predict(rig_, rig_.truth, 1);
     const double offset_s = rig_.truth.imus[1].time_offset_s;
-    QVERIFY(std::is_sorted(prediction.time_s.begin(), prediction.time_s.end()));
-    QVERIFY(rig_.truth.imu_in_world_m.contains(prediction.time_s.front() + offset_s));
-    QVERIFY(rig_.truth.imu_in_world_m.contains(prediction.time_s.back() + offset_s));
+    QVERIFY(std::is_sorted(prediction.rate_rad_s.time_s.begin(), prediction.rate_rad_s.time_s.end()));
+    QVERIFY(rig_.truth.imu_in_world_m.contains(prediction.rate_rad_s.time_s.front() + offset_s));
+    QVERIFY(rig_.truth.imu_in_world_m.contains(prediction.rate_rad_s.time_s.back() + offset_s));
     const double first_sample_s =
         static_cast<double>(rig_.input.imus[1].samples.front().time_ns - rig_.input.start_ns) * 1e-9;
-    QVERIFY(prediction.time_s.front() - first_sample_s < 0.01);
+    QVERIFY(prediction.rate_rad_s.time_s.front() - first_sample_s < 0.01);
+  }
+
+  void sensorsWithSamplesOfTheirOwn_haveSignalsOfTheirOwn() {
+    ImuData data = rig_.input.imus[0];
+    const std::size_t count = data.samples.size();
+    for (std::size_t i = 0; i < count; ++i)
+      data.samples[i].measured_by = i % 4 == 0 ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope;
+    const SignalPrediction prediction = predictSignals(data, rig_.input.start_ns, rig_.truth, 0);
+    QVERIFY(prediction.rate_rad_s.time_s.size() > 2 * prediction.force_m_s2.time_s.size());
+    QCOMPARE(prediction.rate_rad_s.measured.size(), prediction.rate_rad_s.time_s.size());
+    QVERIFY(rms(prediction.force_m_s2.measured, prediction.force_m_s2.predicted) < 0.02);
   }
 
   void stopping_isHeard() {

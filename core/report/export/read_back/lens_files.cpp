@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-// A layout is known by keys that its files hold together, and others do not.
+// A layout is recognised by a set of keys that only its files have.
 struct Layout {
   const char* name;
   std::initializer_list<std::string_view> keys;
@@ -20,21 +20,22 @@ struct Layout {
 };
 
 const std::initializer_list<Layout> kLayouts = {
-    {"basalt's calibration, as TUM-VIE has it", {"\"value0\"", "\"camera_type\""}, readBasaltFile},
+    {"a basalt calibration (also TUM-VIE)", {"\"value0\"", "\"camera_type\""}, readBasaltFile},
     {"dv-processing's calibration", {"\"distortionModel\"", "\"focalLength\""}, readDvProcessingFile},
-    {"a camera of camodocal, as VINS has it", {"model_type:", "projection_parameters:"}, readVinsCameraFile},
+    {"a camodocal camera (VINS)", {"model_type:", "projection_parameters:"}, readVinsCameraFile},
     {"settings of ORB-SLAM", {"Camera1.fx:"}, readOrbSlam3File},
     {"settings of ORB-SLAM", {"Camera.fx:", "Camera.cx:"}, readOrbSlam3File},
     {"a camera rig of SVO or Ultimate SLAM", {"T_B_C:", "cameras:", "label:"}, readSvoFile},
-    {"DSEC's cam_to_cam.yaml", {"cam0:", "camRect0:"}, readDsecFile},
+    {"DSEC's cam_to_cam.yaml", {"cam0:", "camera_matrix:", "distortion_coeffs:"}, readDsecFile},
     {"eKalibr's results", {"CalibParam:", "INTRI:"}, readEkalibrFile},
     {"a camera of DSO or DM-VIO", {"RadTan "}, readDsoCameraFile},
     {"a camera of DSO or DM-VIO", {"EquiDistant "}, readDsoCameraFile},
-    {"a calibration in OpenCV's XML, as DV has it", {"<opencv_storage>"}, readOpencvFile},
-    {"a calibration in OpenCV's JSON, as Metavision 4 has it", {"\"opencv-matrix\""}, readOpencvFile},
-    {"a calibration in OpenCV's YAML", {"!!opencv-matrix"}, readOpencvFile}};
+    {"a camera of DSO or DM-VIO", {"KannalaBrandt "}, readDsoCameraFile},
+    {"an OpenCV XML calibration (also DV)", {"<opencv_storage>"}, readOpencvFile},
+    {"an OpenCV JSON calibration (also Metavision 4)", {"\"opencv-matrix\""}, readOpencvFile},
+    {"an OpenCV YAML calibration", {"!!opencv-matrix"}, readOpencvFile}};
 
-// Of a file that may be one; nothing of large ones and of folders.
+// The text of a file; empty for folders and for files that are too large.
 std::string smallText(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 16 << 20;  // basalt's files hold vignettes
   std::error_code error;
@@ -44,16 +45,17 @@ std::string smallText(const std::filesystem::path& file) {
 }
 
 bool isOf(const Layout& layout, const std::string& text) {
-  // What DSO reads has no keys: its first word is the model.
+  // Files of DSO have no keys. Their first word is the model.
   if (layout.read == readDsoCameraFile) return text.starts_with(*layout.keys.begin());
   return std::all_of(layout.keys.begin(), layout.keys.end(),
                      [&](std::string_view key) { return text.find(key) != std::string::npos; });
 }
 
-// ROS and its relatives name the model; those are read with their kin.
+// ROS files name the model. They are read elsewhere.
 bool isOfRos(const std::string& text) {
-  return text.find("distortion_model") != std::string::npos &&
-         text.find("camera_matrix") != std::string::npos && text.find("camRect0:") == std::string::npos;
+  const auto has = [&](const char* key) { return text.find(key) != std::string::npos; };
+  return has("distortion_model") && has("camera_matrix") && !has("distortion_coeffs:") &&
+         !has("<opencv_storage>") && !has("opencv-matrix");
 }
 
 }  // namespace
@@ -67,8 +69,8 @@ std::optional<LensFile> readLensFile(const std::filesystem::path& file) {
   LensFile found{layout->name, layout->read(file)};
   std::erase_if(found.read.cameras, [](const ReadCamera& camera) { return !camera.lens; });
   if (found.read.cameras.empty())
-    throw badInput(file.string(), std::string("is ") + layout->name + ", but holds no camera",
-                   "Give a file with a camera's intrinsics");
+    throw badInput(file.string(), std::string("is ") + layout->name + ", but holds no complete camera",
+                   "Give a file with a camera's intrinsics: its matrix and its distortion");
   return found;
 }
 

@@ -1,6 +1,6 @@
-// Camera lenses in single files of other programs, by what a file holds: the layouts that Evical exports, and their
-// relatives. The readers are those that check exports. Layouts of Kalibr, ROS and eKalibr's intrinsics are read elsewhere
-// (core/data/intrinsics_yaml.h).
+// Reads camera lenses from single files of other programs. The content decides the layout: all layouts that Evical exports, and
+// similar ones. The same readers check exports. Layouts of Kalibr, ROS and eKalibr's intrinsics are in
+// core/data/intrinsics_yaml.h.
 #pragma once
 
 #include "core/report/export/read_back.h"
@@ -17,11 +17,11 @@ struct LensFile {
   ReadFile read;       // each of its cameras has a lens
 };
 
-// Nothing where the file is of none of these layouts. Throws CalibrationError (BadInput) at file and key where it is of one of
-// them, but damaged, or with a lens that Evical does not have.
+// Empty if the file has none of these layouts. Throws CalibrationError (BadInput) with file and key if the file is damaged or
+// its lens model is not supported.
 std::optional<LensFile> readLensFile(const std::filesystem::path& file);
 
-// For people who ask what can be imported.
+// For messages that list what can be imported.
 std::string lensLayouts();
 
 }  // namespace evical

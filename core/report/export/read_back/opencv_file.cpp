@@ -72,7 +72,7 @@ Eigen::MatrixXd OpencvNode::matrix(int rows, int cols, int kind) const {
   Eigen::MatrixXd matrix(rows, cols);
   for (int row = 0; row < rows; ++row)
     for (int col = 0; col < cols; ++col) matrix(row, col) = real.at<double>(row, col);
-  if (!matrix.allFinite()) fail("has numbers that are none");
+  if (!matrix.allFinite()) fail("has values that are not finite");
   return matrix;
 }
 
@@ -89,7 +89,7 @@ std::vector<double> OpencvNode::matrixNumbers() const {
   read.convertTo(real, CV_64F);
   const std::vector<double> values = real.reshape(1, 1);
   if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
-    fail("has numbers that are none");
+    fail("must hold numbers");
   return values;
 }
 

@@ -29,7 +29,7 @@ class OpencvNode {
   // Of !!opencv-matrix; `kind` CV_32F or CV_64F, or -1 where the program takes both.
   Eigen::MatrixXd matrix(int rows, int cols, int kind) const;
   std::vector<double> matrixNumbers() const;  // row by row, whatever its shape
-  std::vector<std::string> keys() const;      // of a map; none of anything else
+  std::vector<std::string> keys() const;      // of a map; otherwise empty
 
   std::string place() const;  // "vins.yaml: acc_n"
   [[noreturn]] void fail(const std::string& problem) const;

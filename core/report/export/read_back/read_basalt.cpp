@@ -17,12 +17,12 @@
 namespace evical {
 namespace {
 
-RigidTransform basaltPoseOf(const JsonNode& node) {
+// `unit`: how far a quaternion may be from unit length; files for import may be rounded.
+RigidTransform basaltPoseOf(const JsonNode& node, double unit) {
   const auto number = [&](const char* key) { return node[key].number(); };
   const RigidTransform pose{{number("qw"), number("qx"), number("qy"), number("qz")},
                             {number("px"), number("py"), number("pz")}};
-  constexpr double kUnit = 1e-9;
-  if (std::abs(pose.rotation.norm() - 1.0) > kUnit) node.fail("has no unit quaternion");
+  if (std::abs(pose.rotation.norm() - 1.0) > unit) node.fail("has no unit quaternion");
   return pose;
 }
 
@@ -45,7 +45,8 @@ CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) 
     distortion.push_back(type == "pinhole" ? 0.0 : numbers[names[i]].number());
   for (const char* key : {"k4", "k5", "k6"})
     if (type == "pinhole-radtan8" && numbers[key].number() != 0.0)
-      numbers[key].fail("is not 0: the lens is rational, and Evical has three radial coefficients at most");
+      numbers[key].fail(
+          "is not 0: rational lens models are not supported (at most three radial coefficients)");
   const std::vector<JsonNode> size = resolution.items();
   if (size.size() != 2) resolution.fail("must have two numbers");
   return lensFrom(model, k, distortion,
@@ -79,7 +80,7 @@ ReadImu basaltImuOf(const JsonNode& value) {
   return imu;
 }
 
-ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& value) {
+ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& value, double unit) {
   ReadFile file{path};
   const std::vector<JsonNode> poses = value["T_imu_cam"].items(), lenses = value["intrinsics"].items(),
                               sizes = value["resolution"].items();
@@ -88,7 +89,7 @@ ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& valu
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ReadCamera camera;
     camera.lens = basaltLensOf(lenses[i], sizes[i]);
-    camera.frame_from_camera = basaltPoseOf(poses[i]);
+    camera.frame_from_camera = basaltPoseOf(poses[i], unit);
     file.cameras.push_back(camera);
   }
   file.time_step_s = 1e-9;
@@ -96,8 +97,9 @@ ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& valu
 }
 
 ReadFile basaltFile(const std::filesystem::path& path) {
+  constexpr double kUnit = 1e-9;
   const JsonNode value = JsonNode::load(path)["value0"];
-  ReadFile file = basaltCamerasOf(path, value);
+  ReadFile file = basaltCamerasOf(path, value, kUnit);
   if (!file.cameras.empty())
     file.cameras.front().time_offset_s = 1e-9 * static_cast<double>(value["cam_time_offset_ns"].integer());
   file.imus = {basaltImuOf(value)};
@@ -109,7 +111,9 @@ ReadFile basaltFile(const std::filesystem::path& path) {
 
 ReadFile readBasaltFile(const std::filesystem::path& path) {
   const JsonNode value = JsonNode::load(path)["value0"];
-  ReadFile file = basaltCamerasOf(path, value);
+  constexpr double kRounded = 1e-2;
+  ReadFile file = basaltCamerasOf(path, value, kRounded);
+  if (value.has("calib_accel_bias")) file.imus.emplace_back();  // so that a note says that it is not imported
   if (!value.has("camera_names")) return file;
   const std::vector<JsonNode> names = value["camera_names"].items();
   for (std::size_t i = 0; i < std::min(names.size(), file.cameras.size()); ++i)

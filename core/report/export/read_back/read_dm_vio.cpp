@@ -49,11 +49,13 @@ CameraLines dmVioLinesOf(const std::filesystem::path& path) {
 CameraIntrinsics dsoLensOf(CameraLines read) {
   const std::size_t name_end = read.lines[0].find(' ');
   const std::string name = read.lines[0].substr(0, name_end);
-  if (name != "RadTan" && name != "EquiDistant")
-    throw badInput(read.place(0), fmt::format("'{}' is no model that we write", name));
+  if (name != "RadTan" && name != "EquiDistant" && name != "KannalaBrandt")
+    throw badInput(read.place(0), fmt::format("lens model '{}' is not supported", name));
   read.lines[0].erase(0, name_end);
   const std::vector<double> p = read.numbers(0, 8);
-  if (p[2] < 1.0 && p[3] < 1.0) throw badInput(read.place(0), "is taken for shares of the image's size");
+  if (p[2] < 1.0 && p[3] < 1.0)
+    throw badInput(read.place(0), "has values relative to the image's size",
+                   "Multiply them by width and height, and subtract 0.5 px from the principal point");
   return lensFrom(name == "RadTan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
                   {p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, read.resolution(1));
 }

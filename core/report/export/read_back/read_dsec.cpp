@@ -86,13 +86,13 @@ ReadCamera dsecCameraOf(const YamlNode& root, std::size_t place) {
 
 ReadFile readDsecFile(const std::filesystem::path& path) {
   ReadFile file{path};
-  const YamlNode cameras = YamlNode::load(path)["intrinsics"];
+  const YamlNode root = YamlNode::load(path), cameras = root["intrinsics"];
   for (const std::string& key : cameras.keys()) {
     if (!key.starts_with("cam") || key.find_first_not_of("0123456789", 3) != std::string::npos) continue;
     ReadCamera& camera = file.cameras.emplace_back();
     camera.name = key;
     camera.lens = dsecLensOf(cameras[key]);
-    camera.frame_from_camera = RigidTransform{};
+    if (root.has("extrinsics")) camera.frame_from_camera = RigidTransform{};
   }
   return file;
 }

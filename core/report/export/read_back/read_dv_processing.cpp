@@ -48,6 +48,9 @@ ReadCamera dvProcessingCameraOf(const JsonNode& node) {
   std::vector<double> k = floats(node["focalLength"], 2);
   const std::vector<double> principal = floats(node["principalPoint"], 2),
                             size = node["resolution"].treeNumbers(2);
+  for (const double side : size)
+    if (!(side >= 1.0 && side < 1e5) || side != std::floor(side))
+      node["resolution"].fail("must be two whole numbers above 0");
   k.insert(k.end(), principal.begin(), principal.end());
   ReadCamera camera;
   camera.lens = lensFrom(radtan ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant, k,
@@ -95,6 +98,7 @@ ReadFile readDvProcessingFile(const std::filesystem::path& path) {
     if (node.has("transformationToC0")) camera.frame_from_camera = inverse(dvProcessingPoseOf(node));
     file.cameras.push_back(std::move(camera));
   }
+  if (root.has("imus")) file.imus.resize(root["imus"].entries().size());
   return file;
 }
 

@@ -11,7 +11,9 @@
 #include <opencv2/core.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -84,7 +86,7 @@ PairAsRead readOpencvPair(const std::filesystem::path& folder) {
   return pair;
 }
 
-// The names that programs give a camera's matrices, size and fisheye.
+// Key names for a camera's matrices, image size and fisheye flag.
 struct OpencvKeys {
   const char *k, *d, *xi;
 };
@@ -95,74 +97,104 @@ constexpr OpencvKeys kOpencvKeys[] = {{"camera_matrix", "distortion_coefficients
                                       {"M1", "D1", "xi1"},
                                       {"M2", "D2", "xi2"}};
 
+void checkSide(double side_px, const OpencvNode& node) {
+  constexpr double kLargest_px = 100'000.0;
+  if (!(side_px >= 1.0 && side_px <= kLargest_px) || side_px != std::floor(side_px))
+    node.fail("must be a whole number of pixels above 0");
+}
+int sideAt(const OpencvNode& node) {
+  checkSide(node.number(), node);
+  return static_cast<int>(node.number());
+}
+
 Resolution opencvSizeOf(const OpencvNode& node) {
   for (const auto& [width, height] : {std::pair{"image_width", "image_height"},
                                       std::pair{"image_Width", "image_Height"}, std::pair{"width", "height"}})
-    if (node.has(width) && node.has(height))
-      return {static_cast<int>(node[width].number()), static_cast<int>(node[height].number())};
+    if (node.has(width) && node.has(height)) return {sideAt(node[width]), sideAt(node[height])};
   for (const char* key : {"image_size", "imageSize", "resolution"}) {
     if (!node.has(key)) continue;
     const std::vector<double> size = node[key].numbers(2);
+    for (const double side : size) checkSide(side, node[key]);
     return {static_cast<int>(size[0]), static_cast<int>(size[1])};
   }
   return {};
 }
 
-bool saysFisheye(const OpencvNode& node) {
-  for (const char* key : {"fisheye_model", "use_fisheye_model", "fisheye"})
-    if (node.has(key)) {
-      const std::vector<std::string> yes{"1", "true", "True"};
-      return node[key].isText() ? std::ranges::find(yes, node[key].text()) != yes.end()
-                                : node[key].number() != 0.0;
-    }
-  return false;
+// DV's newer files name the model, and always have the flag 0.
+std::optional<bool> saysFisheye(const OpencvNode& node) {
+  if (node.has("distortion_model")) {
+    std::string model = node["distortion_model"].text();
+    std::ranges::transform(model, model.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const auto& [name, fisheye] :
+         {std::pair{"radialtangential", false}, std::pair{"plumb_bob", false}, std::pair{"radtan", false},
+          std::pair{"pinhole", false}, std::pair{"equidistant", true}, std::pair{"fisheye", true}})
+      if (model == name) return fisheye;
+    node["distortion_model"].fail("is '" + model + "', which is not supported");
+  }
+  for (const char* key : {"fisheye_model", "use_fisheye_model", "fisheye"}) {
+    if (!node.has(key)) continue;
+    if (!node[key].isText()) return node[key].number() != 0.0;
+    const std::string text = node[key].text();
+    for (const auto& [name, fisheye] :
+         {std::pair{"1", true}, std::pair{"true", true}, std::pair{"True", true}, std::pair{"0", false},
+          std::pair{"false", false}, std::pair{"False", false}})
+      if (text == name) return fisheye;
+    node[key].fail("must be 0 or 1");
+  }
+  return std::nullopt;
 }
 
-// Whatever shape the coefficients have: k1 k2 p1 p2, k3, and the rational model's, which must be 0.
-CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, Resolution size) {
+// Coefficients in any shape: k1 k2 p1 p2, k3, and those of the rational model, which must be 0.
+CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, std::optional<bool> fisheye,
+                              Resolution size) {
   const std::vector<double> k = node[keys.k].matrixNumbers();
   if (k.size() != 9) node[keys.k].fail("is no 3 x 3 matrix");
   constexpr double kNoSkew_px = 1e-3;
-  if (std::abs(k[1]) > kNoSkew_px) node[keys.k].fail("has a skew, which no lens of Evical has");
+  if (std::abs(k[1]) > kNoSkew_px) node[keys.k].fail("has a skew, which is not supported");
   const std::vector<double> intrinsics{k[0], k[4], k[2], k[5]};
   std::vector<double> d = node[keys.d].matrixNumbers();
   constexpr std::size_t kRadtan = 5, kFisheye = 4;
   if (node.has(keys.xi)) {
-    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers beside xi");
+    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers in addition to xi");
     d.insert(d.begin(), node[keys.xi].matrixNumbers().front());
     return lensFrom(CameraModel::OmniRadtan, intrinsics, d, size);
   }
-  if (saysFisheye(node)) {
-    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers of a fisheye");
+  if (fisheye.value_or(false)) {
+    if (d.size() != kFisheye) node[keys.d].fail("must have four numbers for a fisheye lens");
     return lensFrom(CameraModel::PinholeEquidistant, intrinsics, d, size);
   }
-  if (d.size() == kFisheye && std::string(keys.k) == "K")
-    node[keys.d].fail("may be of either model: add fisheye_model: 1 or 0");
+  if (d.size() == kFisheye && !fisheye) node[keys.d].fail("fits two lens models: add fisheye_model: 1 or 0");
   if (d.size() < kFisheye) node[keys.d].fail("must have four or five numbers");
   if (std::any_of(d.begin() + static_cast<std::ptrdiff_t>(std::min(d.size(), kRadtan)), d.end(),
                   [](double each) { return each != 0.0; }))
-    node[keys.d].fail("is of a rational lens, and Evical has three radial coefficients at most");
+    node[keys.d].fail("is a rational lens model, which is not supported (at most three radial coefficients)");
   return lensFrom(CameraModel::PinholeRadtan, intrinsics, d, size);
 }
 
-void addOpencvCameras(const OpencvNode& node, const std::string& name, ReadFile& file) {
+// `root`: its flag and size count for cameras that have none of their own.
+void addOpencvCameras(const OpencvNode& root, const OpencvNode& node, const std::string& name,
+                      ReadFile& file) {
   for (const OpencvKeys& keys : kOpencvKeys) {
     if (!node.has(keys.k) || !node.has(keys.d)) continue;
     ReadCamera& camera = file.cameras.emplace_back();
     camera.name = name.empty() && keys.k[0] == 'M' ? keys.k : name;
-    camera.lens = opencvLensAt(node, keys, opencvSizeOf(node));
+    const Resolution own_size = opencvSizeOf(node);
+    const std::optional<bool> own_flag = saysFisheye(node);
+    camera.lens = opencvLensAt(node, keys, own_flag ? own_flag : saysFisheye(root),
+                               own_size.known() ? own_size : opencvSizeOf(root));
   }
 }
 
 }  // namespace
 
-// At the root, or below the camera's name, as DV writes it.
+// At the root, or below the camera's name (DV).
 ReadFile readOpencvFile(const std::filesystem::path& path) {
   const OpencvFile opened(path);
   ReadFile file{path};
-  addOpencvCameras(opened.root(), "", file);
-  for (const std::string& key : opened.root().keys())
-    if (!opened[key].keys().empty()) addOpencvCameras(opened[key], key, file);
+  const OpencvNode root = opened.root();
+  addOpencvCameras(root, root, "", file);
+  for (const std::string& key : root.keys())
+    if (root.has(key) && !opened[key].keys().empty()) addOpencvCameras(root, opened[key], key, file);
   return file;
 }
 

@@ -21,7 +21,7 @@ std::vector<double> orbSlam3NumbersOf(const OpencvFile& file, const std::string&
   return values;
 }
 
-// `camera`: "Camera1", "Camera2", or "Camera" of its forerunners' files, which need not name the type.
+// `camera`: "Camera1", "Camera2", or "Camera" in files of ORB-SLAM2, which may omit the type.
 CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, const std::string& camera, Resolution size) {
   const bool is_named = camera != "Camera" || file.has("Camera.type");
   const std::string type = is_named ? file["Camera.type"].text() : "PinHole";
@@ -31,7 +31,9 @@ CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, const std::string& camer
                     orbSlam3NumbersOf(file, camera, {"k1", "k2", "k3", "k4"}), size);
   }
   if (type != "PinHole") file["Camera.type"].fail("must be PinHole or KannalaBrandt8");
-  std::vector<double> distortion = orbSlam3NumbersOf(file, camera, {"k1", "k2", "p1", "p2"});
+  // Settings of images without distortion may leave it out.
+  std::vector<double> distortion(4);
+  if (file.has(camera + ".k1")) distortion = orbSlam3NumbersOf(file, camera, {"k1", "k2", "p1", "p2"});
   const std::string third = camera + ".k3";
   if (file.has(third)) distortion.push_back(orbSlam3AsFloat(file[third]));
   return lensFrom(CameraModel::PinholeRadtan, k, distortion, size);
@@ -71,7 +73,28 @@ Resolution orbSlam3SizeOf(const OpencvFile& file) {
 ReadFile readOrbSlam3File(const std::filesystem::path& path) {
   const OpencvFile file(path);
   ReadFile read{path};
+  // Stereo settings before ORB-SLAM3 1.0: Camera.* is the rectified camera, the real ones are here.
+  if (file.has("LEFT.K")) {
+    for (const char* side : {"LEFT", "RIGHT"}) {
+      const std::string name(side);
+      if (!file.has(name + ".K")) continue;
+      const std::vector<double> k = file[name + ".K"].matrixNumbers(), d = file[name + ".D"].matrixNumbers();
+      if (k.size() != 9) file[name + ".K"].fail("is not a 3 x 3 matrix");
+      const bool fisheye = file.has("Camera.type") && file["Camera.type"].text() == "KannalaBrandt8";
+      if (!fisheye && d.size() == 4)
+        file[name + ".D"].fail("fits two lens models: four numbers without Camera.type");
+      if (fisheye ? d.size() != 4 : d.size() != 5)
+        file[name + ".D"].fail("must have five numbers, or four for a fisheye lens");
+      ReadCamera& found = read.cameras.emplace_back();
+      found.name = name;
+      found.lens = lensFrom(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
+                            {k[0], k[4], k[2], k[5]}, d,
+                            {file[name + ".width"].integer(), file[name + ".height"].integer()});
+    }
+    return read;
+  }
   const Resolution size = file.has("Camera.width") ? orbSlam3SizeOf(file) : Resolution{};
+  if (file.has("IMU.NoiseGyro")) read.imus.emplace_back();  // a note says that it is not imported
   for (const char* camera : {"Camera", "Camera1", "Camera2"}) {
     if (!file.has(std::string(camera) + ".fx")) continue;
     ReadCamera& found = read.cameras.emplace_back();

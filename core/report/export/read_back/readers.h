@@ -30,7 +30,7 @@ ReadBack readEvimo2(const std::filesystem::path& folder);
 ReadBack readTumVie(const std::filesystem::path& folder);
 ReadBack readNumpy(const std::filesystem::path& folder);
 
-// Cameras of a single file, for import: the same layouts, without the keys that only the program itself asks for.
+// Cameras of a single file, for import. Keys that only the other program needs may be missing.
 ReadFile readBasaltFile(const std::filesystem::path& file);
 ReadFile readDvProcessingFile(const std::filesystem::path& file);
 ReadFile readVinsCameraFile(const std::filesystem::path& file);

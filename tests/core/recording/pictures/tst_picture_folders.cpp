@@ -328,13 +328,6 @@ void TestPictureFolders::conversion_takesThemAlongOrSaysThatItDoesNot_data() {
 }
 
 void TestPictureFolders::conversion_takesThemAlongOrSaysThatItDoesNot() {
-  class Log : public ProgressSink {
-   public:
-    void stageStarted(std::string_view) override {}
-    void stageProgress(double) override {}
-    void log(LogLevel, std::string_view text) override { said += text; }
-    std::string said;
-  };
   QFETCH(QString, output);
   QFETCH(int, frames);
   addEurocCamera("mav0/cam0", 2);

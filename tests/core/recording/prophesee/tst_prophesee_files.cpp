@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/packed_events.h"
@@ -54,6 +55,8 @@ class TestPropheseeFiles : public QObject {
   void whatIsWritten_isReadBack_data();
   void whatIsWritten_isReadBack();
   void whatHasNoPlace_isRefused();
+  void strayStamps_areLeftOut_data();
+  void strayStamps_areLeftOut();
   void size_isThatOfTheHeader();
   void everyCut_keepsWhatIsWhole();
   void time_wraps_data();
@@ -140,6 +143,41 @@ void TestPropheseeFiles::whatHasNoPlace_isRefused() {
     QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {unknown}), CalibrationError);
   }
   QVERIFY(!std::filesystem::exists(scratch_ / "no"));
+}
+
+void TestPropheseeFiles::strayStamps_areLeftOut_data() {
+  QTest::addColumn<QString>("format");
+  for (const char* const format : {"raw", "dat"}) QTest::newRow(format) << QString(format);
+}
+
+// A first event stamped 0 before those of a host's clock, and one of next year: neither fills the file with counter words.
+void TestPropheseeFiles::strayStamps_areLeftOut() {
+  QFETCH(QString, format);
+  constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000, kYear_ns = 31'536'000'000'000'000;
+  std::vector<Event> events = rowsForPropheseeFiles(20'000, kStart_ns);
+  events.front().time_ns = 0;
+  events[10'000].time_ns += kYear_ns;
+  StreamInfo stream;
+  stream.name = "/camera/events";
+  stream.type = StreamType::Events;
+  stream.resolution_px = {640, 480};
+  const std::filesystem::path bag = scratch_ / "stray.bag",
+                              path = scratch_ / ("stray." + format.toStdString());
+  const auto writer = createBag(bag, {stream}, false);
+  writer->write(0, EventSpan(events));
+  writer->finish();
+  Log log;
+  ConversionRequest request;
+  request.input = bag;
+  request.output = path;
+  QCOMPARE(convertRecording(request, RunContext{log}).events, std::uint64_t{20'000 - 2});
+  QVERIFY2(log.said.find("2 events are left out") != std::string::npos, log.said.c_str());
+  QVERIFY2(log.said.find("clock_offset_s: 17000000") != std::string::npos, log.said.c_str());
+  QCOMPARE(readAll(path).events.at(0).size(), std::size_t{20'000 - 2});
+  QVERIFY(std::filesystem::file_size(path) < 1'000'000);
+  // Whoever writes without that filter is told.
+  const auto direct = createRecording(scratch_ / "direct", format.toStdString(), {stream});
+  QVERIFY_EXCEPTION_THROWN(direct->write(0, EventSpan(events)), CalibrationError);
 }
 
 void TestPropheseeFiles::size_isThatOfTheHeader() {
