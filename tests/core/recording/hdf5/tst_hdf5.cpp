@@ -7,6 +7,7 @@
 #include "tests/support/test_program.h"
 
 #include <QProcess>
+#include <QRegularExpression>
 
 #include <cmath>
 
@@ -376,8 +377,9 @@ void TestHdf5::foundByTheFuzzer_isRefused_data() {
   QTest::addColumn<QString>("problem");
   QTest::newRow("a table as large as the address space") << "table_of_all_memory.h5"
                                                          << "damaged";
+  // HDF5 1.14 reads zeros there, which are no events.
   QTest::newRow("rows that are not there") << "rows_of_nothing.h5"
-                                           << "stores";
+                                           << "stores|is left out";
 }
 
 void TestHdf5::foundByTheFuzzer_isRefused() {
@@ -388,7 +390,8 @@ void TestHdf5::foundByTheFuzzer_isRefused() {
     QFAIL("read");
   } catch (const CalibrationError& error) {
     QVERIFY(error.kind() == ErrorKind::BadInput);
-    QVERIFY2(QString::fromStdString(error.problem()).contains(problem), error.problem().c_str());
+    QVERIFY2(QString::fromStdString(error.problem()).contains(QRegularExpression(problem)),
+             error.problem().c_str());
   }
 }
 
