@@ -68,17 +68,13 @@ PartitionName=all Nodes=n1,n2 Default=YES State=UP MaxTime=INFINITE
 CONF
 
 # Processes of a node: its slurmd, the keepers of its jobs' steps, then the jobs themselves.
+# In milliseconds: a job takes a second, and must not end meanwhile.
 kill_node() { # NAME
-  local name=$1 environment process jobs=() keepers=()
+  local name=$1 process jobs=() keepers=()
+  mapfile -t jobs < <({ grep -lzxF "SLURMD_NODENAME=$name" /proc/[0-9]*/environ |
+    xargs -r grep -lzxF "SLURM_CONF=$SLURM_CONF" | cut -d/ -f3; } 2>/dev/null)
+  [ "${#jobs[@]}" = 0 ] || mapfile -t keepers < <(ps -o ppid= -p "${jobs[*]}" | tr -d ' ')
   kill -KILL "$(cat "$scratch/slurmd.$name.pid")" 2>/dev/null || true
-  for environment in /proc/[0-9]*/environ; do
-    process=${environment#/proc/}
-    process=${process%/environ}
-    { tr '\0' '\n' <"$environment"; } 2>/dev/null | grep -qx "SLURMD_NODENAME=$name" || continue
-    { tr '\0' '\n' <"$environment"; } 2>/dev/null | grep -qx "SLURM_CONF=$SLURM_CONF" || continue
-    jobs+=("$process")
-    keepers+=("$(ps -o ppid= -p "$process" | tr -d ' ')")
-  done
   for process in "${keepers[@]}"; do
     grep -q slurmstepd "/proc/$process/comm" 2>/dev/null && kill -KILL "$process"
   done
