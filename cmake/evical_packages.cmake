@@ -52,7 +52,8 @@ get_cmake_property(components COMPONENTS)
 if("python" IN_LIST components)
   evical_package(python python3-evical python "calibrates event cameras and IMUs (Python)"
     ${about} "This package has the Python module evical.")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
 endif()
 
 set(debian packaging/debian)
@@ -62,6 +63,9 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(package "${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")
   set(folder "${CMAKE_INSTALL_DATADIR}/doc/${package}")
   string(CONFIGURE "${overrides}" text @ONLY)
+  if(package STREQUAL "evical-gui")  # no homepage exists yet, and AppStream 1.0 warns of that
+    string(APPEND text "evical-gui: appstream-metadata-validation-failed *\n")
+  endif()
   file(WRITE "${CMAKE_BINARY_DIR}/lintian/${package}" "${text}")
   install(FILES "${CMAKE_BINARY_DIR}/lintian/${package}" DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides"
           COMPONENT ${component} EXCLUDE_FROM_ALL)

@@ -39,7 +39,8 @@ class Covariance:
     @property
     def std(self) -> npt.NDArray[np.float64]:
         """(N,): sigmas."""
-        return np.sqrt(np.diagonal(self.matrix))
+        std: npt.NDArray[np.float64] = np.sqrt(np.diagonal(self.matrix))
+        return std
 
     @property
     def correlation(self) -> npt.NDArray[np.float64]:
