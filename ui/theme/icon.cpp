@@ -39,13 +39,19 @@ class TintedIconEngine final : public QIconEngine {
 
   void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State state) override {
     const double ratio = painter->device()->devicePixelRatioF();
-    painter->drawPixmap(rect, scaledPixmap((QSizeF(rect.size()) * ratio).toSize(), mode, state, ratio));
+    painter->drawPixmap(rect, drawn((QSizeF(rect.size()) * ratio).toSize(), mode));
   }
-  QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
-    return scaledPixmap(size, mode, state, 1.0);
+  QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State) override { return drawn(size, mode); }
+  // Until Qt 6.8 `size` is in device pixels.
+  QPixmap scaledPixmap(const QSize& size, QIcon::Mode mode, QIcon::State, qreal scale) override {
+    constexpr bool kInDevicePixels = QT_VERSION < QT_VERSION_CHECK(6, 8, 0);
+    return drawn(kInDevicePixels ? size : (QSizeF(size) * scale).toSize(), mode);
   }
+  QIconEngine* clone() const override { return new TintedIconEngine(svg_, tint_); }
+
+ private:
   // `size` is in device pixels.
-  QPixmap scaledPixmap(const QSize& size, QIcon::Mode mode, QIcon::State, qreal) override {
+  QPixmap drawn(const QSize& size, QIcon::Mode mode) {
     QPixmap pixmap(size);
     pixmap.fill(Qt::transparent);
     QPainter painter(&pixmap);
@@ -55,9 +61,7 @@ class TintedIconEngine final : public QIconEngine {
     painter.fillRect(pixmap.rect(), tint_.now(mode));
     return pixmap;
   }
-  QIconEngine* clone() const override { return new TintedIconEngine(svg_, tint_); }
 
- private:
   QByteArray svg_;
   Tint tint_;
   std::unique_ptr<QSvgRenderer> renderer_;
