@@ -37,7 +37,7 @@ class TintedIconEngine final : public QIconEngine {
   TintedIconEngine(const QByteArray& svg, const Tint& tint)
       : svg_(svg), tint_(tint), renderer_(std::make_unique<QSvgRenderer>(svg)) {}
 
-  void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State state) override {
+  void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State) override {
     const double ratio = painter->device()->devicePixelRatioF();
     painter->drawPixmap(rect, drawn((QSizeF(rect.size()) * ratio).toSize(), mode));
   }
