@@ -63,9 +63,6 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(package "${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")
   set(folder "${CMAKE_INSTALL_DATADIR}/doc/${package}")
   string(CONFIGURE "${overrides}" text @ONLY)
-  if(package STREQUAL "evical-gui")  # no homepage exists yet, and AppStream 1.0 warns of that
-    string(APPEND text "evical-gui: appstream-metadata-validation-failed *\n")
-  endif()
   file(WRITE "${CMAKE_BINARY_DIR}/lintian/${package}" "${text}")
   install(FILES "${CMAKE_BINARY_DIR}/lintian/${package}" DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides"
           COMPONENT ${component} EXCLUDE_FROM_ALL)

@@ -31,7 +31,10 @@ for name in $names; do
   cmp "$package" "$scratch/second/$(basename "$package")" || fail "two times cpack gave two different $name"
   dpkg-deb -x "$package" "$scratch/root"
 done
-lintian --allow-root --fail-on error,warning "$scratch"/first/*.deb || fail "lintian"
+# AppStream 1.0 warns that there is no homepage, which is so. Newer lintian repeats its warnings, which are looked at below.
+without=() tag=appstream-metadata-validation-failed
+! lintian-explain-tags "$tag" >/dev/null 2>&1 || without=(--suppress-tags "$tag")
+lintian --allow-root "${without[@]}" --fail-on error,warning "$scratch"/first/*.deb || fail "lintian"
 
 contents="bin/evical share/bash-completion/completions/evical share/man/man1/evical.1.gz share/man/man1/evical-calibrate.1.gz
   share/evical/scenarios/davis346.yaml share/evical/default.yaml include/evical/core/pipeline/session.h"
@@ -46,7 +49,6 @@ dpkg-deb -f "$scratch"/first/evical_*.deb Depends | grep -q "libcholmod[0-9]" ||
 ! dpkg-deb -f "$scratch"/first/evical_*.deb Depends | grep -qi "qt\|vtk" || fail "the command line depends on Qt or VTK"
 
 if [ "$gui" != OFF ]; then
-  # AppStream 1.0 warns that there is no homepage, which is so.
   said=$(appstreamcli validate --no-net "$scratch/root/usr/share/metainfo/org.evical.evical.metainfo.xml") ||
     [ "$(grep '^[WE]:' <<<"$said" | grep -cv url-homepage-missing)" = 0 ] || fail "appstreamcli: $said"
   desktop-file-validate "$scratch/root/usr/share/applications/evical.desktop" || fail "desktop-file-validate"
