@@ -39,15 +39,16 @@ class Covariance:
     @property
     def std(self) -> npt.NDArray[np.float64]:
         """(N,): sigmas."""
-        std: npt.NDArray[np.float64] = np.sqrt(np.diagonal(self.matrix))
-        return std
+        return np.sqrt(np.diagonal(self.matrix))
 
     @property
     def correlation(self) -> npt.NDArray[np.float64]:
         """(N, N), -1 to 1; 0 with what is held."""
         std = self.std
         scale = np.outer(std, std)
-        return np.divide(self.matrix, scale, out=np.zeros_like(self.matrix), where=scale > 0)
+        correlation: npt.NDArray[np.float64] = np.zeros_like(self.matrix)
+        np.divide(self.matrix, scale, out=correlation, where=scale > 0)
+        return correlation
 
     def of(self, names: Sequence[str]) -> npt.NDArray[np.float64]:
         """(n, n): the rows and columns of these names, in their order."""
