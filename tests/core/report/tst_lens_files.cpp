@@ -163,6 +163,12 @@ const Sample kSamples[] = {
      "LEFT.K: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
      "   data: [ 458.654, 0.0, 367.215, 0.0, 457.296, 248.375, 0.0, 0.0, 1.0 ]\n",
      CameraModel::PinholeRadtan, 458.654, 1.76187114e-05},
+    {"stereo.yml",
+     "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\nK1: !!opencv-matrix\n   rows: 3\n   cols: 3\n   "
+     "dt: d\n"
+     "   data: [ 512.5, 0., 320., 0., 512.5, 240., 0., 0., 1. ]\n"
+     "D1: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ -0.1, 0.02, 0.003, 0.004, 0. ]\n",
+     CameraModel::PinholeRadtan, 512.5, 0.004},
     {"intrinsics.json",
      "{\"image_size\": [1280, 720], \"camera_matrix\": {\"type_id\": \"opencv-matrix\", \"rows\": 3, "
      "\"cols\": 3, \"dt\": "

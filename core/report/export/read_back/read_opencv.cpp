@@ -94,6 +94,9 @@ constexpr OpencvKeys kOpencvKeys[] = {{"camera_matrix", "distortion_coefficients
                                       {"cameraMatrix", "distCoeffs", "xi"},
                                       {"Camera_Matrix", "Distortion_Coefficients", "xi"},
                                       {"K", "D", "xi"},
+                                      {"mtx", "dist", "xi"},
+                                      {"K1", "D1", "xi1"},
+                                      {"K2", "D2", "xi2"},
                                       {"M1", "D1", "xi1"},
                                       {"M2", "D2", "xi2"}};
 
@@ -177,7 +180,7 @@ void addOpencvCameras(const OpencvNode& root, const OpencvNode& node, const std:
   for (const OpencvKeys& keys : kOpencvKeys) {
     if (!node.has(keys.k) || !node.has(keys.d)) continue;
     ReadCamera& camera = file.cameras.emplace_back();
-    camera.name = name.empty() && keys.k[0] == 'M' ? keys.k : name;
+    camera.name = name.empty() && std::isdigit(static_cast<unsigned char>(keys.k[1])) ? keys.k : name;
     const Resolution own_size = opencvSizeOf(node);
     const std::optional<bool> own_flag = saysFisheye(node);
     camera.lens = opencvLensAt(node, keys, own_flag ? own_flag : saysFisheye(root),
