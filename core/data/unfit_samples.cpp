@@ -196,10 +196,14 @@ void findUnfitOf(std::span<const ImuSample> samples, bool rate, UnfitSamples& un
   });
 }
 
-// Some of the samples, and which they were. Without a copy where all are.
+bool isMeasured(const ImuSample& sample, bool rate) {
+  return rate ? measuresRate(sample) : measuresForce(sample);
+}
+
+// A selection of the samples and their places in the list. Nothing is copied if all are selected.
 struct OwnSamples {
   std::span<const ImuSample> samples;
-  std::vector<std::size_t> places, others;  // places: empty where all are
+  std::vector<std::size_t> places, others;  // places: empty if all are selected
 
   template <class IsOwn>
   OwnSamples(std::span<const ImuSample> all, IsOwn&& isOwn) : samples(all) {
@@ -246,8 +250,7 @@ UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
   UnfitSamples unfit;
   if (samples.empty()) return unfit;
   for (const bool rate : {true, false}) {
-    const MeasuredBy other = rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope;
-    const OwnSamples own(samples, [&](std::size_t i) { return samples[i].measured_by != other; });
+    const OwnSamples own(samples, [&](std::size_t i) { return isMeasured(samples[i], rate); });
     (rate ? unfit.without_rate : unfit.without_force) = own.others;
     if (own.samples.empty()) continue;
     std::vector<std::size_t>& repeats = rate ? unfit.gyroscope_repeats : unfit.accelerometer_repeats;
@@ -295,18 +298,16 @@ SampleSelection fitSamples(std::span<const ImuSample> samples) {
   for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
     const bool rate = kImuAxes[axis].rate;
     std::vector<std::uint8_t>& sensor = rate ? fit.gyroscope : fit.accelerometer;
-    const auto isOwn = [&](std::size_t k) {
-      return samples[k].measured_by != (rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope);
-    };
+    // Also the sensor's own samples before and after.
     for (const std::size_t i : unfit.saturated[axis]) {
       sensor[i] = 0;
       for (std::size_t k = i; k-- > 0;) {
         sensor[k] = 0;
-        if (isOwn(k)) break;
+        if (isMeasured(samples[k], rate)) break;
       }
       for (std::size_t k = i + 1; k < samples.size(); ++k) {
         sensor[k] = 0;
-        if (isOwn(k)) break;
+        if (isMeasured(samples[k], rate)) break;
       }
     }
   }

@@ -29,7 +29,7 @@ double forceSpread_m_s2(const ImuData& imu) {
   return std::sqrt(std::max(0.0, squares / count - (sum / count).squaredNorm()) / 3.0);
 }
 
-// Of one sensor's samples.
+// Checks the times of one sensor.
 void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& times_ns) {
   if (times_ns.size() < 3) return;
   std::vector<double> intervals_s;

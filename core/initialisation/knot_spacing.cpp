@@ -171,7 +171,7 @@ class Demand {
   Fit closest_;
 };
 
-// Those that `fit` has; forces in a frame that does not turn, where they are accelerations less gravity.
+// Uses the samples in `fit`. Forces are in a frame that does not turn, where they are accelerations minus gravity.
 std::array<Signal, 2> signalsOf(const ImuData& imu, const SampleSelection& fit, std::int64_t start_ns,
                                 TimeRange range, const GyroRotation& rotation) {
   std::array<Signal, 2> signals = {Signal{Felt::Velocity, {}, {}}, Signal{Felt::Acceleration, {}, {}}};
@@ -228,6 +228,7 @@ ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const
 double closestKnots_s(const ImuData& imu) {
   return closestKnots_s(imu, fitSamples(imu.samples));
 }
+
 KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,
                         const GyroRotation& rotation, const ViewPrecision& views) {
   KnotSpacing found;

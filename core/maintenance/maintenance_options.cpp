@@ -18,7 +18,7 @@ constexpr std::tuple kFields{
           "The gyroscope's means in a stop stay within four times this of the stop's mean, and the means of "
           "stops within twice this of each other."},
     Field{"still_force_m_s2", &Options::still_force_m_s2, 0.15, within(1e-4, 5.0), "m/s^2",
-          "The same of the accelerometer's means, beside five of their sigmas."},
+          "The same for the accelerometer's means, in addition to five of their sigmas."},
     Field{"stop_above_quietest", &Options::stop_above_quietest, 4.0, within(1.0, 1e4), "",
           "A window is still if the accelerometer's variance is at most this multiple of the log's quietest "
           "tenth. Larger multiples are also tried: the smallest one that finds the most stops is used."},

@@ -39,8 +39,8 @@ StopMean meanOf(std::span<const MeansWindow> windows, const StopRange& range) {
   return mean;
 }
 
-// How windows scatter about their stop's mean, over these stops, and more where neighbours hang together: then the
-// variance of a mean falls more slowly.
+// The scatter of windows about the mean of their stop, pooled over these stops. It is larger if neighbours are correlated,
+// because the variance of a mean then falls more slowly.
 StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
                   std::span<const StopMean> means, const std::vector<std::size_t>& stops) {
   StopNoise noise;
@@ -80,7 +80,7 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
   return noise;
 }
 
-// By stop. Those that a hand holds are more restless than those on a table, by the gyroscope: each kind has its own noise.
+// The noise of each stop. The gyroscope shows which stops were held by hand; they have a noise of their own.
 std::vector<StopNoise> noisesOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
                                 std::span<const StopMean> means) {
   constexpr double kByHand = 4.0;  // times the variance of the quietest stop
@@ -190,7 +190,7 @@ Misfit misfitOf(const StopCalibration& found) {
   }
   const double freedom = count - determined(found);
   if (freedom < 0.9) return {};
-  // What stops differ by, rather than what each is still by, is how well they tell gravity: hands pull a little.
+  // The scatter between stops shows how well they measure gravity: hands pull a little.
   return {std::sqrt(sum / freedom), std::max(sum / freedom, 1.0)};
 }
 
@@ -268,7 +268,7 @@ StopCalibration calibrate(std::span<const MeansWindow> windows, std::span<const 
   const Misfit misfit = misfitOf(found);
   found.misfit = misfit.rms;
   const NormalEquations at_before = equationsAt(found, noises, found.before, gravity_m_s2);
-  // What the stops are further from each other than their noise lets them be is in all of them.
+  // Stops that scatter more than their noise widen all sigmas.
   found.information = at_before.information / misfit.inflation;
   found.score = at_before.score / misfit.inflation;
   found.covariance *= misfit.inflation;

@@ -54,8 +54,8 @@ struct StopCalibration {
   Eigen::Vector3d gyroscope_bias_rad_s, gyroscope_bias_sigma_rad_s;
 };
 
-// Tries several thresholds of stillness (D. Tedaldi et al., ICRA 2014), and takes the first of those by which the most stops
-// agree. Nothing to calibrate without stops: then `stops` is empty and all else meaningless.
+// Tries several thresholds of stillness (D. Tedaldi et al., ICRA 2014), and takes the smallest one that gives the most stops
+// that agree. Without stops there is nothing to calibrate: then `stops` is empty and the rest is undefined.
 StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, const ImuState& before,
                                    double gravity_m_s2, const MaintenanceOptions& options);
 

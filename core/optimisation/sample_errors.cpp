@@ -107,7 +107,7 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
     double& rate_error = errors.gyroscope_rad_s.emplace_back(kNone);
     errors.accelerometer_m_s2.push_back(kNone);
     const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
-    if (sample.measured_by == MeasuredBy::Accelerometer) continue;
+    if (!measuresRate(sample)) continue;
     const auto rate = predictedRate_rad_s(state, imu_state, stamp_s);
     if (!rate) continue;
     rate_error = (*rate - sample.angular_rate_rad_s).norm();
@@ -116,7 +116,7 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
   for (const SampleRun& run : accelerometerRuns(input, state, imu)) {
     for (std::size_t i = run.begin; i < run.end; ++i) {
       const ImuSample& sample = input.imus[imu].samples[i];
-      if (sample.measured_by == MeasuredBy::Gyroscope) continue;
+      if (!measuresForce(sample)) continue;
       const auto force = predictedForce_m_s2(state, imu_state, secondsSince(input.start_ns, sample.time_ns));
       if (!force) continue;
       errors.accelerometer_m_s2[i] = (*force - sample.specific_force_m_s2).norm();

@@ -18,7 +18,7 @@ struct AxisCheck {
   const char* line;  // "row" or "column"
   const LatticeEnds& ends;
   std::vector<bool> seen;  // by line, in any view
-  bool whole = false;      // enough views show both outermost lines
+  bool whole;              // enough views show both outermost lines
 };
 
 std::vector<bool> circlesSeen(const BoardObservations& observations, const Board& board) {
@@ -108,18 +108,19 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board) {
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
   if (observations.kind != CameraKind::Events) return;  // whose lattice alone may be laid wrongly
   const std::vector<bool> seen = circlesSeen(observations, board);
+  const double least_whole =
+      std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
+  const auto isWhole = [&](bool of_rows) {
+    return wholeViews(observations, board, of_rows, options.least_line) >= least_whole;
+  };
   AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows)),
-                 false};
+                 isWhole(true)};
   AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols)),
-                 false};
+                 isWhole(false)};
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (!seen[k]) continue;
     rows.seen[k / cols.seen.size()] = cols.seen[k % cols.seen.size()] = true;
   }
-  const double least_whole =
-      std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
-  rows.whole = wholeViews(observations, board, true, options.least_line) >= least_whole;
-  cols.whole = wholeViews(observations, board, false, options.least_line) >= least_whole;
   bool larger = false, smaller = false;
   std::string text;
   const auto say = [&](const std::string& more) { text += (text.empty() ? "" : ", and ") + more; };

@@ -53,25 +53,21 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
 
 // Two streams may be exchanged, empty, or of different times.
 void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
-  const auto check = [&](const std::string& stream, const char* sensor, auto measures,
-                         Eigen::Vector3d ImuSample::*value) {
-    bool any = false;
-    std::pair<std::int64_t, std::int64_t> span{0, 0};
-    for (const ImuSample& sample : imu.samples) {
-      if (!measures(sample) || (sample.*value).isZero(0.0)) continue;
-      if (!any) span.first = sample.time_ns;
-      any = true;
-      span.second = sample.time_ns;
-    }
-    if (!any)
+  const auto spanOf = [&](const std::string& stream, const char* sensor, auto measures,
+                          Eigen::Vector3d ImuSample::*value) {
+    std::optional<std::pair<std::int64_t, std::int64_t>> span_ns;
+    for (const ImuSample& sample : imu.samples)
+      if (measures(sample) && !(sample.*value).isZero(0.0))
+        span_ns = {span_ns ? span_ns->first : sample.time_ns, sample.time_ns};
+    if (!span_ns)
       throw badInput(imu.name, fmt::format("the stream {} has no measurements of the {}", stream, sensor),
                      "Check the lines gyroscope: and accelerometer: of the session: they may be exchanged");
-    return span;
+    return *span_ns;
   };
   const auto rates =
-      check(session.stream, "gyroscope", measuresRate<ImuSample>, &ImuSample::angular_rate_rad_s);
-  const auto forces = check(session.accelerometer_stream, "accelerometer", measuresForce<ImuSample>,
-                            &ImuSample::specific_force_m_s2);
+      spanOf(session.stream, "gyroscope", measuresRate<ImuSample>, &ImuSample::angular_rate_rad_s);
+  const auto forces = spanOf(session.accelerometer_stream, "accelerometer", measuresForce<ImuSample>,
+                             &ImuSample::specific_force_m_s2);
   constexpr double kLeastShared = 0.5;  // of the longer one's time
   const double shared_s =
       secondsSince(std::max(rates.first, forces.first), std::min(rates.second, forces.second));

@@ -6,7 +6,6 @@
 #include "core/report/export/read_back/lens_files.h"
 
 #include <optional>
-
 #include <string>
 #include <vector>
 

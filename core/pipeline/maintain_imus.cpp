@@ -31,7 +31,7 @@ namespace {
 constexpr double kWorthANote = 1.5;
 constexpr double kWorthAdvice = 4.0;
 
-// When one sensor has measured.
+// Times at which one sensor measured.
 struct SampleTimes {
   double first_s = 0.0, last_s = 0.0, longest_gap_s = 0.0, longest_gap_at_s = 0.0;
   std::uint64_t samples = 0;
@@ -50,7 +50,7 @@ struct SampleTimes {
   }
 };
 
-// Of the two sensors of an IMU, which may have samples of their own.
+// Times of both sensors of an IMU, which may be sampled separately.
 struct ImuTimes {
   SampleTimes rates, forces;
 
@@ -83,7 +83,7 @@ struct Looked {
   std::vector<ImuSample> samples;
 };
 
-// A stream of one sensor, or of a dead one, would look like a large change.
+// Refuses streams without one of the sensors: they would look like a large change.
 void checkBothSensors(const std::string& imu, const std::string& stream,
                       const std::vector<ImuSample>& samples) {
   bool rates = false, forces = false;
@@ -95,14 +95,13 @@ void checkBothSensors(const std::string& imu, const std::string& stream,
   }
   const bool alternating = imuStreamKind(whole) == ImuStreamKind::Alternating;
   if (samples.empty() || (rates && forces && !alternating)) return;
-  const std::string advice = fmt::format("Name both streams: --imu {}='GYROSCOPE + ACCELEROMETER'", imu);
   if (alternating)
     throw badInput(imu,
                    fmt::format("the messages of {} alternate between gyroscope and accelerometer", stream),
-                   fmt::format("Say so: --imu {}='{} + {}'", imu, stream, stream));
+                   fmt::format("Name it for both sensors: --imu {}='{} + {}'", imu, stream, stream));
   throw badInput(
       imu, fmt::format("{} has no measurements of the {}", stream, rates ? "accelerometer" : "gyroscope"),
-      advice);
+      fmt::format("Name both streams: --imu {}='GYROSCOPE + ACCELEROMETER'", imu));
 }
 
 class Maintainer {

@@ -82,15 +82,12 @@ bool SessionRecording::isIn(const std::filesystem::path& path, const Sensor& sen
 // What the session says of the tables in this recording.
 ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) const {
   ColumnNames names;
-  const auto add = [&](const auto& sensor) {
-    if (!sensor.columns.empty() && isIn(path, sensor)) names[sensor.stream] = sensor.columns;
+  const auto add = [&](const auto& sensor, const std::string& stream) {
+    if (!stream.empty() && !sensor.columns.empty() && isIn(path, sensor)) names[stream] = sensor.columns;
   };
-  for (const SessionCamera& camera : session_.cameras) add(camera);
-  for (const SessionImu& imu : session_.imus) {
-    add(imu);
-    if (!imu.accelerometer_stream.empty() && !imu.columns.empty() && isIn(path, imu))
-      names[imu.accelerometer_stream] = imu.columns;
-  }
+  for (const SessionCamera& camera : session_.cameras) add(camera, camera.stream);
+  for (const SessionImu& imu : session_.imus)
+    for (const std::string& stream : {imu.stream, imu.accelerometer_stream}) add(imu, stream);
   return names;
 }
 

@@ -90,7 +90,7 @@ void writePicture(const std::filesystem::path& path, const std::string& content)
 }
 
 // Frames of all frame cameras: files named by their stamps in ns, as Kalibr wants them.
-// `start_ns`: of the other streams, as they were written.
+// `start_ns`: the start of the other streams in their files.
 void writeFrames(const Scenario& scenario, std::int64_t start_ns, const std::filesystem::path& folder,
                  SimulationSummary& summary, const RunContext& context) {
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
@@ -216,8 +216,8 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   if (streams.empty()) {
     summary.recording = folder / kFramesFolder;
   } else if (format.one_camera) {
-    named.start_ns =
-        200 * kSecond_ns;  // these files cannot hold absolute times; names of frames need 12 digits
+    // These files cannot hold absolute times. The names of frames need at least 12 digits.
+    named.start_ns = 200 * kSecond_ns;
     writeApart(made, format, named, summary, context);
   } else {
     const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);

@@ -80,18 +80,23 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   }
 }
 
+using Measures = bool (*)(const ImuSample&);
+
+Samples ownSamples(const Samples& samples, Measures measures) {
+  Samples own;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(own), measures);
+  return own;
+}
+
 // If the two sensors are sampled separately, each has its own times.
 void checkTimesOfSensors(const std::string& name, const Samples& samples, const InspectionOptions& options,
                          Faults& faults) {
   const auto isOfBoth = [](const ImuSample& sample) { return sample.measured_by == MeasuredBy::Both; };
   if (std::all_of(samples.begin(), samples.end(), isOfBoth))
     return checkTimes(name, samples, options, faults);
-  for (const MeasuredBy other : {MeasuredBy::Accelerometer, MeasuredBy::Gyroscope}) {
-    Samples own;
-    std::copy_if(samples.begin(), samples.end(), std::back_inserter(own),
-                 [other](const ImuSample& sample) { return sample.measured_by != other; });
-    if (!own.empty()) checkTimes(name, own, options, faults);
-  }
+  for (const Measures measures : {measuresRate<ImuSample>, measuresForce<ImuSample>})
+    if (const Samples own = ownSamples(samples, measures); !own.empty())
+      checkTimes(name, own, options, faults);
 }
 
 void checkStuck(const std::string& name, const Samples& samples, const ImuAxis& axis,
@@ -99,8 +104,7 @@ void checkStuck(const std::string& name, const Samples& samples, const ImuAxis& 
   Faults stuck;
   std::vector<std::size_t> own;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (samples[i].measured_by != (axis.rate ? MeasuredBy::Accelerometer : MeasuredBy::Gyroscope))
-      own.push_back(i);
+    if (axis.rate ? measuresRate(samples[i]) : measuresForce(samples[i])) own.push_back(i);
   for (std::size_t begin = 0, end = 0; begin < own.size(); begin = end) {
     const double value = axis.of(samples[own[begin]]);
     for (end = begin + 1; end < own.size() && axis.of(samples[own[end]]) == value;) ++end;
@@ -126,8 +130,8 @@ void checkSaturated(const std::string& name, const Samples& samples, const ImuAx
            axis.name, std::abs(axis.of(samples[saturated.front()])), saturated.size())});
 }
 
-void checkSpikes(const std::string& name, const Samples& samples, const char* sensor,
-                 bool (*measures)(const ImuSample&), const std::vector<std::size_t>& spikes, Faults& faults) {
+void checkSpikes(const std::string& name, const Samples& samples, const char* sensor, Measures measures,
+                 const std::vector<std::size_t>& spikes, Faults& faults) {
   constexpr std::size_t kMostTimes = 5;
   if (spikes.empty()) return;
   const auto count = std::count_if(samples.begin(), samples.end(), measures);
@@ -144,9 +148,7 @@ void checkSpikes(const std::string& name, const Samples& samples, const char* se
 
 void checkUnits(const std::string& name, const Samples& samples, const InspectionOptions& options,
                 Faults& faults) {
-  Samples forces;
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(forces),
-               [](const ImuSample& sample) { return sample.measured_by != MeasuredBy::Gyroscope; });
+  const Samples forces = ownSamples(samples, measuresForce<ImuSample>);
   const double norm = medianForceNorm(forces);
   // Brisk motion makes the norms larger, but not their mean in a frame that does not turn.
   if (!forces.empty() && !isGravity(norm, options) &&

@@ -51,8 +51,7 @@ bool sendAll(int socket, std::string_view bytes) {
 
 enum class Silence { Awaited, Limited };
 
-// A program that was stopped for a while (Ctrl-Z) has not waited: time counts in short pieces, and one that took much longer
-// than asked does not count.
+// Waits in short pieces, and ignores pieces that took much longer than asked: then this program was stopped (Ctrl-Z).
 bool isReadable(int socket, Silence silence) {
   constexpr int kPiece_ms = 100;
   for (int waited_ms = 0; waited_ms < SeparateReader::longest_silence_ms;) {
@@ -348,6 +347,7 @@ void SeparateReader::takeFirstState() {
   }
   const End how = howItEnded();
   end();
+  throwIfKilled(how);
   if (how.kind == End::Kind::Silent)
     throw calibrationFailed(path_.string(), "cannot be read: " + how.reason,
                             "Check the disk or the network, and try again");
@@ -388,7 +388,7 @@ void SeparateReader::select(const std::vector<std::size_t>& streams) {
   putInto(question, Question::Select);
   putInto(question, static_cast<std::uint32_t>(streams.size()));
   for (const std::size_t stream : streams) putInto(question, static_cast<std::uint64_t>(stream));
-  // Where it has ended, the next read says so.
+  // If the server has ended, the next read reports it.
   const bool answered = sendMessage(socket_, question) && receiveMessage(socket_, answer);
   if (answered && static_cast<Answer>(answer.front()) == Answer::Error)
     throwError(path_, std::string_view(answer).substr(1));
@@ -408,9 +408,7 @@ bool SeparateReader::read(Packet& packet) {
   if (!receiveMessage(socket_, message_)) {
     finished_ = true;
     const End end = howItEnded();
-    if (end.kind == End::Kind::Killed)
-      throw calibrationFailed(path_.string(), "the process that reads it was killed",
-                              "Close other programs: perhaps memory ran out. Then try again");
+    throwIfKilled(end);
     const double percent = 100.0 * fraction_read_;
     faults_.push_back(
         {"", FaultKind::Corrupt, 0.0,
@@ -449,6 +447,13 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
     for (int i = 0; i < 3; ++i) sample.specific_force[i] = cursor.number<double>();
   }
   for (Frame& frame : packet.frames) takeFrame(cursor, frame);
+}
+
+// By the system or a person: that says nothing about the file.
+void SeparateReader::throwIfKilled(const End& end) const {
+  if (end.kind == End::Kind::Killed)
+    throw calibrationFailed(path_.string(), "the process that reads it was killed",
+                            "Close other programs: perhaps memory ran out. Then try again");
 }
 
 SeparateReader::End SeparateReader::howItEnded() {

@@ -53,6 +53,7 @@ class SeparateReader : public RecordingReader {
     std::string reason;
   };
   End howItEnded();
+  void throwIfKilled(const End& end) const;
 
   std::filesystem::path path_;
   pid_t process_ = -1;

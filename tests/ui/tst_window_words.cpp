@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the window says in other words is still said by core: a changed message would show commands to people with a mouse.
+// The window replaces pieces of core's messages. Each piece must still be in core, or the window would show commands.
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 #include "ui/jobs/window_words.h"
@@ -8,8 +8,6 @@
 #include <QFile>
 #include <QRegularExpression>
 
-#include <filesystem>
-
 using namespace evical;
 
 class TestWindowWords : public QObject {
@@ -17,10 +15,7 @@ class TestWindowWords : public QObject {
 
   // The string literals of core's sources; neighbours are joined.
   static QString literalsOfCore() {
-    const std::filesystem::path scenario =
-        evical::test::scenarioPath("davis346");  // config/scenarios/davis346.yaml
-    const std::filesystem::path root = scenario.parent_path().parent_path().parent_path();
-    const QString core = QString::fromStdString((root / "core").string());
+    const QString core = QString::fromStdString(evical::test::sourcePath("core"));
     const QRegularExpression between("\"\\s*\n\\s*\""), literal("\"(?:[^\"\\\\\n]|\\\\.)*\"");
     QString all;
     QDirIterator files(core, {"*.cpp"}, QDir::Files, QDirIterator::Subdirectories);

@@ -9,7 +9,7 @@ namespace evical::ui {
 
 QString inWindowWords(QString text);
 
-// What is replaced: pieces of core's messages.
+// The pieces of core's messages that are replaced.
 QStringList piecesOfCoresMessages();
 
 }  // namespace evical::ui

@@ -417,7 +417,7 @@ void RecordingScreen::chooseRole(int row, int role) {
     changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
   if (static_cast<StreamRole>(role) == StreamRole::Imu) {
     const SessionImu guessed = guessedImu(summary, *one->inspection, changed, own_recording);
-    // Of an IMU with two streams, the other stream may already be an IMU: it becomes this one.
+    // If the other of the two streams is already an IMU, it becomes this one.
     std::erase_if(changed.imus, [&](const SessionImu& imu) {
       return imu.recording == own_recording &&
              (imu.stream == guessed.stream || imu.stream == guessed.accelerometer_stream);

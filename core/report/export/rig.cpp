@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -63,14 +64,19 @@ RigCamera rigCameraOf(const NamedResult& result, std::size_t i, std::set<std::st
           elementOrNone(result.result->cameras, i)};
 }
 
+// Topics of gyroscope and accelerometer: of separate ones, "A + B", each; else the same twice.
+std::pair<std::string, std::string> sensorTopics(const std::string& stream) {
+  const std::size_t plus = stream.find(" + ");
+  if (plus == std::string::npos) return {stream, stream};
+  return {stream.substr(0, plus), stream.substr(plus + 3)};
+}
+
 RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.imus[i].name;
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  // For separate topics, "A + B", a program that takes one topic gets the gyroscope's.
-  const std::string topic = known.stream.substr(0, known.stream.find(" + "));
-  return {name, fileName(name, taken), topic, known.noise, known.rate_hz, state};
+  return {name, fileName(name, taken), sensorTopics(known.stream).first, known.noise, known.rate_hz, state};
 }
 
 // An estimate of 0 is within its sigma of it, or nearly.
@@ -148,17 +154,12 @@ Rig rigOf(const NamedResult& result) {
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
                         [&](const RigImu& imu) { return imu.name == result.reference; });
   rig.timing = timingRemarks(result);
-  const auto apart = [](const std::string& stream) {
-    const std::size_t plus = stream.find(" + ");
-    return plus != std::string::npos && stream.substr(0, plus) != stream.substr(plus + 3);
-  };
-  for (std::size_t i = 0; i < result.imus.size(); ++i)
-    if (apart(result.imus[i].stream))
+  for (const SensorDescription& imu : result.imus)
+    if (const auto [gyroscope, accelerometer] = sensorTopics(imu.stream); gyroscope != accelerometer)
       rig.timing.push_back(
-          fmt::format("{}: gyroscope and accelerometer have separate topics, {}. If a program takes "
-                      "one, it is the "
-                      "gyroscope's",
-                      result.imus[i].name, result.imus[i].stream));
+          fmt::format("{}: gyroscope and accelerometer have separate topics, {}. A program that takes one "
+                      "topic gets the gyroscope's",
+                      imu.name, imu.stream));
   return rig;
 }
 

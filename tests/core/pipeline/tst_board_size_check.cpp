@@ -108,7 +108,8 @@ void TestBoardSizeCheck::boardWhoseReadOutLosesBursts_passes() {
 
 void TestBoardSizeCheck::otherBoard_isBoth() {
   VERIFY_SAYS(failureOfBoardSizeCheck({}, 10, 4, {{80, 0, 80, 72}, {80, 79, 80, 0}}),
-              "seems other than 11 x 4: .*and circles.*beyond its first or last column");
+              "seems other than 11 x 4: the last 1 of 11 rows was never seen in 800 views, and "
+              "circles.*beyond its first or last column");
 }
 
 void TestBoardSizeCheck::circlesNeverSeen_areWorthAWarning() {

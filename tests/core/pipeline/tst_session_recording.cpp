@@ -277,7 +277,6 @@ void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
            recording.faults().front().text.c_str());
 }
 
-// Users of Prophesee cameras have these two files. Both are on one clock and hold everything that was simulated.
 void TestSessionRecording::simulatedRawFiles_haveFramesOnTheirClock() {
   Scenario scenario = readScenario(test::scenarioPath("davis346_frames"));
   scenario.duration_s = 0.5;
@@ -290,6 +289,7 @@ void TestSessionRecording::simulatedRawFiles_haveFramesOnTheirClock() {
   QVERIFY(frames > 3);
 }
 
+// Users of Prophesee cameras have these two files. Both are on one clock and hold everything that was simulated.
 void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 0.5;

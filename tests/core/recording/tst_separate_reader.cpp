@@ -156,10 +156,12 @@ void TestSeparateReader::reader_thatHangs_isEnded() {
 }
 
 void TestSeparateReader::serverThatCannotStart_isSaid() {
+  using Server = std::vector<std::string>;
   for (const auto& [server, problem] :
-       {std::pair{"/nowhere/server", "No such file"}, std::pair{"/bin/false", "exit code 1"}}) {
+       {std::pair{Server{"/nowhere/server"}, "No such file"}, std::pair{Server{"/bin/false"}, "exit code 1"},
+        std::pair{Server{"/bin/sh", "-c", "kill -9 $$"}, "was killed"}}) {
     try {
-      SeparateReader reader("some.h5", std::vector<std::string>{server});
+      SeparateReader reader("some.h5", server);
       QFAIL("opened");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::CalibrationFailed);

@@ -69,7 +69,7 @@ std::optional<LensFile> readLensFile(const std::filesystem::path& file) {
   LensFile found{layout->name, layout->read(file)};
   std::erase_if(found.read.cameras, [](const ReadCamera& camera) { return !camera.lens; });
   if (found.read.cameras.empty())
-    throw badInput(file.string(), std::string("is ") + layout->name + ", but holds no complete camera",
+    throw badInput(file.string(), std::string("read as ") + layout->name + ", but holds no complete camera",
                    "Give a file with a camera's intrinsics: its matrix and its distortion");
   return found;
 }

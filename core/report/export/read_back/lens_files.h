@@ -13,7 +13,7 @@
 namespace evical {
 
 struct LensFile {
-  const char* layout;  // for people: "basalt's calibration"
+  const char* layout;  // for people: "a basalt calibration"
   ReadFile read;       // each of its cameras has a lens
 };
 

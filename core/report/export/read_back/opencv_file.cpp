@@ -84,12 +84,12 @@ std::vector<double> OpencvNode::matrixNumbers() const {
   } catch (const cv::Exception& error) {
     fail("is no matrix to OpenCV: " + std::string(error.what()));
   }
-  if (read.empty() || read.channels() != 1) fail("is no matrix of numbers");
+  if (read.empty() || read.channels() != 1) fail("is not a matrix of numbers");
   cv::Mat real;
   read.convertTo(real, CV_64F);
   const std::vector<double> values = real.reshape(1, 1);
   if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
-    fail("must hold numbers");
+    fail("has values that are not finite");
   return values;
 }
 

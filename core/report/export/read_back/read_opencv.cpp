@@ -151,7 +151,7 @@ std::optional<bool> saysFisheye(const OpencvNode& node) {
 CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, std::optional<bool> fisheye,
                               Resolution size) {
   const std::vector<double> k = node[keys.k].matrixNumbers();
-  if (k.size() != 9) node[keys.k].fail("is no 3 x 3 matrix");
+  if (k.size() != 9) node[keys.k].fail("is not a 3 x 3 matrix");
   constexpr double kNoSkew_px = 1e-3;
   if (std::abs(k[1]) > kNoSkew_px) node[keys.k].fail("has a skew, which is not supported");
   const std::vector<double> intrinsics{k[0], k[4], k[2], k[5]};

@@ -68,31 +68,31 @@ Resolution orbSlam3SizeOf(const OpencvFile& file) {
   return {file["Camera.width"].integer(), file["Camera.height"].integer()};
 }
 
+// `side`: "LEFT" or "RIGHT" of stereo settings before ORB-SLAM3 1.0.
+ReadCamera orbSlam2CameraOf(const OpencvFile& file, const std::string& side) {
+  const std::vector<double> k = file[side + ".K"].matrixNumbers(), d = file[side + ".D"].matrixNumbers();
+  if (k.size() != 9) file[side + ".K"].fail("is not a 3 x 3 matrix");
+  const bool fisheye = file.has("Camera.type") && file["Camera.type"].text() == "KannalaBrandt8";
+  if (!fisheye && d.size() == 4)
+    file[side + ".D"].fail("fits two lens models: four numbers without Camera.type");
+  if (fisheye ? d.size() != 4 : d.size() != 5)
+    file[side + ".D"].fail("must have five numbers, or four for a fisheye lens");
+  ReadCamera camera;
+  camera.name = side;
+  camera.lens = lensFrom(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
+                         {k[0], k[4], k[2], k[5]}, d,
+                         {file[side + ".width"].integer(), file[side + ".height"].integer()});
+  return camera;
+}
+
 }  // namespace
 
 ReadFile readOrbSlam3File(const std::filesystem::path& path) {
   const OpencvFile file(path);
   ReadFile read{path};
-  // Stereo settings before ORB-SLAM3 1.0: Camera.* is the rectified camera, the real ones are here.
-  if (file.has("LEFT.K")) {
-    for (const char* side : {"LEFT", "RIGHT"}) {
-      const std::string name(side);
-      if (!file.has(name + ".K")) continue;
-      const std::vector<double> k = file[name + ".K"].matrixNumbers(), d = file[name + ".D"].matrixNumbers();
-      if (k.size() != 9) file[name + ".K"].fail("is not a 3 x 3 matrix");
-      const bool fisheye = file.has("Camera.type") && file["Camera.type"].text() == "KannalaBrandt8";
-      if (!fisheye && d.size() == 4)
-        file[name + ".D"].fail("fits two lens models: four numbers without Camera.type");
-      if (fisheye ? d.size() != 4 : d.size() != 5)
-        file[name + ".D"].fail("must have five numbers, or four for a fisheye lens");
-      ReadCamera& found = read.cameras.emplace_back();
-      found.name = name;
-      found.lens = lensFrom(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
-                            {k[0], k[4], k[2], k[5]}, d,
-                            {file[name + ".width"].integer(), file[name + ".height"].integer()});
-    }
-    return read;
-  }
+  for (const char* side : {"LEFT", "RIGHT"})
+    if (file.has(std::string(side) + ".K")) read.cameras.push_back(orbSlam2CameraOf(file, side));
+  if (!read.cameras.empty()) return read;  // then Camera.* is the rectified camera
   const Resolution size = file.has("Camera.width") ? orbSlam3SizeOf(file) : Resolution{};
   if (file.has("IMU.NoiseGyro")) read.imus.emplace_back();  // a note says that it is not imported
   for (const char* camera : {"Camera", "Camera1", "Camera2"}) {
