@@ -1,7 +1,7 @@
 #include "app/bash_completion.h"
 
 #include "app/option_value.h"
-#include "core/pipeline/calibration_options.h"
+#include "core/pipeline/session/calibration_options.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -7,8 +7,8 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
-#include "core/pipeline/batch_run.h"
-#include "core/pipeline/batch_table.h"
+#include "core/pipeline/batch/batch_run.h"
+#include "core/pipeline/batch/batch_table.h"
 
 #include <algorithm>
 #include <filesystem>

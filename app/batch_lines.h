@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/stopwatch.h"
-#include "core/pipeline/batch_run.h"
+#include "core/pipeline/batch/batch_run.h"
 
 #include <cstddef>
 

@@ -9,10 +9,10 @@
 #include "core/base/new_folder.h"
 #include "core/base/run_trace.h"
 #include "core/data/calibration_stage.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/result_files.h"
-#include "core/pipeline/saved_detections.h"
-#include "core/pipeline/unfinished_run.h"
+#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/runs/unfinished_run.h"
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>

@@ -6,9 +6,9 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
-#include "core/pipeline/check_calibration.h"
-#include "core/pipeline/check_files.h"
-#include "core/pipeline/check_options.h"
+#include "core/pipeline/check/check_calibration.h"
+#include "core/pipeline/check/check_files.h"
+#include "core/pipeline/session/check_options.h"
 #include "core/report/check_report.h"
 
 #include <fmt/format.h>

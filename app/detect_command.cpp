@@ -9,9 +9,9 @@
 #include "core/data/calibration_stage.h"
 #include "core/frontend/board_tracker.h"
 #include "core/frontend/stage_image_writer.h"
-#include "core/pipeline/board_size_check.h"
-#include "core/pipeline/recording_pass.h"
-#include "core/pipeline/result_files.h"
+#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/runs/result_files.h"
 
 #include <fmt/format.h>
 

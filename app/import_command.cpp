@@ -4,7 +4,7 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/pipeline/import_session.h"
+#include "core/pipeline/session/import_session.h"
 
 #include <fmt/format.h>
 

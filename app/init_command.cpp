@@ -4,7 +4,7 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/pipeline/session_guess.h"
+#include "core/pipeline/session/session_guess.h"
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>

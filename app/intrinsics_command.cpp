@@ -7,9 +7,9 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
-#include "core/pipeline/intrinsics_calibration.h"
-#include "core/pipeline/intrinsics_files.h"
-#include "core/pipeline/session_recording.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
+#include "core/pipeline/lens/intrinsics_files.h"
+#include "core/pipeline/pass/session_recording.h"
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>

@@ -5,9 +5,9 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
-#include "core/pipeline/calibration_options.h"
-#include "core/pipeline/maintain_files.h"
-#include "core/pipeline/maintain_imus.h"
+#include "core/pipeline/maintain/maintain_files.h"
+#include "core/pipeline/maintain/maintain_imus.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/report/maintenance_report.h"
 
 #include <fmt/format.h>

@@ -8,7 +8,7 @@
 #include "app/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/new_folder.h"
-#include "core/pipeline/calibration_options.h"
+#include "core/pipeline/session/calibration_options.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

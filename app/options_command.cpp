@@ -1,7 +1,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/output.h"
-#include "core/pipeline/option_pages.h"
+#include "core/pipeline/session/option_pages.h"
 
 #include <fmt/format.h>
 

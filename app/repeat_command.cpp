@@ -5,7 +5,7 @@
 #include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/error.h"
-#include "core/pipeline/repeat_files.h"
+#include "core/pipeline/repeat/repeat_files.h"
 #include "core/report/repeat_report.h"
 
 #include <fmt/format.h>

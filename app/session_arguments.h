@@ -2,7 +2,7 @@
 // group.option=value ...] [--threads N] [--quiet].
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <string>
 #include <vector>

@@ -2,8 +2,8 @@
 // script, submit it, and ask how far it is.
 #pragma once
 
-#include "core/pipeline/batch_jobs.h"
-#include "core/pipeline/batch_outcome.h"
+#include "core/pipeline/batch/batch_jobs.h"
+#include "core/pipeline/batch/batch_outcome.h"
 
 #include <filesystem>
 #include <span>

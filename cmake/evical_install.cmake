@@ -34,6 +34,7 @@ install(CODE "include(\"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\")
     list(APPEND folders \"\${folder}\")
   endforeach()
   # <evical/base/error.h> is core/base/error.h.
+  list(TRANSFORM folders REPLACE \"^(core/[a-z]+)/.*\" \"\\\\1\")
   list(REMOVE_DUPLICATES folders)
   foreach(folder IN LISTS folders)
     if(folder MATCHES \"^core/([a-z]+)\$\")

@@ -1,8 +1,8 @@
 // Calibrates a session's sensors and prints where the cameras are, with sigmas: calibrate SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/session/session.h"
 
 #include <cstdio>
 #include <string>

@@ -1,8 +1,8 @@
 // Finds the board in a session's recording and prints where its first circle is: detect_board SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/pipeline/recording_pass.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/session/session.h"
 
 #include <cstdio>
 

@@ -1,8 +1,8 @@
 #include "python/result.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/result_files.h"
-#include "core/pipeline/run_data.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/runs/run_data.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // A result with all that its folder keeps of the run.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/report/result_yaml.h"
 
 #include <filesystem>

@@ -1,9 +1,9 @@
 // evical.Session: what is to be calibrated, of which recording.
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/session_guess.h"
-#include "core/pipeline/session_keys.h"
+#include "core/pipeline/session/session_guess.h"
+#include "core/pipeline/session/session_keys.h"
 #include "core/recording/recording_reader.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

@@ -26,7 +26,7 @@ function(check name expected)
 endfunction()
 
 check(clean "" core/frontend/a.cpp "#include \"core/data/event.h\"" core/data/event.h "#include <Eigen/Core>"
-      core/pipeline/p.cpp "#include \"core/frontend/a.h\"" core/optimisation/solve.cpp "#include <ceres/ceres.h>")
+      core/pipeline/rig/p.cpp "#include \"core/frontend/a.h\"" core/optimisation/solve.cpp "#include <ceres/ceres.h>")
 check(stage_to_stage "core/frontend may not include core/optimisation"
       core/frontend/a.cpp "#include \"core/optimisation/b.h\"")
 check(against_arrow "core/base may not include core/geometry" core/base/a.h "#include \"core/geometry/b.h\"")
@@ -34,6 +34,9 @@ check(numerics_to_geometry "core/numerics may not include core/geometry" core/nu
 check(numerics_everywhere "" core/geometry/a.cpp "#include \"core/numerics/b.h\"" core/report/a.cpp "#include \"core/numerics/b.h\""
       core/numerics/b.h "#include <Eigen/Core>")
 check(stage_to_pipeline "core/report may not include core/pipeline" core/report/a.h "#include \"core/pipeline/b.h\"")
+check(program_to_program "core/pipeline/rig may not include core/pipeline/check" core/pipeline/rig/a.h
+      "#include \"core/pipeline/check/b.h\"")
+check(program_of_no_layer "core/pipeline is no layer" core/pipeline/a.h "#include <string>")
 check(core_to_app "core knows nothing of app" core/report/a.cpp "#include \"app/b.h\"")
 check(qt_in_core "core has neither Qt nor VTK" core/report/a.cpp "#include <QString>")
 check(qt_module_in_core "core has neither Qt nor VTK" core/report/a.cpp "#  include <QtCore/QString>")
@@ -48,9 +51,9 @@ check(app_to_python "app knows nothing of python" app/evical.cpp "#include \"pyt
 check(qt_linked "links Qt or VTK" core/report/CMakeLists.txt "target_link_libraries(x Qt6::Core)")
 check(unknown_layer "is no layer" core/helpers/a.cpp "#include <string>")
 check(library_in_header "shows ceres/ceres.h" core/optimisation/a.h "#include <ceres/ceres.h>"
-      core/pipeline/p.cpp "#include \"core/optimisation/a.h\"")
+      core/pipeline/rig/p.cpp "#include \"core/optimisation/a.h\"")
 check(library_by_way_of_header "core/optimisation/b.h: shows fmt/format.h" core/optimisation/a.h
-      "#include \"core/optimisation/b.h\"" core/optimisation/b.h "#include <fmt/format.h>" core/pipeline/p.cpp
+      "#include \"core/optimisation/b.h\"" core/optimisation/b.h "#include <fmt/format.h>" core/pipeline/rig/p.cpp
       "#include \"core/optimisation/a.h\"")
 check(library_in_own_header "" core/optimisation/a.h "#include <ceres/ceres.h>" core/optimisation/a.cpp
       "#include \"core/optimisation/a.h\"")

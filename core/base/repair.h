@@ -7,7 +7,7 @@ namespace evical {
 
 struct Repair {
   // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU, "imus.left_imu.acceleration_unit", or
-  // "time_range_s": setInSession (core/pipeline/session.h) takes them all.
+  // "time_range_s": setInSession (core/pipeline/session/session.h) takes them all.
   std::string key, value;
 
   bool operator==(const Repair&) const = default;

@@ -1,5 +1,5 @@
 // The stages of a calibration, one row each: what they are called in progress, logs and result.yaml, and how
-// much of a run's time they take. What they do is in core/pipeline/calibration_pipeline.cpp.
+// much of a run's time they take. What they do is in core/pipeline/rig/calibration_pipeline.cpp.
 #pragma once
 
 #include "core/data/calibration_result.h"

@@ -3,8 +3,8 @@
 // duration, and calibrated over its first seconds, in a process of its own each time. Of several durations the growth's
 // exponent is told.
 #include "core/base/stopwatch.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/simulation.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "core/report/result_yaml.h"
 #include "tests/benchmarks/benchmark_program.h"
 

@@ -4,8 +4,8 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/sphere_lens.h"
-#include "core/pipeline/intrinsics_calibration.h"
-#include "core/pipeline/simulation.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/benchmarks/scenario_run.h"
 

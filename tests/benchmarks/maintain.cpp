@@ -1,8 +1,8 @@
 // What `evical maintain` reaches on simulated logs, as a table; fails where a target is missed. --runs of the logs in
 // which nothing happens, --hour for memory and time.
 #include "core/maintenance/stop_calibration.h"
-#include "core/pipeline/drive_simulation.h"
-#include "core/pipeline/maintain_imus.h"
+#include "core/pipeline/maintain/maintain_imus.h"
+#include "core/pipeline/simulate/drive_simulation.h"
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>

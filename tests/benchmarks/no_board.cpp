@@ -3,7 +3,7 @@
 #include "core/base/in_parallel.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/check_without_board.h"
+#include "core/pipeline/check/check_without_board.h"
 #include "core/report/check_report.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"

@@ -2,8 +2,8 @@
 // [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs once a recording; what is perturbed is
 // what comes after it, but for rows that say otherwise (tests/support/perturbations.cpp).
 #include "core/numerics/angles.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/result_files.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/runs/result_files.h"
 #include "core/report/truth_comparison.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/perturbations.h"

@@ -4,9 +4,9 @@
 // and solved with everything else.
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/result_files.h"
-#include "core/pipeline/simulation.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "core/report/truth_comparison.h"
 #include "tests/benchmarks/benchmark_program.h"
 

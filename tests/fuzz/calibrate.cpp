@@ -1,7 +1,7 @@
 // Recordings that parse but lie go the whole way from file to verdict: bytes are lies (tests/support/lying_recording.h).
 // Ends in a result or in words, within the fuzzer's bounds of time and memory.
 #include "core/base/error.h"
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/support/lying_recording.h"
 

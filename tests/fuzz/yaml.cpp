@@ -2,7 +2,7 @@
 // results, scenarios with their boards.
 #include "core/base/error.h"
 #include "core/data/intrinsics_yaml.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/fuzz/input_file.h"

@@ -37,7 +37,7 @@ without=() tag=appstream-metadata-validation-failed
 lintian --allow-root "${without[@]}" --fail-on error,warning "$scratch"/first/*.deb || fail "lintian"
 
 contents="bin/evical share/bash-completion/completions/evical share/man/man1/evical.1.gz share/man/man1/evical-calibrate.1.gz
-  share/evical/scenarios/davis346.yaml share/evical/default.yaml include/evical/core/pipeline/session.h"
+  share/evical/scenarios/davis346.yaml share/evical/default.yaml include/evical/core/pipeline/session/session.h"
 [ "$gui" = OFF ] || contents+=" bin/evical-gui share/man/man1/evical-gui.1.gz share/applications/evical.desktop
   share/metainfo/org.evical.evical.metainfo.xml share/mime/packages/evical.xml share/icons/hicolor/scalable/apps/evical.svg"
 for file in $contents; do

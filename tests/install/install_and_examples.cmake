@@ -62,7 +62,7 @@ expect("${output}" "translation .* sigma .*time offset .* ms" calibrate)
 # Headers by the package's name alone, and the target spelt as the package is.
 set(prefixed "${SCRATCH}/prefixed")
 file(WRITE "${prefixed}/main.cpp" "#include <evical/base/error.h>
-#include <evical/pipeline/session.h>
+#include <evical/pipeline/session/session.h>
 int main() {
   try {
     evical::readSession(\"nowhere.yaml\");

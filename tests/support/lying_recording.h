@@ -4,7 +4,7 @@
 
 #include "core/data/event.h"
 #include "core/data/imu_sample.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
 
 #include <cstdint>

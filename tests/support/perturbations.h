@@ -2,8 +2,8 @@
 // tests of verdicts. What the events show is left as it is, so that the front end's work serves for all.
 #pragma once
 
-#include "core/pipeline/recording_pass.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 // what is known of each. Files that a session needs beside them are written into `work`.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <QDir>
 #include <QString>

@@ -2,8 +2,8 @@
 // events: seconds instead of minutes.
 #pragma once
 
-#include "core/pipeline/recording_pass.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
 
 #include <string>

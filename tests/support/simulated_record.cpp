@@ -1,6 +1,6 @@
 #include "tests/support/simulated_record.h"
 
-#include "core/pipeline/camera_motion.h"
+#include "core/pipeline/check/camera_motion.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/support/processor_time.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/egomotion/camera_record.h"
-#include "core/pipeline/calibration_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/synthetic/scenario.h"
 
 namespace evical::test {

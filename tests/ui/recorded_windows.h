@@ -2,8 +2,8 @@
 // A short recording with what the front end says of its windows, for tests of the detection screen.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/support/simulated_recording.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/detection_screen.h"

@@ -2,7 +2,7 @@
 // A run with a trajectory, the screen that shows it, and what can be seen there.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/ui/opengl.h"
 #include "tests/ui/slowdown.h"

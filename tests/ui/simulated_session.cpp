@@ -3,8 +3,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/session.h"
-#include "core/pipeline/simulation.h"
+#include "core/pipeline/session/session.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What comes before a recording: a board that is printed and measured, and how to move before it.
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "core/report/blink_page.h"
 #include "core/report/board_drawing.h"
 #include "tests/support/test_program.h"

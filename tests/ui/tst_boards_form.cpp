@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/boards_form.h"
 
-#include "core/pipeline/session_boards.h"
+#include "core/pipeline/session/session_boards.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/document/calibration_document.h"

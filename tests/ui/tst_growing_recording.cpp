@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A recording that another program is still writing: its card tells more and more, and notices the end.
-#include "core/pipeline/simulation.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/file_content.h"

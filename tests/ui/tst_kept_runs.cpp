@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that last: undone, kept, opened again, compared; with a recording that is gone, and from a damaged folder.
-#include "core/pipeline/run_data.h"
-#include "core/pipeline/saved_run.h"
+#include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "tests/ui/simulated_session.h"

@@ -1,5 +1,5 @@
 // The story of who cannot go before a board again: logs of the IMUs are held against the old result.
-#include "core/pipeline/drive_simulation.h"
+#include "core/pipeline/simulate/drive_simulation.h"
 #include "core/report/maintenance_report.h"
 #include "core/synthetic/drive_scenario.h"
 #include "tests/support/test_folders.h"

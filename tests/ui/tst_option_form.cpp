@@ -2,7 +2,7 @@
 #include "ui/forms/option_form.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/calibration_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "ui/forms/option_editor.h"

@@ -3,7 +3,7 @@
 
 #include "core/data/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
-#include "core/pipeline/session_guess.h"
+#include "core/pipeline/session/session_guess.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/forms/number_field.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/pipeline/view_rejection.h"
+#include "core/pipeline/pass/view_rejection.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"

@@ -2,7 +2,7 @@
 #include "ui/screens/result_screen.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/result_files.h"
+#include "core/pipeline/runs/result_files.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"

@@ -3,7 +3,7 @@
 // at the cursor, one runs the front end on the window there. Only the newest wish of each kind is fulfilled.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/events_over_frame.h"

@@ -3,8 +3,8 @@
 // stage, a timeline of the whole recording, and why a window or a frame came out as it did.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/view_rejection.h"
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/detection/colour_legend.h"
 #include "ui/detection/layers.h"
 #include "ui/detection/live_detection.h"

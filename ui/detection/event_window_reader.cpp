@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/pipeline/session_recording.h"
+#include "core/pipeline/pass/session_recording.h"
 
 #include <algorithm>
 #include <chrono>

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "ui/detection/event_cache.h"
 #include "ui/detection/frame_cache.h"
 #include "ui/detection/rate_curve.h"

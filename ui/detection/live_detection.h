@@ -5,7 +5,7 @@
 
 #include "core/data/calibration_observer.h"
 #include "core/frontend/front_end_options.h"
-#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/pass/recording_pass.h"
 #include "ui/jobs/mailbox.h"
 
 #include <QObject>

@@ -3,7 +3,7 @@
 // Pure functions, for worker threads.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 
 #include <limits>
 #include <optional>

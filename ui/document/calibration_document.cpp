@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
-#include "core/pipeline/session_boards.h"
-#include "core/pipeline/session_keys.h"
+#include "core/pipeline/session/session_boards.h"
+#include "core/pipeline/session/session_keys.h"
 
 #include <QFileInfo>
 #include <QUndoCommand>

@@ -3,9 +3,9 @@
 // they are compared with. GUI thread only; knows no widgets.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/session.h"
-#include "core/pipeline/view_rejection.h"
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 #include "ui/document/calibration_aim.h"
 

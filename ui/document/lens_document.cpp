@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/document/lens_document.h"
 
-#include "core/pipeline/lens_comparison.h"
+#include "core/pipeline/lens/lens_comparison.h"
 
 #include <QFileInfo>
 

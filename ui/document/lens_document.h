@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/data/intrinsics_yaml.h"
-#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
 #include "ui/document/calibration_aim.h"
 #include "ui/document/calibration_document.h"
 

@@ -2,7 +2,7 @@
 #include "ui/document/printed_board.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/session_boards.h"
+#include "core/pipeline/session/session_boards.h"
 
 #include <QSettings>
 

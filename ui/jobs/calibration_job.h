@@ -4,7 +4,7 @@
 
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
 #include "ui/jobs/live_detections.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
-#include "core/pipeline/session_recording.h"
+#include "core/pipeline/pass/session_recording.h"
 #include "ui/jobs/mailbox.h"
 
 #include <utility>

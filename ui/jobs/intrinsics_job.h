@@ -2,7 +2,7 @@
 // The calibration of one camera's lens as a job: the front end is seen at work, and each pass tells what it left.
 #pragma once
 
-#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/job_runner.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/maintenance.h"
-#include "core/pipeline/maintain_imus.h"
+#include "core/pipeline/maintain/maintain_imus.h"
 #include "ui/jobs/job_runner.h"
 
 #include <QObject>

@@ -3,7 +3,7 @@
 // begins, and starts anew afterwards. What it detects is kept, so that a calibration need not detect it again.
 #pragma once
 
-#include "core/pipeline/recording_assessment.h"
+#include "core/pipeline/rig/recording_assessment.h"
 #include "ui/jobs/job_runner.h"
 
 #include <QObject>

@@ -2,8 +2,8 @@
 #include "ui/jobs/repeat_job.h"
 
 #include "core/data/calibration_stage.h"
-#include "core/pipeline/prefixed_progress.h"
-#include "core/pipeline/repeat_files.h"
+#include "core/pipeline/repeat/repeat_files.h"
+#include "core/pipeline/rig/prefixed_progress.h"
 
 #include <algorithm>
 #include <utility>

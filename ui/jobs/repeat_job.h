@@ -2,7 +2,7 @@
 // Several recordings of one rig, alone and together, as a job: what `evical repeat` does.
 #pragma once
 
-#include "core/pipeline/repeat_calibration.h"
+#include "core/pipeline/repeat/repeat_calibration.h"
 #include "ui/jobs/job_runner.h"
 
 #include <QObject>

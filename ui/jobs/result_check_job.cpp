@@ -2,7 +2,7 @@
 #include "ui/jobs/result_check_job.h"
 
 #include "core/data/calibration_stage.h"
-#include "core/pipeline/prefixed_progress.h"
+#include "core/pipeline/rig/prefixed_progress.h"
 
 #include <utility>
 #include <vector>

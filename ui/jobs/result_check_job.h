@@ -2,7 +2,7 @@
 // Whether an old calibration still holds, as a job: what `evical check` does.
 #pragma once
 
-#include "core/pipeline/check_calibration.h"
+#include "core/pipeline/check/check_calibration.h"
 #include "ui/jobs/job_runner.h"
 
 #include <QObject>

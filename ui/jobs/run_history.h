@@ -3,7 +3,7 @@
 // and writes in a thread of its own, one after the other; GUI thread only.
 #pragma once
 
-#include "core/pipeline/saved_run.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "core/report/result_yaml.h"
 #include "ui/jobs/job_runner.h"
 

@@ -4,7 +4,7 @@
 // band of plus and minus one sigma.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 
 #include <QWidget>
 

@@ -4,7 +4,7 @@
 // were seen and residuals point.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 
 #include <QWidget>
 
@@ -53,8 +53,9 @@ class ResidualsScreen : public QWidget {
   void timeSelected(double time_s);              // the middle of a window
   void windowWanted(int camera, double time_s);  // to be looked at
   void thresholdChanged(double rms_px);
-  void recalibrateWithout(const std::vector<int>& views);  // of camera(); see core/pipeline/view_rejection.h
-  void ready();                                            // all charts show the run that was set last
+  void recalibrateWithout(
+      const std::vector<int>& views);  // of camera(); see core/pipeline/pass/view_rejection.h
+  void ready();                        // all charts show the run that was set last
 
  private:
   void showNote();

@@ -4,7 +4,7 @@
 // offset. All on the camera's clock.
 #pragma once
 
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 
 #include <QWidget>
 

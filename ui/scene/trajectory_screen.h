@@ -6,7 +6,7 @@
 
 #include "core/data/board_observations.h"
 #include "core/data/calibration_state.h"
-#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/scene/frustum_events.h"
 #include "ui/scene/trajectory_scene.h"
 

@@ -2,7 +2,7 @@
 #include "ui/screens/boards_form.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/session_boards.h"
+#include "core/pipeline/session/session_boards.h"
 #include "ui/screens/board_chooser.h"
 #include "ui/screens/board_form.h"
 

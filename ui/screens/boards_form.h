@@ -2,7 +2,7 @@
 // The session's boards: one form, of the one that is chosen, and who sees it.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <QWidget>
 

@@ -2,7 +2,7 @@
 // One camera of the session: name, resolution, intrinsics from a file or as numbers.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <QWidget>
 

@@ -3,7 +3,7 @@
 // at, and what to do better.
 #pragma once
 
-#include "core/pipeline/recording_assessment.h"
+#include "core/pipeline/rig/recording_assessment.h"
 
 #include <QFrame>
 

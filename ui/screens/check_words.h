@@ -2,7 +2,7 @@
 // What the card that judges a recording says.
 #pragma once
 
-#include "core/pipeline/recording_assessment.h"
+#include "core/pipeline/rig/recording_assessment.h"
 
 #include <QString>
 

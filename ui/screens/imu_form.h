@@ -2,7 +2,7 @@
 // One IMU of the session: name, noise densities with presets, units.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <QWidget>
 

@@ -3,7 +3,7 @@
 // what it rests on.
 #pragma once
 
-#include "core/pipeline/lens_comparison.h"
+#include "core/pipeline/lens/lens_comparison.h"
 #include "core/report/intrinsics_report.h"
 
 #include <QString>

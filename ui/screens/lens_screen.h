@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/data/intrinsics_yaml.h"
-#include "core/pipeline/lens_comparison.h"
+#include "core/pipeline/lens/lens_comparison.h"
 #include "core/report/intrinsics_report.h"
 
 #include <QWidget>

@@ -2,7 +2,7 @@
 // A light that is told by its shape, too: a disc, a triangle, a square.
 #pragma once
 
-#include "core/pipeline/recording_assessment.h"
+#include "core/pipeline/rig/recording_assessment.h"
 
 #include <QString>
 #include <QWidget>

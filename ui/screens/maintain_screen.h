@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/maintenance.h"
-#include "core/pipeline/imu_logs.h"
+#include "core/pipeline/maintain/imu_logs.h"
 
 #include <QWidget>
 

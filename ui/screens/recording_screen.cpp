@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording_screen.h"
 
-#include "core/pipeline/session_boards.h"
-#include "core/pipeline/session_guess.h"
+#include "core/pipeline/session/session_boards.h"
+#include "core/pipeline/session/session_guess.h"
 #include "ui/screens/aim_chooser.h"
 #include "ui/screens/boards_form.h"
 #include "ui/screens/camera_form.h"

@@ -2,8 +2,8 @@
 // What is in the recording, and what must be known of it: streams and their roles, the board, the sensors.
 #pragma once
 
-#include "core/pipeline/recording_assessment.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/rig/recording_assessment.h"
+#include "core/pipeline/session/session.h"
 #include "core/recording/inspection.h"
 
 #include <QWidget>

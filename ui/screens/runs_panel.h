@@ -2,7 +2,7 @@
 // The runs of a session as a list: opened, compared, named and deleted.
 #pragma once
 
-#include "core/pipeline/saved_run.h"
+#include "core/pipeline/runs/saved_run.h"
 
 #include <QString>
 #include <QWidget>

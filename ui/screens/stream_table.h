@@ -2,7 +2,7 @@
 // The streams of a recording, what is in them, and which part each plays.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 #include "core/recording/inspection.h"
 
 #include <QTableWidget>

@@ -2,7 +2,7 @@
 // Where a result goes and which programs it is exported for, a line about each. Kalibr's files are always written.
 #pragma once
 
-#include "core/pipeline/session.h"
+#include "core/pipeline/session/session.h"
 
 #include <QDialog>
 

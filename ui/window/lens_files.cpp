@@ -2,7 +2,7 @@
 #include "ui/window/lens_files.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/intrinsics_files.h"
+#include "core/pipeline/lens/intrinsics_files.h"
 #include "ui/screens/lens_file.h"
 
 #include <QDir>

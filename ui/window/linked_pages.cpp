@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/linked_pages.h"
 
-#include "core/pipeline/view_rejection.h"
+#include "core/pipeline/pass/view_rejection.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"

@@ -2,7 +2,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/idle_options.h"
+#include "core/pipeline/session/idle_options.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"

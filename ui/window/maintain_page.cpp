@@ -2,7 +2,7 @@
 #include "ui/window/maintain_page.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/maintain_files.h"
+#include "core/pipeline/maintain/maintain_files.h"
 #include "ui/plots/maintenance_charts.h"
 #include "ui/screens/file_list.h"
 #include "ui/screens/maintain_screen.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/pages.h"
 
-#include "core/pipeline/result_files.h"
+#include "core/pipeline/runs/result_files.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"
 #include "ui/plots/maintenance_charts.h"

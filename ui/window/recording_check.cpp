@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/recording_check.h"
 
-#include "core/pipeline/session_guess.h"
+#include "core/pipeline/session/session_guess.h"
 #include "ui/screens/check_card.h"
 #include "ui/screens/recording_screen.h"
 #include "ui/window/print_board.h"

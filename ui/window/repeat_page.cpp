@@ -2,7 +2,7 @@
 #include "ui/window/repeat_page.h"
 
 #include "core/base/error.h"
-#include "core/pipeline/repeat_files.h"
+#include "core/pipeline/repeat/repeat_files.h"
 #include "ui/screens/file_list.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_screen.h"

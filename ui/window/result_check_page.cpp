@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/result_check_page.h"
 
-#include "core/pipeline/check_files.h"
+#include "core/pipeline/check/check_files.h"
 #include "ui/screens/old_result_row.h"
 #include "ui/screens/result_check_screen.h"
 #include "ui/screens/work_bar.h"

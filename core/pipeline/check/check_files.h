@@ -1,0 +1,14 @@
+// What a check leaves in its folder: check.yaml, report.html with its tables, log.txt. All appear together, or none.
+#pragma once
+
+#include "core/pipeline/check/check_calibration.h"
+
+#include <filesystem>
+#include <string>
+
+namespace evical {
+
+void writeCheckFiles(const std::filesystem::path& folder, const CheckInput& input, const CheckRun& checked,
+                     const std::string& version, const std::string& log);
+
+}  // namespace evical

@@ -1,0 +1,260 @@
+#include "core/pipeline/check/check_without_board.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/data/calibration_stage.h"
+#include "core/data/quantity.h"
+#include "core/data/unfit_samples.h"
+#include "core/egomotion/rotation_alignment.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/dense.h"
+#include "core/pipeline/check/check_verdict.h"
+#include "core/pipeline/compare/compared_quantities.h"
+#include "core/pipeline/session/check_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace evical {
+namespace {
+
+// What the windows say of why there are no more of them, as people may mend it.
+const char* adviceFor(WindowUse use) {
+  switch (use) {
+    case WindowUse::FewEdges:
+      return "Move more, where there is more to see: edges are needed all over the image";
+    case WindowUse::HardlyMoving:
+      return "Turn the rig more: the image hardly moved";
+    case WindowUse::NotExplained:
+      return "Record where nothing else moves and no lamp flickers";
+    case WindowUse::Uncertain:
+      return "Record where the image has edges in all directions";
+    case WindowUse::NoGyroscope:
+      return "Check the IMU's samples with 'evical inspect': they do not cover the camera's events";
+    case WindowUse::OutOfLine:
+      return "Check that the lens and the IMU's units are those of this rig";
+    case WindowUse::Used:
+      break;
+  }
+  return "Record for longer: twice the time makes sigmas 1.4 times smaller";
+}
+
+const char* keyOf(WindowUse use) {
+  static constexpr std::array<const char*, kWindowUses> kKeys = {
+      "used", "few_edges", "hardly_moving", "not_explained", "uncertain", "no_gyroscope", "out_of_line"};
+  return kKeys.at(static_cast<std::size_t>(use));
+}
+
+CheckedWindows countedWindows(const std::string& sensor, const std::vector<WindowMotion>& windows) {
+  CheckedWindows counted;
+  counted.sensor = sensor;
+  counted.all = windows.size();
+  std::array<std::size_t, kWindowUses> uses = {};
+  for (const WindowMotion& window : windows) {
+    ++uses[static_cast<std::size_t>(window.use)];
+    counted.turning_alone += window.use == WindowUse::Used && window.rotation_alone;
+  }
+  counted.used = uses[static_cast<std::size_t>(WindowUse::Used)];
+  for (std::size_t k = 1; k < kWindowUses; ++k)
+    if (uses[k] > 0)
+      counted.left_out.push_back(
+          {keyOf(static_cast<WindowUse>(k)), windowUseWords(static_cast<WindowUse>(k)), uses[k]});
+  return counted;
+}
+
+WindowUse commonest(const std::vector<WindowMotion>& windows) {
+  std::array<std::size_t, kWindowUses> uses = {};
+  for (const WindowMotion& window : windows)
+    if (window.use != WindowUse::Used) ++uses[static_cast<std::size_t>(window.use)];
+  const auto most = std::max_element(uses.begin(), uses.end());
+  return *most == 0 ? WindowUse::Used : static_cast<WindowUse>(most - uses.begin());
+}
+
+const char* nameOfAxis(const Eigen::Vector3d& direction) {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return kNames.at(static_cast<std::size_t>(axis));
+}
+
+class BoardlessCheck {
+ public:
+  BoardlessCheck(const CheckInput& input, BoardlessPass pass, const RunContext& context)
+      : input_(input), pass_(std::move(pass)), context_(context) {
+    CalibrationCheck& check = out_.check;
+    check.notes = input.notes;
+    check.false_alarms = input.session.options.check->false_alarms;
+    check.before = input.before_name;
+    check.recording = input.session.recording.filename().string();
+    check.without_board = true;
+    check.notes.push_back(
+        "without a board, rotations and time offsets of event cameras are checked, and nothing else");
+    out_.pass.start_ns = pass_.start_ns;
+    out_.pass.faults = pass_.faults;
+    out_.pass.imus = pass_.imus;
+  }
+
+  CheckRun run() {
+    if (input_.before.imus.empty() || pass_.imus.empty()) {
+      setCannotTell("without a board cameras are compared with an IMU, and there is none", out_.check);
+      addAdvice("Record before the board", out_.check);
+      return std::move(out_);
+    }
+    now_ = input_.before;
+    result_ = std::make_shared<CalibrationResult>(*input_.before.result);
+    result_->uncertainty = {};
+    result_->uncertainty.cameras.resize(input_.before.cameras.size());
+    result_->uncertainty.imus.resize(input_.before.imus.size());
+    result_->uncertainty.further_boards.resize(input_.before.result->state.further_boards.size());
+    for (std::size_t k = 0; k < input_.session.cameras.size(); ++k) alignCamera(k);
+    judge();
+    return std::move(out_);
+  }
+
+ private:
+  template <class Sensors>
+  static std::size_t placeOf(const std::string& name, const Sensors& sensors) {
+    const auto found =
+        std::find_if(sensors.begin(), sensors.end(), [&](const auto& sensor) { return sensor.name == name; });
+    return static_cast<std::size_t>(found - sensors.begin());
+  }
+
+  void alignCamera(std::size_t k) {
+    const std::string& name = input_.session.cameras[k].name;
+    if (pass_.kinds[k] != CameraKind::Events) {
+      out_.check.notes.push_back(fmt::format("{} is not checked: it is no event camera", name));
+      return;
+    }
+    const std::size_t imu = placeOf(input_.session.reference, input_.session.imus),
+                      camera_before = placeOf(name, input_.before.cameras),
+                      imu_before = placeOf(input_.session.reference, input_.before.imus);
+    const CameraState& before = input_.before.result->state.cameras.at(camera_before);
+    const std::vector<ImuSample> samples = withoutRateSpikes(pass_.imus.at(imu).samples);
+    const LensRays lens(*input_.session.sensor(k).intrinsics);
+    const RotationAlignment alignment = alignRotation(
+        pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
+        {before.reference_from_camera.rotation, before.time_offset_s}, *input_.session.options.egomotion,
+        input_.session.options.optimisation.threads, context_);
+    const CheckOptions& limits = *input_.session.options.check;
+    const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
+    out_.check.windows.push_back(countedWindows(name, windows));
+    if (!alignment.found())
+      return fail(name, alignment.failure,
+                  alignment.advice.empty() ? std::vector<std::string>{adviceFor(commonest(windows))}
+                                           : alignment.advice);
+    if (alignment.misfit_rms_rad_s > limits.without_board_misfit * alignment.rate_rms_rad_s)
+      return fail(name,
+                  fmt::format("the camera's turns are not the gyroscope's: {:.2g} of {:.2g} rad/s are left",
+                              alignment.misfit_rms_rad_s, alignment.rate_rms_rad_s),
+                  {adviceFor(WindowUse::NotExplained), "Check that camera and IMU are those of one rig"});
+    if (std::abs(alignment.scale - 1.0) > limits.without_board_scale)
+      return fail(name,
+                  fmt::format("the image turns {:.3g} times as fast as the gyroscope says", alignment.scale),
+                  {"Check that the lens is this camera's, and calibrate again before the board"});
+    weakest_ = nameOfAxis(alignment.weakest_in_camera);
+    take(name, camera_before, alignment);
+  }
+
+  void fail(const std::string& camera, const std::string& reason, const std::vector<std::string>& advice) {
+    failures_.push_back(fmt::format("{}: {}", camera, reason));
+    for (const std::string& one : advice) addAdvice(one, out_.check);
+  }
+
+  // Into the result of now, whose only uncertain numbers these are.
+  void take(const std::string& name, std::size_t camera, const RotationAlignment& alignment) {
+    CameraState& state = result_->state.cameras[camera];
+    state.reference_from_camera.rotation = alignment.imu_from_camera;
+    state.time_offset_s = alignment.time_offset_s;
+    const Eigen::Vector4d sigmas = alignment.covariance.diagonal().cwiseSqrt();
+    CameraUncertainty& uncertainty = result_->uncertainty.cameras[camera];
+    uncertainty.rotation_std_rad = sigmas.head<3>();
+    uncertainty.time_offset_std_s = sigmas[3];
+    UncertaintyReport& report = result_->uncertainty;
+    forEachQuantity(kCameraQuantities, [&](const auto& row) {
+      if (row.info.need != QuantityNeed::Rotation && row.info.need != QuantityNeed::TimeOffset) return;
+      for (const QuantityPart& part : quantityParts(row.info, row.value(state)))
+        report.names.push_back(fmt::format("{}.{} [{}]", name, part.name, part.unit));
+    });
+    const Eigen::Index size = report.standard_deviations.size();
+    report.standard_deviations.conservativeResize(size + 4);
+    report.standard_deviations.tail<4>() = sigmas;
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size + 4, size + 4);
+    if (size > 0) correlation.topLeftCorner(size, size) = report.correlation;
+    correlation.bottomRightCorner<4, 4>() =
+        sigmas.cwiseInverse().asDiagonal() * alignment.covariance * sigmas.cwiseInverse().asDiagonal();
+    report.correlation = correlation;
+  }
+
+  void judge() {
+    if (!result_->uncertainty.names.empty()) {
+      now_.result = result_;
+      now_.options.clear();
+      // The light of pixels' delays is not in these sigmas.
+      OptionRow& delay = now_.options.emplace_back();
+      delay.name = "optimisation.verdict.pixel_delay_ms";
+      delay.value = "0";
+      CheckOptions options = *input_.session.options.check;
+      options.stability_rotation_deg =
+          std::max(options.stability_rotation_deg, options.without_board_least_rotation_deg);
+      options.stability_time_offset_ms =
+          std::max(options.stability_time_offset_ms, options.without_board_least_time_offset_ms);
+      options.matters_rotation_deg = options.without_board_rotation_deg;
+      options.matters_time_offset_ms = options.without_board_time_offset_ms;
+      testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);
+      for (CheckedQuantity& quantity : out_.check.quantities) addTogether(quantity);
+      judgeQuantities(out_.check);
+      if (out_.check.verdict == CheckVerdict::CannotTell) advise();
+    }
+    if (failures_.empty() || out_.check.verdict == CheckVerdict::Changed) return;
+    setCannotTell(joined(failures_), out_.check);
+  }
+
+  void advise() {
+    addAdvice(
+        fmt::format("Turn about all axes in turn, and about others than the camera's {} axis most", weakest_),
+        out_.check);
+    addAdvice(adviceFor(WindowUse::Used), out_.check);
+  }
+
+  // Number by number, as two independent estimates of one.
+  static void addTogether(CheckedQuantity& quantity) {
+    for (CheckedNumber& number : quantity.numbers) {
+      const double before = number.before_sigma * number.before_sigma,
+                   now = number.now_sigma * number.now_sigma;
+      if (!(before > 0.0) || !(now > 0.0)) {
+        number.together = before > 0.0 ? number.before : number.now;
+        number.together_sigma = std::max(number.before_sigma, number.now_sigma);
+        continue;
+      }
+      number.together = (number.before * now + number.now * before) / (before + now);
+      number.together_sigma = std::sqrt(before * now / (before + now));
+    }
+  }
+
+  const CheckInput& input_;
+  BoardlessPass pass_;
+  const RunContext& context_;
+  CheckRun out_;
+  NamedResult now_;
+  std::shared_ptr<CalibrationResult> result_;
+  std::vector<std::string> failures_;
+  const char* weakest_ = "z";
+};
+
+}  // namespace
+
+CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context) {
+  return checkWithoutBoard(input, readWithoutBoard(input.session, context), context);
+}
+
+CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context) {
+  context.progress.stageStarted(nameOf(CalibrationStage::Optimise));
+  return BoardlessCheck(input, std::move(pass), context).run();
+}
+
+}  // namespace evical

@@ -1,0 +1,352 @@
+#include "core/pipeline/compare/compared_quantities.h"
+
+#include "core/base/number.h"
+#include "core/data/pixel_delay.h"
+#include "core/data/quantity.h"
+#include "core/data/quantity_difference.h"
+#include "core/geometry/camera_model.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/dense.h"
+#include "core/pipeline/session/calibration_options.h"
+#include "core/report/truth_comparison.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <set>
+
+namespace evical {
+namespace {
+
+constexpr double kPerCent = 100.0;
+
+// How sizes of a quantity's changes are told and judged.
+struct Judged {
+  const char* unit;
+  double factor;  // from SI units
+  double stability, matters;
+};
+
+std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& options) {
+  const auto rotation = Judged{"deg", kDegPerRad, options.stability_rotation_deg, 0.0};
+  if (info.need == QuantityNeed::Rotation)
+    return Judged{rotation.unit, rotation.factor, rotation.stability, options.matters_rotation_deg};
+  if (info.need == QuantityNeed::Translation)
+    return Judged{"mm", 1e3, options.stability_translation_mm, options.matters_translation_mm};
+  if (info.need == QuantityNeed::TimeOffset)
+    return Judged{"ms", 1e3, options.stability_time_offset_ms, options.matters_time_offset_ms};
+  if (info.shape == QuantityShape::Intrinsics)
+    return Judged{"px", 1.0, options.stability_lens_px, options.matters_lens_px};
+  if (info.shape == QuantityShape::UpperTriangle)
+    return Judged{"%", kPerCent, kPerCent * options.stability_imu_scale, 0.0};
+  if (info.release == QuantityRelease::GyroscopeRotation) return rotation;
+  if (info.release == QuantityRelease::ImuIntrinsics)
+    return Judged{"ms", 1e3, options.stability_time_offset_ms, 0.0};
+  return std::nullopt;  // what no calibration is made for: biases, drifts, edges' leads
+}
+
+std::optional<Eigen::Index> columnOf(const std::string& name, const UncertaintyReport& report) {
+  const auto found = std::find(report.names.begin(), report.names.end(), name);
+  if (found == report.names.end()) return std::nullopt;
+  return found - report.names.begin();
+}
+
+// One number of a result: its column in the report, or a sigma of its own where an older one has none.
+struct Uncertain {
+  std::optional<Eigen::Index> column;
+  double sigma = 0.0;
+};
+
+double covarianceOf(const UncertaintyReport& report, const Uncertain& a, const Uncertain& b, bool same) {
+  if (a.column && b.column)
+    return report.standard_deviations[*a.column] * report.correlation(*a.column, *b.column) *
+           report.standard_deviations[*b.column];
+  return same ? a.sigma * a.sigma : 0.0;
+}
+
+// What light does to pixels' delays is in the sigmas of time offsets; of one camera it is the same in both, to
+// within the stability.
+double pixelDelay_s(const NamedResult& named) {
+  double delay_ms = CalibrationOptions().optimisation.pixel_delay_ms;
+  for (const OptionRow& row : named.options)
+    if (row.name == "optimisation.verdict.pixel_delay_ms") delay_ms = realFrom(row.value).value_or(delay_ms);
+  return 1e-3 * delay_ms;
+}
+
+std::vector<Eigen::Vector2d> placesInImage(Resolution size_px, bool border_only) {
+  constexpr int kColumns = 12, kRows = 9;
+  std::vector<Eigen::Vector2d> places;
+  for (int row = 0; row <= kRows; ++row)
+    for (int column = 0; column <= kColumns; ++column) {
+      const bool border = row == 0 || row == kRows || column == 0 || column == kColumns;
+      if (border || !border_only)
+        places.emplace_back(static_cast<double>(column) / kColumns * (size_px.width_px - 1),
+                            static_cast<double>(row) / kRows * (size_px.height_px - 1));
+    }
+  return places;
+}
+
+// Pixels by the first `count` intrinsics, where there are rays.
+std::vector<Eigen::MatrixXd> byIntrinsics(const CameraIntrinsics& camera, Eigen::Index count,
+                                          bool border_only) {
+  std::vector<Eigen::MatrixXd> all;
+  for (const Eigen::Vector2d& pixel : placesInImage(camera.resolution_px, border_only)) {
+    const auto ray = unprojectRay(camera, pixel);
+    IntrinsicsJacobian jacobian;
+    if (ray && project(camera, *ray, nullptr, &jacobian)) all.emplace_back(jacobian.leftCols(count));
+  }
+  return all;
+}
+
+// By a turn about the reference's axes.
+std::vector<Eigen::MatrixXd> byTurn(const CameraState& camera) {
+  std::vector<Eigen::MatrixXd> all;
+  const CameraIntrinsics& lens = *camera.lens.inUse();
+  const Eigen::Matrix3d camera_from_reference =
+      camera.reference_from_camera.rotation.conjugate().toRotationMatrix();
+  for (const Eigen::Vector2d& pixel : placesInImage(lens.resolution_px, true)) {
+    const auto ray = unprojectRay(lens, pixel);
+    Eigen::Matrix<double, 2, 3> by_point;
+    if (ray && project(lens, *ray, &by_point))
+      all.emplace_back(by_point * skew(*ray) * camera_from_reference);
+  }
+  return all;
+}
+
+// The size of a lens's change is the RMS of what it moves in the image: its square is a form in the change.
+Eigen::MatrixXd lensToSize(const CameraIntrinsics& camera, Eigen::Index count) {
+  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(count, count);
+  const std::vector<Eigen::MatrixXd> places = byIntrinsics(camera, count, false);
+  for (const Eigen::MatrixXd& place : places) form += product(place.transpose(), place);
+  form /= std::max(1.0, static_cast<double>(places.size()));
+  return Eigen::LLT<Eigen::MatrixXd>(form).matrixU();
+}
+
+class Comparison {
+ public:
+  Comparison(const ComparedResults& results, const CheckOptions& options)
+      : results_(results),
+        options_(options),
+        before_(estimateOf(results.before)),
+        now_(estimateOf(results.now)) {}
+
+  ComparedQuantities run() {
+    for (std::size_t k = 0; k < now_.camera_names.size(); ++k) addCamera(k);
+    for (std::size_t k = 0; k < now_.imu_names.size(); ++k) addImu(k);
+    if (results_.same_board) addBoard();
+    fillCovariance();
+    return std::move(out_);
+  }
+
+ private:
+  template <class State, class Uncertainty>
+  struct Pair {
+    std::string sensor;
+    bool without_place;
+    const State &before, &now;
+    const Uncertainty &sigma_before, &sigma_now;
+  };
+
+  void addCamera(std::size_t k) {
+    const std::string& name = now_.camera_names[k];
+    const std::size_t j = sensorIndex(name, before_.camera_names, "cameras");
+    const CameraState& now = now_.cameras[k];
+    const Pair<CameraState, CameraUncertainty> pair{
+        name, name == now_.reference,         before_.cameras[j],
+        now,  before_.uncertainty.cameras[j], now_.uncertainty.cameras[k]};
+    forEachQuantity(kCameraQuantities, [&](const auto& row) {
+      ComparedQuantity* const added = add(row, pair);
+      if (added == nullptr || !now.lens.inUse()) return;
+      if (row.info.need == QuantityNeed::Rotation) added->at_edge = byTurn(now);
+      if (row.info.shape == QuantityShape::Intrinsics) {
+        ChangeGroup& group = out_.groups.back();
+        added->at_edge = byIntrinsics(*now.lens.inUse(), group.size, true);
+        group.to_size = lensToSize(*now.lens.inUse(), group.size);
+        group.stable_covariance = lensCovariance(*now.lens.inUse(), group.size, group.stability);
+      }
+    });
+  }
+
+  void addImu(std::size_t k) {
+    const std::string& name = now_.imu_names[k];
+    const std::size_t j = sensorIndex(name, before_.imu_names, "imus");
+    const Pair<ImuState, ImuUncertainty> pair{
+        name,         name == now_.reference,      before_.imus[j],
+        now_.imus[k], before_.uncertainty.imus[j], now_.uncertainty.imus[k]};
+    forEachQuantity(kImuQuantities, [&](const auto& row) { add(row, pair); });
+  }
+
+  // A sheet keeps its size to within what damp paper does.
+  void addBoard() {
+    const auto& scale = quantityInfo(kBoardQuantities, &BoardState::scale);
+    const auto& stretch = quantityInfo(kBoardQuantities, &BoardState::stretch);
+    const Pair<BoardState, BoardUncertainty> pair{now_.board_names[0],       true,
+                                                  before_.boards[0],         now_.boards[0],
+                                                  before_.uncertainty.board, now_.uncertainty.board};
+    forEachSheetQuantity([&](const auto& row) {
+      if (&row.info == &scale || &row.info == &stretch)
+        addNumbers(row, pair, Judged{"", 1.0, kStableSheet, 0.0}, false);
+    });
+  }
+
+  template <class Row, class Sensors>
+  ComparedQuantity* add(const Row& row, const Sensors& pair) {
+    const std::optional<Judged> judged = judgedBy(row.info, options_);
+    if (!judged || (row.info.relative && pair.without_place)) return nullptr;
+    if (!addNumbers(row, pair, *judged, true)) {
+      if (row.info.presence == QuantityPresence::Always &&
+          quantityNumbers(row.sigma(pair.sigma_now)).isZero(0.0))
+        out_.not_told.push_back(fmt::format("{} of {}", row.info.title, pair.sensor));
+      return nullptr;
+    }
+    return &out_.quantities.back();
+  }
+
+  // False where it is not estimated now. Numbers of a shared sensor are estimated once, under its own name.
+  template <class Row, class Sensors>
+  bool addNumbers(const Row& row, const Sensors& pair, const Judged& judged, bool tested) {
+    const QuantityInfo& info = row.info;
+    const std::vector<QuantityPart> all = quantityParts(info, row.value(pair.now));
+    std::vector<Uncertain> before, now;
+    const Eigen::VectorXd sigmas_before = quantityNumbers(row.sigma(pair.sigma_before));
+    for (const QuantityPart& part : all) {
+      const std::string name = fmt::format("{}.{} [{}]", pair.sensor, part.name, part.unit);
+      const auto column = columnOf(name, now_.uncertainty);
+      if (!column) break;
+      const auto i = static_cast<Eigen::Index>(now.size());
+      now.push_back({column, 0.0});
+      before.push_back(
+          {columnOf(name, before_.uncertainty), i < sigmas_before.size() ? sigmas_before[i] : 0.0});
+    }
+    if (now.empty()) return false;
+    const auto size = static_cast<Eigen::Index>(now.size());
+    const Eigen::VectorXd difference =
+        quantityDifference(info, row.value(pair.now), row.value(pair.before)).head(size);
+    ChangeGroup group{next_, size,  judged.factor * Eigen::MatrixXd::Identity(size, size), judged.stability,
+                      {},    tested};
+    group.stable_covariance = stableCovariance(group);
+    out_.groups.push_back(group);
+    next_ += size;
+    differences_.insert(differences_.end(), difference.begin(), difference.end());
+    columns_before_.insert(columns_before_.end(), before.begin(), before.end());
+    columns_now_.insert(columns_now_.end(), now.begin(), now.end());
+    const bool offset = &info == &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
+    offset_of_.insert(offset_of_.end(), now.size(), offset ? pair.sensor : std::string());
+    if (tested) out_.quantities.push_back(shownQuantity(row, pair, judged, all));
+    return true;
+  }
+
+  static Eigen::MatrixXd stableCovariance(const ChangeGroup& group) {
+    const Eigen::MatrixXd from_size = inverseOf(group.to_size);
+    return group.stability * group.stability * productTransposed(from_size, from_size);
+  }
+
+  template <class Row, class Sensors>
+  ComparedQuantity shownQuantity(const Row& row, const Sensors& pair, const Judged& judged,
+                                 const std::vector<QuantityPart>& parts) const {
+    const QuantityInfo& info = row.info;
+    ComparedQuantity compared;
+    CheckedQuantity& shown = compared.shown;
+    shown.sensor = pair.sensor;
+    shown.name = info.name;
+    shown.title = titleOf(info);
+    shown.unit = judged.unit;
+    shown.stability = judged.stability;
+    shown.matters = judged.matters;
+    const double factor = info.shown_factor;
+    const Eigen::VectorXd before = factor * quantityNumbers(row.value(pair.before)),
+                          now = factor * quantityNumbers(row.value(pair.now)),
+                          sigma_before = factor * quantityNumbers(row.sigma(pair.sigma_before)),
+                          sigma_now = factor * quantityNumbers(row.sigma(pair.sigma_now));
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      shown.numbers.push_back({parts[k].name, parts[k].shown_unit, before[i],
+                               i < sigma_before.size() ? sigma_before[i] : 0.0, now[i],
+                               i < sigma_now.size() ? sigma_now[i] : 0.0});
+    }
+    return compared;
+  }
+
+  static std::string titleOf(const QuantityInfo& info) {
+    if (info.need == QuantityNeed::Rotation) return "rotation";
+    if (info.shape == QuantityShape::Intrinsics) return "lens";
+    if (info.shape == QuantityShape::UpperTriangle) return std::string(info.title) + " scale and axes";
+    return info.title;
+  }
+
+  void fillCovariance() {
+    const auto size = static_cast<Eigen::Index>(differences_.size());
+    out_.change.difference = Eigen::Map<const Eigen::VectorXd>(differences_.data(), size);
+    out_.change.covariance.resize(size, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const auto a = static_cast<std::size_t>(i);
+      for (Eigen::Index j = 0; j < size; ++j) {
+        const auto b = static_cast<std::size_t>(j);
+        double before = covarianceOf(before_.uncertainty, columns_before_[a], columns_before_[b], i == j);
+        double now = covarianceOf(now_.uncertainty, columns_now_[a], columns_now_[b], i == j);
+        if (i == j && !offset_of_[a].empty()) {
+          before = withoutDelay(before, results_.before, offset_of_[a]);
+          now = withoutDelay(now, results_.now, offset_of_[a]);
+        }
+        out_.change.covariance(i, j) = before + now;
+      }
+    }
+  }
+
+  static double withoutDelay(double variance_s2, const NamedResult& named, const std::string& camera) {
+    const auto isThis = [&](const SensorDescription& each) { return each.name == camera; };
+    const auto which = std::ranges::find_if(named.cameras, isThis) - named.cameras.begin();
+    return holdsPixelDelay(cameraKinds(named), static_cast<std::size_t>(which), !named.imus.empty())
+               ? withoutPixelDelay_s2(variance_s2, pixelDelay_s(named))
+               : variance_s2;
+  }
+
+  const ComparedResults& results_;
+  const CheckOptions& options_;
+  const Estimate before_, now_;
+  ComparedQuantities out_;
+  Eigen::Index next_ = 0;
+  std::vector<double> differences_;
+  std::vector<Uncertain> columns_before_, columns_now_;
+  std::vector<std::string> offset_of_;  // a camera, or empty: no time offset of one
+};
+
+double sizeAlong(const GroupTestResult& test, const ChangeGroup& group) {
+  const Eigen::VectorXd change = group.to_size * test.change;
+  const Eigen::MatrixXd covariance = group.to_size * test.covariance * group.to_size.transpose();
+  if (!(change.norm() > 0.0)) return std::sqrt(std::max(0.0, covariance.diagonal().maxCoeff()));
+  const Eigen::VectorXd direction = change.normalized();
+  return std::sqrt(std::max(0.0, direction.dot(covariance * direction)));
+}
+
+}  // namespace
+
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
+                               const ChangeGroup& group) {
+  CheckedQuantity quantity = compared.shown;
+  quantity.change = (group.to_size * test.change).norm();
+  quantity.change_sigma = sizeAlong(test, group);
+  quantity.sigmas = test.sigmas;
+  quantity.limit_sigmas = test.limit;
+  quantity.would_notice = test.would_notice;
+  quantity.changed = test.changed;
+  for (const Eigen::MatrixXd& place : compared.at_edge)
+    quantity.edge_px = std::max(quantity.edge_px, (place * test.change).norm());
+  return quantity;
+}
+
+Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px) {
+  const Eigen::MatrixXd from_size = inverseOf(lensToSize(camera, count));
+  return rms_px * rms_px / static_cast<double>(count) * productTransposed(from_size, from_size);
+}
+
+ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options) {
+  return Comparison(results, options).run();
+}
+
+}  // namespace evical

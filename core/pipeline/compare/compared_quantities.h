@@ -1,0 +1,48 @@
+// Two results of one rig as two vectors with a covariance, quantity by quantity: what a check compares.
+#pragma once
+
+#include "core/data/calibration_check.h"
+#include "core/pipeline/compare/single_changes.h"
+#include "core/pipeline/session/check_options.h"
+#include "core/report/result_yaml.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// What damp paper does to a sheet, relative.
+inline constexpr double kStableSheet = 2e-4;
+
+struct ComparedQuantity {
+  CheckedQuantity shown;  // but for what the tests say
+  // Of the camera whose pixels its numbers move, at the image's border: pixels by numbers in SI units.
+  std::vector<Eigen::MatrixXd> at_edge;
+};
+
+struct ComparedQuantities {
+  EstimatedChange change;  // in SI units
+  std::vector<ChangeGroup> groups;
+  std::vector<ComparedQuantity> quantities;  // as the groups that are tested, which come first
+  std::vector<std::string> not_told;         // "time offset of left": not estimated now
+};
+
+struct ComparedResults {
+  const NamedResult& before;
+  const NamedResult& now;
+  bool same_board = true;
+};
+
+// Of a lens's first `count` intrinsics that move its image by so much, by RMS, in no direction more than in others.
+Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px);
+
+// Sensors of both, by name; of `now` all are in `before`.
+ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options);
+
+// With what the test of its group says.
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
+                               const ChangeGroup& group);
+
+}  // namespace evical

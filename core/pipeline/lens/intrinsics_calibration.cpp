@@ -1,0 +1,168 @@
+#include "core/pipeline/lens/intrinsics_calibration.h"
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/base/time.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_stage.h"
+#include "core/geometry/projection_difference.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/pipeline/lens/lens_pilot.h"
+#include "core/pipeline/pass/blink_views.h"
+#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/session_recording.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// A refit moves centres by less than this part of what the lens changed by. A change c that grows with the
+// third power of the distance from the image's middle, up to L, bends a circle of radius r so that its
+// ellipse's centre moves by about c (r / L)^2; circles are a seventh of L at most.
+constexpr double kRefitShare = 0.02;
+
+Session cameraAlone(const Session& session, std::size_t camera) {
+  Session alone = session;
+  alone.cameras = {session.cameras[camera]};
+  alone.cameras.front().intrinsics.reset();
+  alone.cameras.front().same_sensor_as.clear();
+  alone.cameras.front().board.clear();
+  alone.board = session.boardOf(camera);
+  alone.further_boards.clear();
+  alone.imus.clear();
+  alone.reference = alone.cameras.front().name;
+  if (!alone.time_range_s) return alone;
+  // It counts from the first event or sample of all sensors.
+  const double later_s =
+      secondsSince(SessionRecording(session).start_ns(), SessionRecording(alone).start_ns());
+  for (double& time_s : *alone.time_range_s) time_s -= later_s;
+  return alone;
+}
+
+// A board of another size than the session says may fail in any way: that is told first.
+IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
+                          const std::optional<CameraIntrinsics>& start, const RunContext& context,
+                          IntrinsicsStory& story) {
+  const BoardObservations& observations = pass.cameras.front();
+  try {
+    return estimateIntrinsics(
+        {alone.board, pass.resolutions_px.front(), observations, pass.lenses.front().seen_with, start},
+        alone.options.intrinsics, context, &story);
+  } catch (const CalibrationError&) {
+    checkBoardSize(observations, alone.board, alone.options.front_end.extent);
+    throw;
+  }
+}
+
+// The second pass's views come behind the first's.
+void append(RecordingPass&& more, RecordingPass& pass) {
+  constexpr double kBetween_s = 1.0;
+  BoardObservations &all = pass.cameras.front(), &added = more.cameras.front();
+  if (more.resolutions_px != pass.resolutions_px)
+    throw badInput(all.camera, "its recordings have other resolutions", "Name recordings of one camera");
+  const double later_s = all.windows.empty() ? 0.0 : all.windows.back().time_s + kBetween_s;
+  for (WindowReport& window : added.windows) window.time_s += later_s;
+  for (BoardView& view : added.views) {
+    view.time_s += later_s;
+    for (CircleObservation& point : view.circles) point.time_s += later_s;
+  }
+  all.events += added.events;
+  all.windows.insert(all.windows.end(), added.windows.begin(), added.windows.end());
+  all.views.insert(all.views.end(), added.views.begin(), added.views.end());
+  pass.faults.insert(pass.faults.end(), more.faults.begin(), more.faults.end());
+}
+
+// One after the other; those in which nothing blinks are told and left out, if others do.
+RecordingPass passOver(const Session& alone, const RunContext& context) {
+  std::optional<RecordingPass> all;
+  std::optional<CalibrationError> failure;
+  std::vector<std::filesystem::path> recordings = alone.more_recordings;
+  recordings.insert(recordings.begin(), alone.recording);
+  for (const std::filesystem::path& recording : recordings) {
+    Session one = alone;
+    one.recording = recording;
+    one.more_recordings.clear();
+    try {
+      RecordingPass pass = readAndDetect(one, {CameraLens{}}, context);
+      if (all)
+        append(std::move(pass), *all);
+      else
+        all = std::move(pass);
+    } catch (const CalibrationError& error) {
+      if (error.kind() == ErrorKind::BadInput || recordings.size() == 1) throw;
+      context.progress.log(LogLevel::Warning,
+                           fmt::format("{}: {}", recording.filename().string(), error.what()));
+      if (!failure) failure = error;
+    }
+  }
+  if (!all) throw CalibrationError(*failure);
+  return std::move(*all);
+}
+
+void tellPass(const IntrinsicsRun& run, const RunContext& context) {
+  if (context.observer != nullptr) context.observer->intrinsicsPassDone(run.result.passes, run.result);
+}
+
+// Frames, points and flashes are measured on the sensor, whatever the lens: once is enough.
+IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
+  context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
+  IntrinsicsRun run;
+  run.pass = passOver(alone, context);
+  if (alone.board_blinks && run.pass.cameras.front().kind == CameraKind::Events)
+    checkBlinkingBoardSeen(run.pass.cameras.front(), alone.board);
+  checkBoardSeen(run.pass.cameras.front(), alone.board);
+  run.result = estimate(alone, run.pass, {}, context, run.story);
+  run.result.passes = 1;
+  tellPass(run, context);
+  return run;
+}
+
+IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
+  context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
+  CameraLens lens;
+  lens.seen_with = lookThroughPlainLenses(alone, context);
+  IntrinsicsRun run;
+  std::optional<CameraIntrinsics> start;
+  for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
+    context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
+    run.pass = readAndDetect(alone, {lens}, context);
+    if (run.pass.cameras.front().views.empty())
+      if (const std::optional<CalibrationError> blink = unexpectedBlink(alone, 0))
+        throw CalibrationError(*blink);
+    checkBoardSeen(run.pass.cameras.front(), alone.board);
+    std::vector<TriedModel> tried = std::move(run.story.tried);
+    run.result = estimate(alone, run.pass, start, context, run.story);
+    if (start) run.story.tried = std::move(tried);
+    run.result.passes = pass;
+    const CameraIntrinsics found = run.result.intrinsics;
+    const auto moved =
+        lens.seen_with ? std::optional(projectionDifference(found, *lens.seen_with)) : std::nullopt;
+    lens.seen_with = start = found;
+    if (moved) run.result.moved_px = moved->rms_px;
+    tellPass(run, context);
+    if (!moved) continue;
+    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,
+                                                      run.result.views_found, moved->rms_px));
+    if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;
+  }
+  return run;
+}
+
+}  // namespace
+
+IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
+  const Stopwatch stopwatch;
+  const Session alone = cameraAlone(session, camera);
+  const bool events = SessionRecording(alone).camera(0).type == StreamType::Events && !alone.board_blinks;
+  IntrinsicsRun run = events ? fromEvents(alone, context) : fromSensorPixels(alone, context);
+  checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
+  run.result.elapsed_s = stopwatch.elapsed_s();
+  return run;
+}
+
+}  // namespace evical

@@ -1,0 +1,41 @@
+#include "core/pipeline/lens/intrinsics_files.h"
+
+#include "core/report/detections_csv.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace evical {
+
+std::vector<FileContent> intrinsicsFiles(const std::filesystem::path& folder, const NamedIntrinsics& named,
+                                         const std::vector<BoardObservations>& seen) {
+  const CameraIntrinsics& camera = named.result.intrinsics;
+  return {{folder / "intrinsics.yaml", intrinsicsResultYaml(named)},
+          {folder / "camera_info.yaml", cameraInfoYaml(named.camera, camera)},
+          {folder / "camchain.yaml", camchainYaml(named.stream, camera)},
+          {folder / "projection_std.csv", imageMapCsv(named.result.image)},
+          {folder / "detections.csv", detectionsCsv(seen)}};
+}
+
+NamedResult lensAsResult(const NamedIntrinsics& named, CameraKind kind) {
+  auto result = std::make_shared<CalibrationResult>();
+  result->status = named.result.status;
+  result->reason = named.result.reason;
+  result->state.cameras.emplace_back().lens.solved = named.result.intrinsics;
+  CameraUncertainty& uncertainty = result->uncertainty.cameras.emplace_back();
+  const IntrinsicsVector sigmas = named.result.standardDeviations();
+  std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
+  result->cameras.emplace_back().reprojection_rms_px = named.result.reprojection_rms_px;
+  NamedResult rig;
+  rig.reference = named.camera;
+  SensorDescription description;
+  description.name = named.camera;
+  description.stream = named.stream;
+  description.kind = kind;
+  rig.cameras = {description};
+  rig.version = named.version;
+  rig.result = std::move(result);
+  return rig;
+}
+
+}  // namespace evical

@@ -1,0 +1,74 @@
+#include "core/pipeline/maintain/imu_unit_check.h"
+
+#include "core/base/error.h"
+#include "core/numerics/robust.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kFewestUnitWindows = 20;  // windows
+
+}  // namespace
+
+void checkUnits(const ImuMeans& imu) {
+  if (imu.windows.size() < kFewestUnitWindows) return;
+  std::vector<double> norms;
+  for (const MeansWindow& window : imu.windows) norms.push_back(window.force_m_s2.norm());
+  const double norm = medianOf(std::move(norms));
+  if (norm > 0.3 && norm < 3.0)
+    throw badInput(imu.name,
+                   fmt::format("its specific force is {:.2f} m/s^2 on average: the log is in g", norm),
+                   "Give --acceleration-unit g");
+  if (norm > 30.0)
+    throw badInput(imu.name,
+                   fmt::format("its specific force is {:.0f} m/s^2 on average: the log is in m/s^2 already, "
+                               "or in thousandths of g",
+                               norm),
+                   "Give --acceleration-unit m/s^2, or convert the log");
+  const double scale = rateScale(imu.windows);
+  if (scale > 0.01 && scale < 0.03)
+    throw badInput(
+        imu.name,
+        fmt::format("gravity turns {:.0f} times more slowly than its gyroscope says: the rates are in deg/s",
+                    1.0 / scale),
+        "Give --angular-rate-unit deg/s");
+  if (scale > 30.0 && scale < 100.0)
+    throw badInput(
+        imu.name,
+        fmt::format("gravity turns {:.0f} times faster than its gyroscope says: the rates are in rad/s",
+                    scale),
+        "Give --angular-rate-unit rad/s");
+}
+
+void checkDirection(const ImuMeans& own, const ImuMeans& reference,
+                    const Eigen::Quaterniond& reference_from_own, double later_s) {
+  std::vector<double> cosines;
+  auto other = reference.windows.begin();
+  for (const MeansWindow& window : own.windows) {
+    const double time_s = window.time_s + later_s;
+    other = std::find_if(other, reference.windows.end(), [&](const MeansWindow& each) {
+      return each.time_s + 0.5 * WindowMeans::kLength_s > time_s;
+    });
+    if (other == reference.windows.end()) break;
+    if (other->time_s > time_s + 0.5 * WindowMeans::kLength_s) continue;
+    const Eigen::Vector3d turned = reference_from_own * window.force_m_s2;
+    cosines.push_back(turned.dot(other->force_m_s2) /
+                      std::max(turned.norm() * other->force_m_s2.norm(), 1e-9));
+  }
+  constexpr double kAgainst = -0.5;
+  if (cosines.size() < kFewestUnitWindows || medianOf(std::move(cosines)) > kAgainst) return;
+  throw badInput(own.name,
+                 fmt::format("its specific force points against that of {}: one of the two logs has the "
+                             "direction of gravity, or that one was mounted upside down",
+                             reference.name),
+                 "Convert the log of that one (--acceleration-unit -g is for all), or calibrate again");
+}
+
+}  // namespace evical

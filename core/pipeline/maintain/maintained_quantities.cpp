@@ -1,0 +1,393 @@
+#include "core/pipeline/maintain/maintained_quantities.h"
+
+#include "core/data/quantity.h"
+#include "core/geometry/so3.h"
+#include "core/maintenance/maintenance_options.h"
+#include "core/numerics/chi_squared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evical {
+namespace {
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+// How a block of numbers is called and shown.
+struct BlockWords {
+  const char *name, *title, *unit;
+  double factor;  // from SI
+};
+constexpr std::array<BlockWords, kPairBlocks.size()> kPairWords = {
+    {{"rotation", "rotation", "deg", kDegPerRad},
+     {"translation", "lever arm", "mm", 1e3},
+     {"time_offset", "time offset", "ms", 1e3},
+     {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0},
+     {"accelerometer_bias", "accelerometer bias", "m/s^2", 1.0}}};
+constexpr std::array<BlockWords, kAccelerometerBlocks.size()> kStopWords = {
+    {{"accelerometer_bias", "accelerometer bias", "m/s^2", 1.0},
+     {"accelerometer_scale", "accelerometer scale", "1", 1.0},
+     {"accelerometer_misalignment", "accelerometer misalignment", "1", 1.0}}};
+constexpr std::array<const char*, 3> kMisalignments = {"xy", "xz", "yz"};
+
+std::string numberName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
+  if (count == 1) return words.name;
+  const bool cross = std::string_view(words.name) == "accelerometer_misalignment";
+  return fmt::format("{}.{}", words.name, (cross ? kMisalignments : kAxes)[static_cast<std::size_t>(i)]);
+}
+
+double sigmaOfNorm(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
+  const double norm = step.norm();
+  if (norm <= 0.0) return 0.0;
+  return std::sqrt(std::max(0.0, (step.transpose() * covariance * step)(0, 0))) / norm;
+}
+
+double mattersOf(const std::string& name, const MaintenanceOptions& options) {
+  if (name == "rotation") return options.matters_rotation_deg;
+  if (name == "translation") return options.matters_translation_mm;
+  if (name == "time_offset") return options.matters_time_offset_ms;
+  if (name == "gyroscope_bias") return options.matters_gyroscope_bias_rad_s;
+  if (name == "accelerometer_bias") return options.matters_accelerometer_bias_m_s2;
+  return options.matters_imu_scale;
+}
+
+// One that no number has been put into yet.
+MaintainedQuantity quantityOf(const BlockWords& words, const std::string& sensor, MaintenanceSource source,
+                              const MaintenanceOptions& options) {
+  MaintainedQuantity quantity;
+  quantity.sensor = sensor;
+  quantity.source = source;
+  quantity.name = words.name;
+  quantity.title = words.title;
+  quantity.unit = words.unit;
+  quantity.matters = mattersOf(words.name, options);
+  return quantity;
+}
+
+void setChange(const BlockWords& words, const BlockChange& change, double limit, double worst_sigma,
+               MaintainedQuantity& quantity) {
+  quantity.change = words.factor * change.step.norm();
+  quantity.change_sigma = words.factor * sigmaOfNorm(change.step, change.covariance);
+  quantity.chi_square = change.chi_square;
+  quantity.limit = limit;
+  quantity.would_notice = words.factor * wouldNotice(worst_sigma, limit);
+}
+
+// Of a block that was tested with others: as found where it has changed, else as it alone would have.
+// `wider`: by how much variances are larger than the test takes them.
+void setTested(const BlockWords& words, const StateBlock& block, const ChangeDetector& test,
+               const std::vector<FoundChange>& changes, std::size_t which, double limit, double wider,
+               MaintainedQuantity& quantity) {
+  BlockChange change = test.of(block);
+  for (const FoundChange& each : changes) {
+    if (each.block != which) continue;
+    change = each.change;
+    quantity.changed = true;
+  }
+  change.covariance *= wider;
+  setChange(words, change, limit, test.worstSigma(block), quantity);
+  quantity.would_notice =
+      words.factor * wouldNotice(std::sqrt(wider) * test.worstSigma(block), limit / wider);
+}
+
+double squared(double value) {
+  return std::isfinite(value) ? value * value : 0.0;
+}
+
+// At rest the gyroscope shows its bias and nothing else.
+void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, std::size_t imu,
+                      const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
+  constexpr BlockWords kWords = {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0};
+  const ImuState& state = before.result->state.imus[imu];
+  const Eigen::Vector3d sigma_before = before.result->uncertainty.imus[imu].gyroscope_bias_std_rad_s;
+  MaintainedQuantity quantity = quantityOf(kWords, before.imus[imu].name, MaintenanceSource::Stops, options);
+  Eigen::Vector3d variance;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    variance[i] = squared(found.gyroscope_bias_sigma_rad_s[i]) + squared(sigma_before[i]) +
+                  squared(options.stability_gyroscope_bias_rad_s);
+    quantity.numbers.push_back({numberName(kWords, i, 3), kWords.unit, state.gyroscope_bias_rad_s[i],
+                                sigma_before[i], found.gyroscope_bias_rad_s[i],
+                                found.gyroscope_bias_sigma_rad_s[i]});
+  }
+  variance = variance.cwiseMax(1e-20);
+  BlockChange change;
+  change.step = found.gyroscope_bias_rad_s - state.gyroscope_bias_rad_s;
+  change.covariance = variance.asDiagonal();
+  change.chi_square = (change.step.array().square() / variance.array()).sum();
+  setChange(kWords, change, chiSquaredLimit(false_alarms, 3), std::sqrt(variance.maxCoeff()), quantity);
+  quantity.changed = change.chi_square > quantity.limit;
+  maintenance.quantities.push_back(quantity);
+}
+
+// What a source says of an accelerometer.
+struct AccelerometerEvidence {
+  const AccelerometerMatrix& information;  // at the old numbers
+  const AccelerometerVector &score, &now;
+  const AccelerometerMatrix& covariance;  // of `now`
+  MaintenanceSource source;
+};
+
+void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& before, std::size_t imu,
+                      const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
+  const ImuUncertainty& sigma = before.result->uncertainty.imus[imu];
+  const AccelerometerVector old_numbers = accelerometerNumbers(before.result->state.imus[imu]);
+  const Eigen::MatrixXd known = accelerometerVariances(sigma, options).asDiagonal();
+  const ChangeDetector test(evidence.information, evidence.score, known);
+  const std::vector<double> limits = limitsFor(kAccelerometerBlocks, false_alarms);
+  const auto changes = findChanges(evidence.information, evidence.score, known, kAccelerometerBlocks, limits);
+  MaintenanceOptions exact = options;
+  exact.stability_accelerometer_bias_m_s2 = exact.stability_imu_scale = 0.0;
+  const AccelerometerVector sigma_before = accelerometerVariances(sigma, exact).cwiseSqrt();
+  for (std::size_t b = 0; b < kAccelerometerBlocks.size(); ++b) {
+    const StateBlock& block = kAccelerometerBlocks[b];
+    MaintainedQuantity quantity = quantityOf(kStopWords[b], before.imus[imu].name, evidence.source, options);
+    for (Eigen::Index i = 0; i < block.size; ++i) {
+      const Eigen::Index n = block.first + i;
+      quantity.numbers.push_back({numberName(kStopWords[b], i, block.size), kStopWords[b].unit,
+                                  old_numbers[n], sigma_before[n], evidence.now[n],
+                                  std::sqrt(std::max(evidence.covariance(n, n), 0.0))});
+    }
+    setTested(kStopWords[b], block, test, changes, b, limits[b], 1.0, quantity);
+    maintenance.quantities.push_back(quantity);
+  }
+}
+
+// The nominal pair with a correction, as what a result has of it: rotation as a vector.
+PairVector numbersOf(const PairNominal& nominal, const PairVector& correction) {
+  PairVector numbers = correction;
+  numbers.head<3>() =
+      quaternionLog(quaternionExp(correction.head<3>()) * nominal.reference_from_imu.rotation);
+  numbers.segment<3>(3) += nominal.reference_from_imu.translation_m;
+  numbers[6] += nominal.time_offset_s;
+  return numbers;
+}
+
+// What the old result says, about the nominal pair.
+PairVector beforeFrom(const TrackedPair& pair) {
+  PairVector state = PairVector::Zero();
+  state.head<3>() = quaternionLog(pair.before.reference_from_imu.rotation *
+                                  pair.nominal.reference_from_imu.rotation.conjugate());
+  state.segment<3>(3) =
+      pair.before.reference_from_imu.translation_m - pair.nominal.reference_from_imu.translation_m;
+  state[6] = pair.before.time_offset_s - pair.nominal.time_offset_s;
+  return state;
+}
+
+PairVector sigmasBefore(const TrackedPair& pair, const NamedResult& before) {
+  const ImuUncertainty &own = before.result->uncertainty.imus[pair.imu],
+                       &reference = before.result->uncertainty.imus[pair.reference];
+  const auto together = [](double a, double b) { return std::sqrt(squared(a) + squared(b)); };
+  PairVector sigma;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    sigma[i] = together(own.rotation_std_rad[i], reference.rotation_std_rad[i]);
+    sigma[3 + i] = together(own.translation_std_m[i], reference.translation_std_m[i]);
+    sigma[7 + i] = together(own.gyroscope_bias_std_rad_s[i], reference.gyroscope_bias_std_rad_s[i]);
+    sigma[10 + i] = together(own.accelerometer_bias_std_m_s2[i], reference.accelerometer_bias_std_m_s2[i]);
+  }
+  sigma[6] = together(own.time_offset_std_s, reference.time_offset_std_s);
+  return sigma;
+}
+
+void addSteps(const TrackedPair& pair, const NamedResult& before, Maintenance& maintenance) {
+  for (const PairStep& found : pair.track.steps) {
+    const BlockWords& words = kPairWords[found.block];
+    const StateBlock& block = kPairBlocks[found.block];
+    MaintenanceStep step;
+    step.sensor = before.imus[pair.imu].name;
+    step.against = before.imus[pair.reference].name;
+    step.name = words.name;
+    step.title = words.title;
+    step.unit = words.unit;
+    step.at_s = found.at_s;
+    step.noticed_s = found.noticed_s;
+    step.size = words.factor * found.change.step.norm();
+    step.size_sigma = words.factor * sigmaOfNorm(found.change.step, found.change.covariance);
+    step.chi_square = found.change.chi_square;
+    step.limit = found.limit;
+    for (Eigen::Index i = 0; i < block.size; ++i)
+      step.numbers.push_back({numberName(words, i, block.size), words.unit, 0.0, 0.0,
+                              words.factor * found.change.step[i],
+                              words.factor * std::sqrt(std::max(found.change.covariance(i, i), 0.0))});
+    for (const std::size_t other : found.or_else) step.or_else.emplace_back(kPairWords[other].title);
+    maintenance.steps.push_back(step);
+  }
+}
+
+void addTrack(const TrackedPair& pair, const NamedResult& before, Maintenance& maintenance) {
+  MaintenanceTrack track;
+  track.sensor = before.imus[pair.imu].name;
+  track.against = before.imus[pair.reference].name;
+  track.times_s = pair.track.times_s;
+  for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
+    for (Eigen::Index i = 0; i < kPairBlocks[b].size; ++i) {
+      track.columns.push_back(
+          fmt::format("{} [{}]", numberName(kPairWords[b], i, kPairBlocks[b].size), kPairWords[b].unit));
+      std::vector<double>&values = track.values.emplace_back(), &sigmas = track.sigmas.emplace_back();
+      const Eigen::Index n = kPairBlocks[b].first + i;
+      const double at_nominal = numbersOf(pair.before, PairVector::Zero())[n];
+      for (std::size_t k = 0; k < track.times_s.size(); ++k) {
+        // Rotations and lever arms as what they differ by from the old result.
+        const double now = b == 0 ? (pair.track.values[k] - beforeFrom(pair))[n]
+                                  : numbersOf(pair.nominal, pair.track.values[k])[n] - at_nominal;
+        values.push_back(kPairWords[b].factor * now);
+        sigmas.push_back(kPairWords[b].factor * pair.track.sigmas[k][n]);
+      }
+    }
+  maintenance.tracks.push_back(std::move(track));
+}
+
+std::string changeText(const MaintainedQuantity& quantity) {
+  return fmt::format("{} of {}{} by {:.3g} {}", quantity.title, quantity.sensor,
+                     quantity.against.empty() ? "" : " against " + quantity.against, quantity.change,
+                     quantity.unit == "1" ? "" : quantity.unit);
+}
+
+std::string stepText(const MaintenanceStep& step) {
+  std::string text = fmt::format("at {:.1f} s: {} of {}{} by {:.3g} {}", step.at_s, step.title, step.sensor,
+                                 step.against.empty() ? "" : " against " + step.against, step.size,
+                                 step.unit == "1" ? "" : step.unit);
+  for (std::size_t i = 0; i < step.or_else.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? " (or " : ", ", step.or_else[i]);
+  return step.or_else.empty() ? text : text + ")";
+}
+
+// Between IMUs where there are several; of a single one its own.
+bool isAsked(const MaintainedQuantity& quantity, bool several) {
+  if (several)
+    return quantity.source == MaintenanceSource::OtherImu &&
+           (quantity.name == "rotation" || quantity.name == "translation" || quantity.name == "time_offset");
+  return quantity.name == "accelerometer_bias" || quantity.name == "accelerometer_scale" ||
+         (quantity.name == "gyroscope_bias" && quantity.source == MaintenanceSource::Stops);
+}
+
+std::string trimmed(std::string text) {
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+void sayChanged(Maintenance& maintenance) {
+  maintenance.verdict = MaintenanceVerdict::Changed;
+  std::string since, on_the_way;
+  for (const MaintainedQuantity& quantity : maintenance.quantities)
+    if (quantity.changed) since += (since.empty() ? "" : "; ") + trimmed(changeText(quantity));
+  for (const MaintenanceStep& step : maintenance.steps)
+    on_the_way += (on_the_way.empty() ? "" : "; ") + trimmed(stepText(step));
+  if (!since.empty()) maintenance.reason = "since the calibration: " + since;
+  if (!on_the_way.empty()) maintenance.reason += (since.empty() ? "" : "; ") + on_the_way;
+}
+
+}  // namespace
+
+MaintainedImu maintainedImu(const StopCalibration& found) {
+  MaintainedImu imu;
+  for (std::size_t s = 0; s < found.stops.size(); ++s)
+    imu.stops.push_back({found.stops[s].from_s, found.stops[s].to_s, found.stops[s].force_m_s2,
+                         found.stops[s].rate_rad_s, found.residuals_m_s2[s], found.sigmas_m_s2[s],
+                         found.used[s] != 0});
+  imu.weakest = found.weakest;
+  imu.weakest_sigma = found.weakest_sigma;
+  imu.misfit = found.misfit;
+  return imu;
+}
+
+void addStopQuantities(const StopCalibration& found, const NamedResult& before, std::size_t imu,
+                       const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
+  if (found.stops.empty()) return;
+  addAccelerometer({found.information, found.score, found.now, found.covariance, MaintenanceSource::Stops},
+                   before, imu, options, false_alarms, maintenance);
+  addGyroscopeBias(found, before, imu, options, false_alarms, maintenance);
+}
+
+void addTrajectoryQuantities(const std::vector<LagEstimate>& lags, const LagSum& sum,
+                             const NamedResult& before, std::size_t imu, const MaintenanceOptions& options,
+                             double false_alarms, Maintenance& maintenance) {
+  if (lags.empty()) return;
+  addAccelerometer({sum.information, sum.score, sum.now, sum.covariance, MaintenanceSource::Trajectory},
+                   before, imu, options, false_alarms, maintenance);
+  MaintenanceTrack track;
+  track.sensor = before.imus[imu].name;
+  const AccelerometerVector old_numbers = accelerometerNumbers(before.result->state.imus[imu]);
+  for (const LagEstimate& lag : lags) track.times_s.push_back(0.5 * (lag.from_s + lag.to_s));
+  for (std::size_t b = 0; b < kAccelerometerBlocks.size(); ++b)
+    for (Eigen::Index i = 0; i < kAccelerometerBlocks[b].size; ++i) {
+      const Eigen::Index n = kAccelerometerBlocks[b].first + i;
+      track.columns.push_back(fmt::format("{} [{}]", numberName(kStopWords[b], i, 3), kStopWords[b].unit));
+      std::vector<double>&values = track.values.emplace_back(), &sigmas = track.sigmas.emplace_back();
+      for (const LagEstimate& lag : lags) {
+        values.push_back(lag.now[n] - old_numbers[n]);
+        sigmas.push_back(std::sqrt(std::max(sum.inflation * lag.covariance(n, n), 0.0)));
+      }
+    }
+  maintenance.tracks.push_back(std::move(track));
+}
+
+void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const MaintenanceOptions& options,
+                       double false_alarms, Maintenance& maintenance) {
+  const PairVector old_state = beforeFrom(pair), sigma_before = sigmasBefore(pair, before);
+  const Eigen::MatrixXd covariance = (sigma_before.cwiseAbs2() + pairStability(options)).asDiagonal();
+  const Eigen::MatrixXd information = pair.track.start_information;
+  const Eigen::VectorXd score = pair.track.start_score - pair.track.start_information * old_state;
+  const ChangeDetector test(information, score, covariance);
+  std::vector<double> limits = limitsFor(kPairBlocks, false_alarms);
+  for (std::size_t b = 0; b < limits.size(); ++b)
+    limits[b] = pair.track.colours[b].limit(limits[b], kPairBlocks[b].size, pair.track.colours[b].ofMany());
+  const auto changes = findChanges(information, score, covariance, kPairBlocks, limits);
+  const PairVector numbers_before = numbersOf(pair.before, PairVector::Zero()),
+                   numbers_now = numbersOf(pair.nominal, pair.track.start);
+  for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
+    const StateBlock& block = kPairBlocks[b];
+    MaintainedQuantity quantity =
+        quantityOf(kPairWords[b], before.imus[pair.imu].name, MaintenanceSource::OtherImu, options);
+    quantity.against = before.imus[pair.reference].name;
+    for (Eigen::Index i = 0; i < block.size; ++i) {
+      const Eigen::Index n = block.first + i;
+      quantity.numbers.push_back(
+          {numberName(kPairWords[b], i, block.size), kPairWords[b].unit,
+           kPairWords[b].factor * numbers_before[n], kPairWords[b].factor * sigma_before[n],
+           kPairWords[b].factor * numbers_now[n],
+           kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))});
+    }
+    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.colours[b].ofMany(), quantity);
+    maintenance.quantities.push_back(quantity);
+  }
+  addSteps(pair, before, maintenance);
+  addTrack(pair, before, maintenance);
+}
+
+void judge(Maintenance& maintenance) {
+  const bool changed =
+      !maintenance.steps.empty() || std::any_of(maintenance.quantities.begin(), maintenance.quantities.end(),
+                                                [](const auto& quantity) { return quantity.changed; });
+  if (changed) {
+    sayChanged(maintenance);
+    return;
+  }
+  const bool several = maintenance.imus.size() > 1;
+  std::string untold;
+  bool any = false;
+  for (const MaintainedQuantity& quantity : maintenance.quantities) {
+    if (!isAsked(quantity, several)) continue;
+    // What one source does not tell another may.
+    const auto better = [&](const MaintainedQuantity& other) {
+      return other.name == quantity.name && other.sensor == quantity.sensor && other.told();
+    };
+    any = true;
+    if (std::any_of(maintenance.quantities.begin(), maintenance.quantities.end(), better)) continue;
+    const std::string name = fmt::format("{} of {}", quantity.title, quantity.sensor);
+    if (untold.find(name) == std::string::npos) untold += (untold.empty() ? "" : ", ") + name;
+  }
+  if (any && untold.empty()) {
+    maintenance.verdict = MaintenanceVerdict::Unchanged;
+    maintenance.reason = "nothing has changed that would have been noticed";
+    return;
+  }
+  maintenance.verdict = MaintenanceVerdict::CannotTell;
+  if (!maintenance.reason.empty()) return;  // said already
+  maintenance.reason = any ? "the log does not tell enough of " + untold
+                           : "the log has neither stops nor a second IMU nor a trajectory that would tell";
+}
+
+}  // namespace evical

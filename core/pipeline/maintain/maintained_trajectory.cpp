@@ -1,0 +1,248 @@
+#include "core/pipeline/maintain/maintained_trajectory.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/geometry/so3.h"
+#include "core/maintenance/clock_agreement.h"
+#include "core/numerics/angles.h"
+#include "core/numerics/robust.h"
+#include "core/pipeline/maintain/trajectory_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr double kTurn_s = 0.05;   // poses between which rates are taken are that far apart
+constexpr double kLook_s = 120.0;  // of the trajectory, for frames and clock
+
+struct BodyRate {
+  double from_s, to_s;
+  Eigen::Vector3d rate_rad_s;
+};
+
+std::vector<BodyRate> ratesOf(const std::vector<TimedPose>& poses,
+                              const std::function<Eigen::Quaterniond(const TimedPose&)>& rotation) {
+  std::vector<BodyRate> rates;
+  std::size_t from = 0;
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    const double length_s = poses[k].time_s - poses[from].time_s;
+    if (length_s < kTurn_s) continue;
+    if (length_s < 10.0 * kTurn_s)
+      rates.push_back({poses[from].time_s, poses[k].time_s,
+                       quaternionLog(rotation(poses[from]).conjugate() * rotation(poses[k])) / length_s});
+    from = k;
+    if (poses[k].time_s - poses.front().time_s > kLook_s) break;
+  }
+  return rates;
+}
+
+Eigen::Quaterniond asItIs(const TimedPose& pose) {
+  return pose.world_from_imu;
+}
+Eigen::Quaterniond inverted(const TimedPose& pose) {
+  return pose.world_from_imu.conjugate();
+}
+// Read as if x, y, z, w were w, x, y, z.
+Eigen::Quaterniond realPartFirst(const TimedPose& pose) {
+  const Eigen::Vector4d& q = pose.world_from_imu.coeffs();
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+}
+
+// What the gyroscope has turned by until each sample, by axis, for means over any interval.
+struct TurnedRates {
+  std::vector<double> times_s;
+  std::vector<Eigen::Vector3d> sums_rad;
+
+  void add(double time_s, const Eigen::Vector3d& rate) {
+    if (!times_s.empty() && time_s <= times_s.back()) return;
+    const double step_s = times_s.empty() ? 0.0 : time_s - times_s.back();
+    sums_rad.push_back((sums_rad.empty() ? Eigen::Vector3d::Zero().eval() : sums_rad.back()) + step_s * rate);
+    times_s.push_back(time_s);
+  }
+  Eigen::Vector3d at(double time_s) const {
+    const auto next = std::lower_bound(times_s.begin(), times_s.end(), time_s);
+    const auto k = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+        next - times_s.begin(), 1, static_cast<std::ptrdiff_t>(times_s.size()) - 1));
+    const double share = (time_s - times_s[k - 1]) / (times_s[k] - times_s[k - 1]);
+    return (1.0 - share) * sums_rad[k - 1] + share * sums_rad[k];
+  }
+  bool holds(const BodyRate& rate) const {
+    return times_s.size() > 1 && rate.from_s >= times_s.front() && rate.to_s <= times_s.back();
+  }
+};
+
+TurnAgreement agreementOf(const std::vector<BodyRate>& rates, const TurnedRates& turned) {
+  std::vector<Eigen::Vector3d> body, imu;
+  for (const BodyRate& rate : rates) {
+    if (!turned.holds(rate)) continue;
+    body.push_back(rate.rate_rad_s);
+    imu.push_back((turned.at(rate.to_s) - turned.at(rate.from_s)) / (rate.to_s - rate.from_s));
+  }
+  return turnAgreement(body, imu);
+}
+
+// Which sensor of the old result is turned against the IMU as the trajectory's body is.
+std::string bodyOf(const NamedResult& before, std::size_t imu, const Eigen::Quaterniond& imu_from_body) {
+  constexpr double kNear_rad = 2.0 * kRadPerDeg;
+  const Eigen::Quaterniond imu_from_reference =
+      before.result->state.imus[imu].reference_from_imu.rotation.conjugate();
+  const auto is = [&](const RigidTransform& reference_from_sensor) {
+    return imu_from_body.angularDistance(imu_from_reference * reference_from_sensor.rotation) < kNear_rad;
+  };
+  for (std::size_t k = 0; k < before.cameras.size(); ++k)
+    if (is(before.result->state.cameras[k].reference_from_camera))
+      return "the camera " + before.cameras[k].name;
+  for (std::size_t k = 0; k < before.imus.size(); ++k)
+    if (k != imu && is(before.result->state.imus[k].reference_from_imu))
+      return "the IMU " + before.imus[k].name;
+  return {};
+}
+
+class TrajectoryCheck {
+ public:
+  TrajectoryCheck(const MaintainInput& input, std::size_t imu) : input_(input), imu_(imu) {}
+
+  std::string place() const { return input_.trajectory.string(); }
+  const std::string& name() const { return input_.before.imus[imu_].name; }
+
+  // Times, then turns.
+  double agree(std::vector<TimedPose>& poses, const TurnedRates& turned, const RateNorms& of_imu) const {
+    const std::vector<BodyRate> rates = ratesOf(poses, asItIs);
+    if (turned.times_s.size() < 2 || rates.empty() || rates.front().from_s > turned.times_s.back() ||
+        rates.back().to_s < turned.times_s.front())
+      throw badInput(place(), "has no time in common with the log",
+                     "Give its times in seconds since the log's start, or since 1970 as the log has them");
+    RateNorms of_body;
+    for (const BodyRate& rate : rates)
+      for (double t = rate.from_s; t < rate.to_s; t += RateNorms::kBin_s) of_body.add(t, rate.rate_rad_s);
+    const ClockAgreement clocks = clockAgreement(of_imu, of_body, *input_.options);
+    constexpr double kNear_s = 0.004;
+    if (!clocks.moved) return 0.0;
+    if (clocks.correlation < input_.options->same_motion) sayOther(poses, turned);
+    const double later_s = std::abs(clocks.later_s) > kNear_s ? clocks.later_s : 0.0;
+    for (TimedPose& pose : poses) pose.time_s += later_s;
+    checkTurns(poses, turned);
+    return later_s;
+  }
+
+  void checkLags(const TrajectoryRun& run) const {
+    constexpr double kSigmas = 5.0;
+    std::vector<double> levers, noises;
+    bool far = false;
+    for (const LagEstimate& lag : run.lags) {
+      levers.push_back(lag.lever_m.norm());
+      noises.push_back(lag.position_noise_m);
+      far = far || lag.lever_m.norm() > kSigmas * lag.lever_sigma_m.norm();
+    }
+    const Eigen::Vector3d old_scale =
+        accelerometerNumbers(input_.before.result->state.imus[imu_]).segment<3>(3);
+    const double scale = (run.sum.now.segment<3>(3).array() / old_scale.array()).mean();
+    const double sigma = std::sqrt(run.sum.covariance.diagonal().segment<3>(3).mean());
+    if (std::abs(scale - 1.0) > input_.options->trajectory_scale + kSigmas * sigma)
+      throw badInput(
+          place(),
+          fmt::format("its positions are {:.3g} times what the accelerometer of {} says: it is not in "
+                      "metres (one camera alone knows no scale)",
+                      1.0 / scale, name()),
+          "Scale it to metres");
+    const double lever_m = medianOf(std::move(levers));
+    if (far && 1e3 * lever_m > input_.options->trajectory_lever_mm)
+      throw badInput(place(),
+                     fmt::format("its positions are those of a point {:.0f} mm from {}, or not in metres",
+                                 1e3 * lever_m, name()),
+                     "Give the trajectory of the IMU itself, in metres");
+  }
+
+ private:
+  void checkTurns(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
+    constexpr double kExplained = 0.9, kTurned_rad = kRadPerDeg;
+    const TurnAgreement agreement = agreementOf(ratesOf(poses, asItIs), turned);
+    if (agreement.correlation < kExplained) sayOther(poses, turned);
+    const double angle = agreement.imu_from_body.angularDistance(Eigen::Quaterniond::Identity());
+    if (angle < kTurned_rad) return;
+    const std::string body = bodyOf(input_.before, imu_, agreement.imu_from_body);
+    throw badInput(place(),
+                   fmt::format("it is not that of {}, but of another frame, turned by {:.1f} deg{}", name(),
+                               angle * kDegPerRad, body.empty() ? "" : ": that of " + body),
+                   "Give the poses world_from_imu of this IMU");
+  }
+
+  [[noreturn]] void sayOther(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
+    constexpr double kExplained = 0.9;
+    const double of_inverse = agreementOf(ratesOf(poses, inverted), turned).correlation,
+                 of_order = agreementOf(ratesOf(poses, realPartFirst), turned).correlation;
+    if (of_order > kExplained && of_order > of_inverse)
+      throw badInput(place(), "its quaternions are written w, x, y, z", "Write x, y, z, w");
+    if (of_inverse > kExplained)
+      throw badInput(place(), "its poses are imu_from_world", "Give world_from_imu: the inverse of each");
+    throw badInput(place(), fmt::format("it does not turn as {} does", name()),
+                   "Give the trajectory of this log, on its clock");
+  }
+
+  const MaintainInput& input_;
+  std::size_t imu_;
+};
+
+// Calls use(time, sample) of the IMU's samples until it says that it has enough.
+void forSamples(const MaintainInput& input, std::size_t imu, const RunContext& context,
+                const std::function<bool(double, const ImuSample&)>& use) {
+  ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);
+  ImuLogPacket packet;
+  while (logs.read(packet)) {
+    context.throwIfStopped();
+    if (packet.imu != imu) continue;
+    for (const ImuSample& sample : packet.samples)
+      if (!use(secondsSince(logs.start_ns(), sample.time_ns), sample)) return;
+    context.progress.stageProgress(logs.fractionRead());
+  }
+  context.throwIfStopped();
+}
+
+}  // namespace
+
+TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double gravity_m_s2,
+                            const RunContext& context) {
+  context.progress.stageStarted("trajectory");
+  const ImuState& before = input.before.result->state.imus[imu];
+  std::int64_t start_ns = 0;
+  {
+    const ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);
+    start_ns = logs.start_ns();
+  }
+  std::vector<TimedPose> poses = readTrajectory(input.trajectory, start_ns);
+  TurnedRates turned;
+  RateNorms norms;
+  const double from_s = poses.front().time_s - 2.0, to_s = poses.front().time_s + kLook_s + 2.0;
+  const Eigen::Matrix3d rates = before.gyroscopeMatrix().inverse();
+  forSamples(input, imu, context, [&](double time_s, const ImuSample& sample) {
+    const Eigen::Vector3d rate = rates * (sample.angular_rate_rad_s - before.gyroscope_bias_rad_s);
+    if (time_s >= from_s) {
+      turned.add(time_s, rate);
+      norms.add(time_s, rate);
+    }
+    return time_s < to_s;
+  });
+  const TrajectoryCheck check(input, imu);
+  TrajectoryRun run;
+  run.later_s = check.agree(poses, turned, norms);
+  TrajectoryLags lags(std::move(poses), before, gravity_m_s2,
+                      input.before.imus[imu].noise.accelerometer_density, *input.options);
+  forSamples(input, imu, context, [&](double time_s, const ImuSample& sample) {
+    lags.add(time_s, sample);
+    return true;
+  });
+  lags.finish();
+  run.lags = lags.lags();
+  if (run.lags.empty()) return run;
+  run.sum = sumOfLags(run.lags, accelerometerNumbers(before));
+  check.checkLags(run);
+  return run;
+}
+
+}  // namespace evical

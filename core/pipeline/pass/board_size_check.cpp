@@ -1,0 +1,164 @@
+#include "core/pipeline/pass/board_size_check.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kLeastWhole = 0.05;  // of the views
+
+struct AxisCheck {
+  const char* line;  // "row" or "column"
+  const LatticeEnds& ends;
+  std::vector<bool> seen;  // by line, in any view
+  bool whole;              // enough views show both outermost lines
+};
+
+std::vector<bool> circlesSeen(const BoardObservations& observations, const Board& board) {
+  std::vector<bool> seen(static_cast<std::size_t>(board.pointCount()), false);
+  for (const BoardView& view : observations.views)
+    for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
+  return seen;
+}
+
+// Counts the views that show both outermost lines, of rows or of columns. A board that is smaller than the session says
+// never has such a view. A board of the right size has some, even if the read-out loses many bursts of events.
+int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double least_line) {
+  const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
+  const double least = std::max(2.0, least_line * in_line);
+  return static_cast<int>(
+      std::count_if(observations.views.begin(), observations.views.end(), [&](const BoardView& view) {
+        int first = 0, last = 0;
+        for (const CircleObservation& circle : view.circles) {
+          const int line = rows ? circle.circle / board.cols : circle.circle % board.cols;
+          first += line == 0;
+          last += line == lines - 1;
+        }
+        return std::min(first, last) >= least;
+      }));
+}
+
+bool contradicted(int against, int looked_at, const ExtentOptions& options) {
+  return looked_at >= options.least_views && against > options.largest_share * looked_at;
+}
+
+std::string beyondText(const AxisCheck& axis) {
+  return fmt::format(
+      "circles of the same lattice are seen beyond its first or last {} in {:.0f} % of {} views", axis.line,
+      100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view, axis.ends.beyond_in_view);
+}
+
+std::string missingText(const AxisCheck& axis, std::size_t views) {
+  const auto count = static_cast<std::ptrdiff_t>(axis.seen.size());
+  const auto first = std::find(axis.seen.begin(), axis.seen.end(), true) - axis.seen.begin();
+  const auto last = std::find(axis.seen.rbegin(), axis.seen.rend(), true) - axis.seen.rbegin();
+  const std::ptrdiff_t never = std::max(first, last);
+  if (never == 0 || never == count) {
+    return fmt::format("its first or last {} is missing in {:.0f} % of the {} views that show its place",
+                       axis.line, 100.0 * axis.ends.edge_missing / axis.ends.edge_in_view,
+                       axis.ends.edge_in_view);
+  }
+  return fmt::format("the {} {} of {} {}s {} never seen in {} views", first > last ? "first" : "last", never,
+                     count, axis.line, never == 1 ? "was" : "were", views);
+}
+
+}  // namespace
+
+std::string outcomes(const BoardObservations& observations) {
+  std::array<int, kWindowOutcomeCount> counts = {};
+  for (const WindowReport& window : observations.windows) ++counts[static_cast<std::size_t>(window.outcome)];
+  std::string text;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k],
+                        windowOutcomeName(static_cast<WindowOutcome>(k)));
+  }
+  return text.empty() ? "no windows" : text;
+}
+
+void checkBoardSeen(const BoardObservations& observations, const Board& board) {
+  if (!observations.views.empty()) return;
+  int lattices = 0;
+  for (const WindowReport& window : observations.windows) {
+    lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
+                window.outcome == WindowOutcome::RefinementFailed;
+  }
+  const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
+  throw calibrationFailed(
+      observations.camera,
+      fmt::format("the board was never found in {} windows ({})", observations.windows.size(),
+                  outcomes(observations)),
+      other_board
+          ? fmt::format(
+                "Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
+                "bright) in the session",
+                board.rows, board.cols)
+          : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) "
+            "in the "
+            "session; 'evical detect --images' draws what is seen");
+}
+
+void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
+  if (observations.kind != CameraKind::Events) return;  // whose lattice alone may be laid wrongly
+  const std::vector<bool> seen = circlesSeen(observations, board);
+  const double least_whole =
+      std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
+  const auto isWhole = [&](bool of_rows) {
+    return wholeViews(observations, board, of_rows, options.least_line) >= least_whole;
+  };
+  AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows)),
+                 isWhole(true)};
+  AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols)),
+                 isWhole(false)};
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!seen[k]) continue;
+    rows.seen[k / cols.seen.size()] = cols.seen[k % cols.seen.size()] = true;
+  }
+  bool larger = false, smaller = false;
+  std::string text;
+  const auto say = [&](const std::string& more) { text += (text.empty() ? "" : ", and ") + more; };
+  for (const AxisCheck* axis : {&rows, &cols}) {
+    if (contradicted(axis->ends.beyond_seen, axis->ends.beyond_in_view, options)) {
+      larger = true;
+      say(beyondText(*axis));
+    }
+    if (!axis->whole && contradicted(axis->ends.edge_missing, axis->ends.edge_in_view, options)) {
+      smaller = true;
+      say(missingText(*axis, observations.views.size()));
+    }
+  }
+  if (text.empty()) return;
+  throw calibrationFailed(observations.camera,
+                          fmt::format("the board in view seems {} {} x {}: {}",
+                                      larger && smaller ? "other than"
+                                      : larger          ? "larger than"
+                                                        : "smaller than",
+                                      board.rows, board.cols, text),
+                          "Check rows and cols in the session");
+}
+
+std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board) {
+  constexpr std::size_t kEnoughViews = 30;
+  if (observations.views.size() < kEnoughViews) return std::nullopt;
+  const std::vector<bool> seen = circlesSeen(observations, board);
+  const auto never = std::count(seen.begin(), seen.end(), false);
+  if (never == 0) return std::nullopt;
+  return RecordingFault{
+      observations.camera, FaultKind::BoardSize, 0.0,
+      fmt::format("{}: {} of the board's {} {} were seen in none of {} views: check {} in the session",
+                  observations.camera, never, board.pointCount(), board.hasCircles() ? "circles" : "points",
+                  observations.views.size(), board.hasPattern() ? "rows and cols" : "points_m")};
+}
+
+const char* measurementsOf(CameraKind kind) {
+  return kind == CameraKind::Events ? "events" : kind == CameraKind::Frames ? "frames" : "points";
+}
+
+}  // namespace evical

@@ -1,0 +1,54 @@
+#include "core/pipeline/pass/camera_views.h"
+
+#include "core/base/error.h"
+#include "core/data/calibration_observer.h"
+#include "core/frontend/board_tracker.h"
+#include "core/pipeline/pass/blink_views.h"
+#include "core/pipeline/pass/frame_views.h"
+#include "core/pipeline/pass/point_views.h"
+
+namespace evical {
+namespace {
+
+class EventViews final : public CameraViews {
+ public:
+  EventViews(const CameraBatch& first, const ViewRequest& request)
+      : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.seen_with,
+                 request.session.options.front_end, first.start_ns) {
+    tracker_.stopWith(request.context.stop);
+    if (request.context.observer != nullptr)
+      tracker_.observeWith(request.context.observer->windowObserver(first.camera, tracker_));
+  }
+
+  void take(const CameraBatch& batch) override {
+    tracker_.addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
+  }
+  const BoardObservations& soFar() const override { return tracker_.observations(); }
+  BoardObservations finish(std::vector<RecordingFault>& /*faults*/) override { return tracker_.finish(); }
+
+ private:
+  BoardTracker tracker_;
+};
+
+}  // namespace
+
+std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
+  const Session& session = request.session;
+  if (first.kind == CameraKind::Points) return std::make_unique<PointViews>(first, request);
+  const Board& board = session.boardOf(first.camera);
+  if (!board.hasPattern())
+    throw badInput(session.cameras[first.camera].name,
+                   "its board is a table of points, which has no pattern that could be found",
+                   "Give the camera points that another program has found (points: FILE), or another board");
+  if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
+  if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
+  if (!board.hasCircles())
+    throw badInput(
+        session.cameras[first.camera].name,
+        std::string("an event camera in motion cannot see a board of type ") + boardTypeName(board.type),
+        "Use a grid of circles; or, for 'evical intrinsics', show this board on a screen that flashes "
+        "('evical board --blink') and say blinking: true in the session's board");
+  return std::make_unique<EventViews>(first, request);
+}
+
+}  // namespace evical

@@ -1,0 +1,235 @@
+#include "core/pipeline/pass/detections_check.h"
+
+#include "core/base/time.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/geometry/projection_difference.h"
+#include "core/pipeline/session/given_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+constexpr const char* kAnother =
+    "Give the folder of a run of this session, or leave --detections out to detect the board anew";
+
+std::string inQuotes(const std::string& text) {
+  return "'" + text + "'";
+}
+
+void checkSame(const YamlNode& map, const char* key, const std::string& session, const char* what) {
+  const YamlNode node = map[key];
+  if (node.text() != session)
+    throw node.error(fmt::format("the detections are of {} {}, the session is of {}", what,
+                                 inQuotes(node.text()), inQuotes(session)),
+                     kAnother);
+}
+
+// A board that was measured once more is still the same one: what is held against it is how its sizes are to each
+// other.
+void checkSizes(const YamlNode& map, const Board& board) {
+  constexpr double kMeasuredAgain = 0.05;
+  const double spacing_m = map["spacing_m"].real(1e-6, 100.0, "m");
+  const auto check = [&](const char* key, double session_m) {
+    const YamlNode node = map[key];
+    const double then = node.real(0.0, 100.0, "m") / spacing_m, now = session_m / board.spacing_m;
+    if (std::abs(then - now) > kMeasuredAgain * std::max(then, now))
+      throw node.error(
+          fmt::format("the detections are of a board on which it is {:.3f} of the spacing, in the "
+                      "session it is {:.3f}",
+                      then, now),
+          kAnother);
+  };
+  check("radius_m", board.radius_m);
+  check("tag_size_m", board.tag_size_m);
+}
+
+// Points that were measured once more are a little elsewhere.
+void checkPoints(const YamlNode& said, const Board& board) {
+  constexpr double kMeasuredAgain = 0.05;  // of what lies between neighbours
+  const YamlNode node = said["points_m"];
+  const std::vector<Eigen::Vector2d> then_m = pointsFrom(node);
+  if (then_m.size() != board.given_m.size())
+    throw node.error(fmt::format("the detections are of a board of {} points, the session's has {}",
+                                 then_m.size(), board.given_m.size()),
+                     kAnother);
+  for (std::size_t i = 0; i < then_m.size(); ++i)
+    if ((then_m[i] - board.given_m[i]).norm() > kMeasuredAgain * board.spacing_m)
+      throw node.error(
+          fmt::format("the detections are of a board whose point {} is at {}, {} m, in the session it "
+                      "is at {}, {} m",
+                      i, then_m[i].x(), then_m[i].y(), board.given_m[i].x(), board.given_m[i].y()),
+          kAnother);
+}
+
+void checkTimeRange(const YamlNode& root, const Session& session) {
+  const auto node = root.find("time_range_s");
+  if (!node) return;
+  const std::vector<double> seen_s = node->reals(2);
+  const auto& wanted_s = session.time_range_s;
+  if (wanted_s && (*wanted_s)[0] >= seen_s[0] && (*wanted_s)[1] <= seen_s[1]) return;
+  throw node->error(
+      fmt::format(
+          "the detections are of {} to {} s, the session is of {}", seen_s[0], seen_s[1],
+          wanted_s ? fmt::format("{} to {} s", (*wanted_s)[0], (*wanted_s)[1]) : "all of the recording"),
+      "Give the session a time_range_s within it, or leave --detections out to detect the board anew");
+}
+
+void logOptions(const YamlNode& map, const Session& session, const RunContext& context) {
+  std::string differing;
+  std::vector<OptionRow> rows = detectionOptions(session.options);
+  for (const std::string& key : map.keys()) {
+    const auto same = [&](const OptionRow& row) { return row.name == key && row.value == map[key].text(); };
+    const auto found = std::find_if(rows.begin(), rows.end(), same);
+    if (found == rows.end())
+      differing += " " + key;
+    else
+      rows.erase(found);
+  }
+  for (const OptionRow& row : rows)
+    if (!map.has(row.name)) differing += " " + row.name;
+  if (!differing.empty())
+    context.progress.log(LogLevel::Warning,
+                         "The detections were made with other options, and stay as they are:" + differing);
+}
+
+}  // namespace
+
+YamlNode loadDetections(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "detections.yaml";
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw badInput(
+        file.string(), "is not there",
+        "Give the result folder of `evical calibrate` or `evical detect`; what an earlier version wrote "
+        "has to be detected once more");
+  YamlNode root = YamlNode::load(file);
+  if (!root.isMap() || !root.has("evical_detections"))
+    throw root.error("holds no detections: the key evical_detections is missing", kAnother);
+  root["evical_detections"].integer(1, 1);
+  const YamlNode start = root["start_ns"];
+  if (!isTime(start.nanoseconds())) throw start.error("is no time", kAnother);
+  return root;
+}
+
+void checkBoard(const YamlNode& said, const Board& board) {
+  checkSame(said, "type", boardTypeName(board.type), "a board of type");
+  if (!board.hasPattern()) return checkPoints(said, board);
+  checkSame(said, "rows", std::to_string(board.rows), "a board whose rows are");
+  checkSame(said, "cols", std::to_string(board.cols), "a board whose columns are");
+  if (board.hasCircles())
+    checkSame(said, "circles", board.circles == CircleShade::Dark ? "dark" : "bright", "circles that are");
+  checkSizes(said, board);
+}
+
+void checkSession(const YamlNode& detections, const Session& session, const RunContext& context) {
+  checkTimeRange(detections, session);
+  logOptions(detections["options"], session, context);
+  const std::string recording = detections["recording"].text(), own = session.recording.filename().string();
+  if (recording != own)
+    context.progress.log(LogLevel::Warning,
+                         fmt::format("The detections are of a recording that was called {}; the "
+                                     "session's is called {}",
+                                     inQuotes(recording), inQuotes(own)));
+}
+
+YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera) {
+  const YamlNode cameras = detections["cameras"];
+  const auto map = cameras.find(camera.name);
+  if (!map) {
+    std::string names;
+    for (const std::string& name : cameras.keys()) names += (names.empty() ? "" : ", ") + name;
+    throw cameras.error(
+        fmt::format("the session's camera {} is missing; there are: {}", inQuotes(camera.name), names),
+        kAnother);
+  }
+  checkSame(*map, "stream", camera.stream, "the stream");
+  const YamlNode offset = (*map)["clock_offset_s"];
+  if (offset.real() != camera.clock_offset_s)
+    throw offset.error(fmt::format("the detections are of a clock_offset_s of {}, the session is of {}",
+                                   offset.real(), camera.clock_offset_s),
+                       kAnother);
+  return *map;
+}
+
+Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera) {
+  const YamlNode node = map["resolution_px"];
+  const std::vector<YamlNode> items = node.items();
+  constexpr int kMost = 1'000'000;
+  if (items.size() != 2) throw node.error("must be [width, height]");
+  const Resolution seen = {items[0].integer(1, kMost), items[1].integer(1, kMost)};
+  const Resolution own = camera.resolution_px.known() || !camera.intrinsics
+                             ? camera.resolution_px
+                             : camera.intrinsics->resolution_px;
+  if (own.known() && own != seen)
+    throw node.error(
+        fmt::format("the detections are of {}, the session's camera has {}", sizeText(seen), sizeText(own)),
+        kAnother);
+  return seen;
+}
+
+CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
+  const auto node = map.find("seen_with");
+  if (!node)
+    throw map.error(
+        "was detected without intrinsics, and other places would be found with them",
+        "Start from the folder of `evical calibrate`, or give the camera its intrinsics and detect once "
+        "more");
+  CameraIntrinsics seen_with = readIntrinsics(*node);
+  if (!camera.intrinsics) {
+    if (!map.has("found_first"))
+      throw node->error("the detections are of given intrinsics, the session gives none",
+                        "Give the session the same intrinsics, or leave --detections out");
+    return seen_with;
+  }
+  constexpr double kSame_px = 1e-6;
+  const CameraIntrinsics& given = *camera.intrinsics;
+  const bool same = seen_with == given ||
+                    (seen_with.resolution_px == given.resolution_px && seen_with.resolution_px.known() &&
+                     projectionDifference(seen_with, given).max_px < kSame_px);
+  if (!same)
+    throw node->error("the detections are of other intrinsics than the session gives",
+                      "Give the session these, or leave --detections out to detect the board anew");
+  return seen_with;
+}
+
+void checkOverlap(const Session& session, const RecordingPass& pass) {
+  double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
+  for (const BoardObservations& camera : pass.cameras) {
+    if (camera.views.empty()) continue;
+    first_s = std::min(first_s, camera.views.front().time_s);
+    last_s = std::max(last_s, camera.views.back().time_s);
+  }
+  const double apart_s = session.options.initialisation.time_offset_search_s;
+  for (const ImuData& imu : pass.imus) {
+    const double begin_s = secondsSince(pass.start_ns, imu.samples.front().time_ns),
+                 end_s = secondsSince(pass.start_ns, imu.samples.back().time_ns);
+    if (begin_s > last_s + apart_s || end_s < first_s - apart_s)
+      throw badInput(
+          imu.name,
+          fmt::format("its samples lie at {:.3f} to {:.3f} s, the detections at {:.3f} to {:.3f} s: they "
+                      "are of another recording",
+                      begin_s, end_s, first_s, last_s),
+          kAnother);
+  }
+}
+
+std::vector<OptionRow> detectionOptions(const CalibrationOptions& options) {
+  CalibrationOptions deciding;
+  deciding.front_end = options.front_end;
+  deciding.frames = options.frames;
+  return differingOptions(deciding);
+}
+
+bool isOfImu(const RecordingFault& fault, const Session& session) {
+  return std::any_of(session.imus.begin(), session.imus.end(), [&](const SessionImu& imu) {
+    return fault.stream == imu.stream || fault.stream == imu.joinedStream() || fault.stream == imu.name;
+  });
+}
+
+}  // namespace evical

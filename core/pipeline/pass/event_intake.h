@@ -1,0 +1,56 @@
+// One camera's events on their way from the recording to the front end: checked, sorted, turned into bursts; or
+// handed on as they are, where the board blinks.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/data/recording_fault.h"
+#include "core/frontend/edge_bursts.h"
+#include "core/pipeline/pass/camera_batch.h"
+#include "core/pipeline/session/session.h"
+#include "core/recording/read_out_load.h"
+#include "core/recording/stamp_step.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+enum class EventUse { Bursts, AsTheyAre };
+
+class EventIntake {
+ public:
+  EventIntake(std::size_t camera, const SessionCamera& session, Resolution resolution_px,
+              const BurstOptions& bursts, EventUse use)
+      : camera_(camera),
+        session_(session),
+        burst_options_(bursts),
+        resolution_px_(resolution_px),
+        use_(use) {}
+
+  // Nothing where no event is left. Throws BadInput where too many lie outside the resolution.
+  std::optional<CameraBatch> take(std::vector<Event>& events);
+  std::optional<CameraBatch> finish();
+
+  std::uint64_t eventCount() const { return count_; }
+  double stampStep_s() const { return stamp_step_.step_s(); }
+  void report(std::vector<RecordingFault>& faults) const;
+
+ private:
+  void putInOrder(std::vector<Event>& events);
+
+  std::size_t camera_;
+  const SessionCamera& session_;
+  BurstOptions burst_options_;
+  Resolution resolution_px_;
+  EventUse use_;
+  std::uint64_t count_ = 0;  // handed on
+  StampStep stamp_step_;
+  ReadOutLoad load_;
+  std::optional<BurstExtractor> extractor_;
+  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;
+};
+
+}  // namespace evical

@@ -1,0 +1,303 @@
+#include "core/pipeline/pass/recording_pass.h"
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/base/time.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/second_clock.h"
+#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/bounded_queue.h"
+#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/pass/event_intake.h"
+#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/pass/session_time_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kQueuedBatches = 16;
+constexpr std::size_t kBatchEvents = 50'000;
+
+// The window thread: what each camera saw of the board.
+class WindowWorker {
+ public:
+  WindowWorker(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
+      : session_(session), lenses_(lenses), context_(context), views_(session.cameras.size()) {}
+
+  void run(BoundedQueue<CameraBatch>& queue) {
+    try {
+      while (std::optional<CameraBatch> batch = queue.pop()) {
+        if (context_.stop.stop_requested()) break;
+        const Stopwatch stopwatch;
+        handle(*batch);
+        busy_s_ += stopwatch.elapsed_s();
+      }
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    queue.close();
+  }
+
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+  double busy_s() const { return busy_s_; }
+  // Before it finishes; of frames, where nothing else says it.
+  void tellResolutions(std::vector<Resolution>& resolutions_px) const {
+    for (std::size_t k = 0; k < views_.size(); ++k)
+      if (views_[k] && !resolutions_px[k].known()) resolutions_px[k] = views_[k]->resolution_px();
+  }
+
+  std::vector<BoardObservations> finish(std::vector<RecordingFault>& faults) {
+    std::vector<BoardObservations> observations(views_.size());
+    const Stopwatch stopwatch;
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      if (views_[k]) observations[k] = views_[k]->finish(faults);
+      observations[k].camera = session_.cameras[k].name;
+    }
+    busy_s_ += stopwatch.elapsed_s();
+    return observations;
+  }
+
+ private:
+  void handle(const CameraBatch& batch) {
+    std::unique_ptr<CameraViews>& views = views_[batch.camera];
+    if (batch.opened_px) views = cameraViews(batch, {session_, lenses_[batch.camera], context_});
+    const std::size_t before = views->soFar().windows.size();
+    views->take(batch);
+    if (context_.observer != nullptr && views->soFar().windows.size() > before)
+      context_.observer->windowsDetected(batch.camera, views->soFar());
+  }
+
+  const Session& session_;
+  const std::vector<CameraLens>& lenses_;
+  const RunContext& context_;
+  std::vector<std::unique_ptr<CameraViews>> views_;  // by camera
+  std::exception_ptr failure_;
+  double busy_s_ = 0.0;
+};
+
+// Reading: packets to intakes and IMUs, within the session's time range.
+class ReadingPass {
+ public:
+  // `start_ns`: of the whole session, where not all of its sensors are read; its time range counts from there.
+  ReadingPass(const Session& session, const RunContext& context, RecordingPass& result,
+              std::optional<std::int64_t> start_ns = {})
+      : session_(session),
+        recording_(session, context.stop),
+        result_(result),
+        range_(session, session.cameras.size() + session.imus.size(),
+               start_ns.value_or(recording_.start_ns())) {
+    result.imus.resize(session.imus.size());
+    result.start_ns = start_ns.value_or(recording_.start_ns());
+    for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
+      const Resolution resolution_px = recording_.resolution_px(camera);
+      result.resolutions_px.push_back(resolution_px);
+      Intake& intake = intakes_.emplace_back();
+      intake.kind = recording_.kind(camera);
+      if (intake.kind == CameraKind::Events)
+        intake.events.emplace(camera, session.cameras[camera], resolution_px,
+                              session.options.front_end.bursts,
+                              session.board_blinks ? EventUse::AsTheyAre : EventUse::Bursts);
+    }
+  }
+
+  void run(BoundedQueue<CameraBatch>& queue, const RunContext& context) {
+    SensorPacket packet;
+    while (recording_.read(packet)) {
+      context.throwIfStopped();
+      context.progress.stageProgress(recording_.fractionRead());
+      if (range_.isOver(packet)) break;
+      const bool is_camera = packet.sensor < intakes_.size();
+      if (!is_camera) addSamples(packet);
+      if (is_camera && !addMeasured(packet, queue)) return;
+    }
+    for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
+      if (!intakes_[camera].events) continue;
+      flush(camera, queue);
+      if (std::optional<CameraBatch> batch = intakes_[camera].events->finish()) queue.push(std::move(*batch));
+    }
+  }
+
+  void finish() {
+    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
+    for (const Intake& intake : intakes_)
+      if (intake.events) intake.events->report(result_.faults);
+    const std::vector<RecordingFault> faults = recording_.faults();
+    result_.faults.insert(result_.faults.end(), faults.begin(), faults.end());
+  }
+
+  // Of events, frames or points.
+  std::uint64_t count(std::size_t camera) const {
+    const Intake& intake = intakes_[camera];
+    return intake.events ? intake.events->eventCount() : intake.count;
+  }
+  double stampStep_s(std::size_t camera) const {
+    const Intake& intake = intakes_[camera];
+    return intake.events ? intake.events->stampStep_s() : 0.0;
+  }
+  CameraKind kind(std::size_t camera) const { return intakes_[camera].kind; }
+
+ private:
+  struct Intake {
+    CameraKind kind = CameraKind::Events;
+    std::optional<EventIntake> events;
+    std::vector<Event> pending;
+    std::uint64_t count = 0;  // of all else
+  };
+
+  void addSamples(const SensorPacket& packet) {
+    std::vector<ImuSample>& samples = result_.imus[packet.sensor - intakes_.size()].samples;
+    for (const ImuSample& sample : packet.imu_samples) {
+      if (range_.holds(sample.time_ns)) samples.push_back(sample);
+    }
+  }
+
+  bool addMeasured(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+    const auto unwanted = [&](const auto& item) { return !range_.holds(item.time_ns); };
+    std::erase_if(packet.events, unwanted);
+    std::erase_if(packet.points, unwanted);
+    std::erase_if(packet.frames, unwanted);
+    Intake& intake = intakes_[packet.sensor];
+    if (intake.kind == CameraKind::Events) return addEvents(packet, queue);
+    if (packet.points.empty() && packet.frames.empty()) return true;
+    CameraBatch batch;
+    if (intake.count == 0) batch.opened_px = result_.resolutions_px[packet.sensor];
+    batch.camera = packet.sensor;
+    batch.kind = intake.kind;
+    batch.start_ns = result_.start_ns;
+    intake.count += packet.points.size() + packet.frames.size();
+    batch.points = std::move(packet.points);
+    batch.frames = std::move(packet.frames);
+    return queue.push(std::move(batch));
+  }
+
+  bool addEvents(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+    std::vector<Event>& pending = intakes_[packet.sensor].pending;
+    pending.insert(pending.end(), packet.events.begin(), packet.events.end());
+    if (pending.size() < kBatchEvents) return true;
+    return flush(packet.sensor, queue);
+  }
+
+  bool flush(std::size_t camera, BoundedQueue<CameraBatch>& queue) {
+    std::optional<CameraBatch> batch = intakes_[camera].events->take(intakes_[camera].pending);
+    intakes_[camera].pending.clear();
+    if (!batch) return true;
+    batch->start_ns = result_.start_ns;
+    return queue.push(std::move(*batch));
+  }
+
+  void finishImu(const SessionImu& session, ImuData& imu) {
+    imu.name = session.name;
+    imu.noise = session.noise;
+    leaveOutSecondClocks(session.joinedStream(), imu.samples);
+    const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
+    if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
+      result_.faults.push_back({session.joinedStream(), FaultKind::BackwardTime, 0.0,
+                                session.joinedStream() + ": samples out of order, sorted"});
+      std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
+    }
+    const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
+    imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
+    imu.samples.shrink_to_fit();
+  }
+
+  void leaveOutSecondClocks(const std::string& stream, std::vector<ImuSample>& samples) {
+    const std::vector<SecondClock> clocks = findSecondClocks(samples);
+    for (const SecondClock& clock : clocks) result_.faults.push_back(faultOf(stream, samples, clock));
+    for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
+      samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(clock->begin),
+                    samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
+  }
+
+  const Session& session_;
+  SessionRecording recording_;
+  RecordingPass& result_;
+  std::vector<Intake> intakes_;  // by camera
+  SessionTimeRange range_;
+};
+
+void checkSamples(const Session& session, const RecordingPass& pass) {
+  for (const ImuData& imu : pass.imus) {
+    if (!imu.samples.empty()) continue;
+    throw badInput(
+        session.recording.string(),
+        fmt::format("IMU {} has no samples{}", imu.name, session.time_range_s ? " in time_range_s" : ""),
+        "Check the recording with 'evical inspect'");
+  }
+}
+
+}  // namespace
+
+RecordingPass readAndDetect(const Session& session, const RunContext& context) {
+  return readAndDetect(session, givenLenses(session), context);
+}
+
+RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
+                            const RunContext& context) {
+  RecordingPass result;
+  result.lenses = std::move(lenses);
+  const Stopwatch stopwatch;
+  ReadingPass reading(session, context, result);
+  WindowWorker worker(session, result.lenses, context);
+  BoundedQueue<CameraBatch> queue(kQueuedBatches);
+  {
+    std::jthread windows([&] { worker.run(queue); });
+    try {
+      reading.run(queue, context);
+    } catch (...) {
+      queue.close();
+      throw;
+    }
+    result.read_s = stopwatch.elapsed_s();
+    queue.close();
+  }
+  worker.rethrow();
+  context.throwIfStopped();
+  worker.tellResolutions(result.resolutions_px);
+  result.cameras = worker.finish(result.faults);
+  context.throwIfStopped();
+  result.detect_s = worker.busy_s();
+  reading.finish();
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    result.cameras[k].kind = reading.kind(k);
+    result.cameras[k].events = reading.count(k);
+    result.cameras[k].stamp_step_s = reading.stampStep_s(k);
+    if (result.cameras[k].events > 0) continue;
+    throw badInput(
+        session.recording.string(),
+        fmt::format("stream {} holds no {}{}", session.cameras[k].stream, measurementsOf(reading.kind(k)),
+                    session.time_range_s ? " in time_range_s" : ""),
+        "Check the recording with 'evical inspect'");
+  }
+  checkSamples(session, result);
+  return result;
+}
+
+RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunContext& context) {
+  RecordingPass result;
+  if (session.imus.empty()) return result;
+  Session imus_only = session;
+  imus_only.cameras.clear();
+  const Stopwatch stopwatch;
+  ReadingPass reading(imus_only, context, result, start_ns);
+  BoundedQueue<CameraBatch> none(1);
+  reading.run(none, context);
+  context.throwIfStopped();
+  reading.finish();
+  checkSamples(session, result);
+  result.read_s = stopwatch.elapsed_s();
+  return result;
+}
+
+}  // namespace evical

@@ -1,0 +1,199 @@
+#include "core/pipeline/pass/saved_detections.h"
+
+#include "core/base/element.h"
+#include "core/base/yaml_node.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/data/quantity_yaml.h"
+#include "core/pipeline/pass/detections_check.h"
+#include "core/pipeline/pass/found_intrinsics_yaml.h"
+#include "core/pipeline/session/given_points.h"
+#include "core/report/detections_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::array kKinds = {"events", "frames", "points"};  // in CameraKind's order
+
+std::string boardYaml(const Board& board) {
+  if (!board.hasPattern())
+    return fmt::format("{{type: {}, points_m: {}}}", boardTypeName(board.type), pointsYaml(board));
+  return fmt::format(
+      "{{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}}}",
+      boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,
+      board.circles == CircleShade::Dark ? "dark" : "bright", board.tag_size_m);
+}
+
+std::string endsYaml(const LatticeEnds& ends) {
+  return fmt::format("[{}, {}, {}, {}]", ends.beyond_in_view, ends.beyond_seen, ends.edge_in_view,
+                     ends.edge_missing);
+}
+
+LatticeEnds endsFrom(const YamlNode& node) {
+  const std::vector<YamlNode> items = node.items();
+  if (items.size() != 4) throw node.error("must be four counts");
+  constexpr int kMost = 1'000'000'000;
+  const auto count = [&](std::size_t k) { return items[k].integer(0, kMost); };
+  return {count(0), count(1), count(2), count(3)};
+}
+
+std::string cameraYaml(const SessionCamera& camera, const RecordingPass& pass, std::size_t k,
+                       const std::optional<IntrinsicsResult>& found) {
+  const BoardObservations& seen = pass.cameras[k];
+  const Resolution size = elementOrNone(pass.resolutions_px, k);
+  std::string text = fmt::format(
+      "  {}:\n    stream: {}\n    kind: {}\n    measurements: {}\n    clock_offset_s: {}\n    resolution_px: "
+      "[{}, "
+      "{}]\n    extent: {{rows: {}, cols: {}}}\n",
+      yamlText(camera.name), yamlText(camera.stream), kKinds.at(static_cast<std::size_t>(seen.kind)),
+      seen.events, camera.clock_offset_s, size.width_px, size.height_px, endsYaml(seen.extent.rows),
+      endsYaml(seen.extent.cols));
+  if (seen.stamp_step_s > 0.0) text += fmt::format("    stamp_step_s: {}\n", seen.stamp_step_s);
+  if (seen.polarity_delay)
+    text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
+                        seen.polarity_delay->std_s);
+  if (pass.lenses[k].seen_with) text += "    seen_with:\n" + intrinsicsYaml(*pass.lenses[k].seen_with, 6);
+  if (found) text += "    found_first:\n" + foundIntrinsicsYaml(*found, 6);
+  return text;
+}
+
+// Those of IMUs are found again.
+std::string faultsYaml(const Session& session, const RecordingPass& pass) {
+  std::string text;
+  for (const RecordingFault& fault : pass.faults)
+    if (!isOfImu(fault, session))
+      text += fmt::format("  - {{stream: {}, kind: {}, at_s: {}, text: {}}}\n", yamlText(fault.stream),
+                          nameOf(fault.kind), fault.at_s, yamlText(fault.text));
+  return text.empty() ? "faults: []\n" : "faults:\n" + text;
+}
+
+std::string optionsYaml(const Session& session) {
+  std::string text;
+  for (const OptionRow& row : detectionOptions(session.options))
+    text += fmt::format("  {}: {}\n", row.name, yamlText(row.value));
+  return text.empty() ? "options: {}\n" : "options:\n" + text;
+}
+
+std::string detectionsYaml(const Session& session, const RecordingPass& pass,
+                           std::span<const std::optional<IntrinsicsResult>> intrinsics) {
+  std::string text = fmt::format("evical_detections: 1\nrecording: {}\nstart_ns: {}\n",
+                                 yamlText(session.recording.filename().string()), pass.start_ns);
+  if (session.time_range_s)
+    text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
+  text += fmt::format("board: {}\n{}cameras:\n", boardYaml(session.board), optionsYaml(session));
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    text += cameraYaml(session.cameras[k], pass, k, k < intrinsics.size() ? intrinsics[k] : std::nullopt);
+    if (session.boardIndexOf(k) > 0) text += fmt::format("    board: {}\n", boardYaml(session.boardOf(k)));
+  }
+  return text + faultsYaml(session, pass);
+}
+
+// What was known of the lens, and what the camera was seen with: its sensor's lens.
+CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_t k) {
+  const SessionCamera& sensor = session.sensor(k);
+  CameraLens lens = givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty);
+  lens.seen_with = checkedLens(checkedCamera(root, sensor), sensor);
+  if (session.sensorOf(k) == k) return lens;
+  SessionCamera camera = session.cameras[k];
+  camera.intrinsics = lens.seen_with;
+  checkedLens(checkedCamera(root, camera), camera);
+  return lens;
+}
+
+// What detections.yaml says of one of the session's cameras.
+void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
+                   RestoredDetections& restored) {
+  const SessionCamera& camera = session.cameras[k];
+  const YamlNode map = checkedCamera(root, camera);
+  checkBoard(map.find("board").value_or(root["board"]), session.boardOf(k));
+  BoardObservations& seen = restored.pass.cameras.emplace_back();
+  seen.camera = camera.name;
+  seen.kind = static_cast<CameraKind>(map["kind"].choice(kKinds));
+  seen.events = static_cast<std::uint64_t>(std::max<std::int64_t>(0, map["measurements"].nanoseconds()));
+  seen.extent = {endsFrom(map["extent"]["rows"]), endsFrom(map["extent"]["cols"])};
+  if (const auto step = map.find("stamp_step_s")) seen.stamp_step_s = step->real();
+  if (const auto delay = map.find("polarity_delay"))
+    seen.polarity_delay = PolarityDelay{(*delay)["later_s"].real(), (*delay)["std_s"].real()};
+  restored.pass.resolutions_px.push_back(checkedResolution(map, camera));
+  const CameraLens lens = restoredLens(root, session, k);
+  restored.intrinsics.emplace_back();
+  if (lens.foundFirst() && session.sensorOf(k) == k)
+    restored.intrinsics.back() = foundIntrinsicsFrom(map["found_first"], *lens.seen_with);
+  restored.pass.lenses.push_back(lens);
+}
+
+std::vector<RecordingFault> faultsFrom(const YamlNode& list) {
+  std::vector<RecordingFault> faults;
+  for (const YamlNode& node : list.items())
+    faults.push_back({node["stream"].text(), static_cast<FaultKind>(node["kind"].choice(kFaultKinds)),
+                      node["at_s"].real(), node["text"].text()});
+  return faults;
+}
+
+// Of a shorter time range than the detections': what lies within it.
+template <class Items>
+void keepWithin(const std::optional<std::array<double, 2>>& range_s, Items& items) {
+  if (!range_s) return;
+  const auto [begin_s, end_s] = *range_s;
+  std::erase_if(items, [begin = begin_s, end = end_s](const auto& item) {
+    const double time_s = item.time_s;
+    return time_s < begin || time_s > end;
+  });
+}
+
+void restoreViews(const std::filesystem::path& folder, const Session& session, RecordingPass& pass) {
+  std::vector<int> point_counts;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k)
+    point_counts.push_back(session.boardOf(k).pointCount());
+  std::vector<BoardObservations> saved =
+      readDetections(folder, *std::max_element(point_counts.begin(), point_counts.end()));
+  for (BoardObservations& camera : pass.cameras) {
+    for (BoardObservations& each : saved) {
+      if (each.camera != camera.camera) continue;
+      camera.views = std::move(each.views);
+      camera.windows = std::move(each.windows);
+    }
+    keepWithin(session.time_range_s, camera.views);
+    keepWithin(session.time_range_s, camera.windows);
+  }
+}
+
+void readSamples(const Session& session, const RunContext& context, RecordingPass& pass) {
+  RecordingPass samples = readImus(session, pass.start_ns, context);
+  pass.imus = std::move(samples.imus);
+  pass.read_s = samples.read_s;
+  for (RecordingFault& fault : samples.faults) {
+    const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
+    if (std::none_of(pass.faults.begin(), pass.faults.end(), same)) pass.faults.push_back(std::move(fault));
+  }
+  checkOverlap(session, pass);
+}
+
+}  // namespace
+
+std::vector<FileContent> detectionFiles(const Session& session, const RecordingPass& pass,
+                                        std::span<const std::optional<IntrinsicsResult>> intrinsics) {
+  return {{"detections.csv", {}, [&pass](const TextSink& sink) { detectionsCsv(pass.cameras, sink); }},
+          {"windows.csv", windowsCsv(pass.cameras)},
+          {"detections.yaml", detectionsYaml(session, pass, intrinsics)}};
+}
+
+RestoredDetections restoreDetections(const std::filesystem::path& folder, const Session& session,
+                                     const RunContext& context) {
+  const YamlNode root = loadDetections(folder);
+  checkSession(root, session, context);
+  RestoredDetections restored;
+  restored.pass.start_ns = root["start_ns"].nanoseconds();
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) restoreCamera(root, session, k, restored);
+  restored.pass.faults = faultsFrom(root["faults"]);
+  restoreViews(folder, session, restored.pass);
+  readSamples(session, context, restored.pass);
+  return restored;
+}
+
+}  // namespace evical

@@ -1,0 +1,223 @@
+#include "core/pipeline/repeat/repeat_session.h"
+
+#include "core/base/distinct_names.h"
+#include "core/base/error.h"
+#include "core/pipeline/session/session_keys.h"
+#include "core/pipeline/session/session_of_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+namespace evical {
+namespace {
+
+[[noreturn]] void throwOther(const Session& session, const Session& first, const std::string& what,
+                             const std::string& own, const std::string& other) {
+  throw badInput(
+      session.source.string(),
+      fmt::format("{} {}, that of {} {}: these are not recordings of one rig before one board", what, own,
+                  first.source.string(), other),
+      "Repeat only what was recorded with the same sensors, by the same names, and the same board");
+}
+
+template <class Sensors>
+std::string namesOf(const Sensors& sensors) {
+  std::vector<std::string> names;
+  for (const auto& sensor : sensors) names.push_back(sensor.name);
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+// In the first one's order: a session lists them as it likes.
+template <class Sensors>
+void sortAs(const Sensors& first, const std::string& what, const Session& first_session,
+            const Session& session, Sensors& sensors) {
+  const std::string own = namesOf(sensors), other = namesOf(first);
+  if (own != other) throwOther(session, first_session, "the list of its " + what, "is " + own, "is " + other);
+  Sensors sorted;
+  for (const auto& wanted : first)
+    sorted.push_back(*std::find_if(sensors.begin(), sensors.end(),
+                                   [&](const auto& each) { return each.name == wanted.name; }));
+  sensors = std::move(sorted);
+}
+
+std::string boardText(const Board& board) {
+  if (!board.hasPattern()) return fmt::format("{} points", board.pointCount());
+  return fmt::format("{} {} x {}, {:.6g} m apart", kBoardTypeNames[static_cast<std::size_t>(board.type)],
+                     board.rows, board.cols, board.spacing_m);
+}
+
+void checkCameras(const Session& first, const Session& session) {
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    const SessionCamera &own = session.cameras[k], &other = first.cameras[k];
+    const std::string camera = fmt::format("its camera {}", own.name);
+    if (own.resolution_px.known() && other.resolution_px.known() && own.resolution_px != other.resolution_px)
+      throwOther(session, first, "the image of " + camera, "has " + sizeText(own.resolution_px),
+                 "has " + sizeText(other.resolution_px));
+    if (own.intrinsics && other.intrinsics && own.intrinsics->model != other.intrinsics->model)
+      throwOther(session, first, "the lens of " + camera,
+                 std::string("is ") + cameraModelTitle(own.intrinsics->model),
+                 std::string("is ") + cameraModelTitle(other.intrinsics->model));
+    if (own.same_sensor_as != other.same_sensor_as || own.shutter != other.shutter ||
+        own.board != other.board)
+      throwOther(session, first, camera, "has another board, shutter or same_sensor_as", "has not");
+  }
+}
+
+// What both were told beforehand must be the same, as it counts once.
+void checkPriors(const Session& first, const Session& session) {
+  const auto samePrior = [](const auto& a, const auto& b) { return a.prior == b.prior; };
+  if (!std::equal(session.cameras.begin(), session.cameras.end(), first.cameras.begin(), samePrior) ||
+      !std::equal(session.imus.begin(), session.imus.end(), first.imus.begin(), samePrior))
+    throwOther(session, first, "its prior", "is not", "is: give all the same");
+}
+
+// Options after detection decide what a result and its sigmas mean, so that all must have been computed with the same.
+void checkOptions(const Session& first, const Session& session) {
+  const auto rowsOf = [](const Session& of) {
+    std::map<std::string, std::string> rows;
+    for (const OptionRow& row : differingOptions(of.options))
+      for (const char* const group : {"intrinsics.", "initialisation.", "optimisation.model.",
+                                      "optimisation.priors.", "optimisation.verdict."})
+        if (row.name.starts_with(group)) rows[row.name] = row.value;
+    return rows;
+  };
+  const std::map<std::string, std::string> own = rowsOf(session), other = rowsOf(first);
+  std::set<std::string> names;
+  for (const auto& rows : {own, other})
+    for (const auto& [name, value] : rows) names.insert(name);
+  const auto valueIn = [](const auto& rows, const std::string& name) {
+    const auto found = rows.find(name);
+    return found == rows.end() ? std::string("its default") : found->second;
+  };
+  for (const std::string& name : names)
+    if (valueIn(own, name) != valueIn(other, name))
+      throw badInput(
+          session.source.string(),
+          fmt::format("{} is {}, in {} it is {}: results computed with different options cannot be combined",
+                      name, valueIn(own, name), first.source.string(), valueIn(other, name)),
+          "Give all sessions the same options");
+}
+
+void checkBoards(const Session& first, const Session& session) {
+  if (session.board != first.board)
+    throwOther(session, first, "its board", "is " + boardText(session.board), "is " + boardText(first.board));
+  for (std::size_t k = 0; k < session.further_boards.size(); ++k)
+    if (session.further_boards[k].board != first.further_boards[k].board)
+      throwOther(session, first, fmt::format("its board {}", session.further_boards[k].name),
+                 "is " + boardText(session.further_boards[k].board),
+                 "is " + boardText(first.further_boards[k].board));
+}
+
+void makeLike(const Session& first, Session& session) {
+  sortAs(first.cameras, "cameras", first, session, session.cameras);
+  sortAs(first.imus, "IMUs", first, session, session.imus);
+  sortAs(first.further_boards, "further boards", first, session, session.further_boards);
+  if (session.reference != first.reference)
+    throwOther(session, first, "its reference", "is " + session.reference, "is " + first.reference);
+  if (session.board_name != first.board_name)
+    throwOther(session, first, "its board", "is called " + session.board_name,
+               "is called " + first.board_name);
+  checkBoards(first, session);
+  checkCameras(first, session);
+  checkPriors(first, session);
+  checkOptions(first, session);
+}
+
+std::set<std::filesystem::path> filesOf(const Session& session) {
+  std::set<std::filesystem::path> files;
+  const auto add = [&](const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(path, error);
+    if (!path.empty()) files.insert(error ? path : whole);
+  };
+  add(session.recording);
+  for (const SessionCamera& camera : session.cameras) add(camera.recording);
+  for (const SessionImu& imu : session.imus) add(imu.recording);
+  return files;
+}
+
+// Parts of one recording are recordings of their own where they do not overlap.
+bool overlap(const Session& a, const Session& b) {
+  if (!a.time_range_s || !b.time_range_s) return true;
+  return (*a.time_range_s)[0] < (*b.time_range_s)[1] && (*b.time_range_s)[0] < (*a.time_range_s)[1];
+}
+
+void checkApart(const std::vector<Session>& sessions) {
+  for (std::size_t k = 1; k < sessions.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j) {
+      const std::set<std::filesystem::path> own = filesOf(sessions[k]), other = filesOf(sessions[j]);
+      const auto twice =
+          std::find_if(own.begin(), own.end(), [&](const auto& file) { return other.contains(file); });
+      if (twice == own.end() || !overlap(sessions[k], sessions[j])) continue;
+      throw badInput(twice->string(),
+                     fmt::format("is there twice ({} and {}): a recording says nothing new the second time",
+                                 sessions[j].source.string(), sessions[k].source.string()),
+                     "Name each recording once, or parts of it that do not overlap by time_range_s");
+    }
+}
+
+std::vector<std::string> namesFor(const std::vector<Session>& sessions) {
+  std::vector<std::filesystem::path> recordings;
+  for (const Session& session : sessions) recordings.push_back(session.recording);
+  return distinctNames(recordings);
+}
+
+}  // namespace
+
+RepeatInput repeatOf(std::vector<Session> sessions) {
+  if (sessions.size() < 2)
+    throw badInput(sessions.empty() ? std::string("repeat") : sessions.front().source.string(),
+                   "is one recording only: there is nothing to compare it with",
+                   "Give two or more sessions, or one with a list of recordings");
+  for (Session& session : sessions) {
+    if (session.board_blinks)
+      throw badInput(session.source.string() + ": board.blinking", "a board that blinks calibrates no rig",
+                     "Repeat recordings before a printed board");
+    if (&session != &sessions.front()) makeLike(sessions.front(), session);
+  }
+  checkApart(sessions);
+  std::vector<std::string> names = namesFor(sessions);
+  return {std::move(sessions), std::move(names)};
+}
+
+RepeatInput readRepeat(std::span<const std::filesystem::path> files) {
+  std::vector<Session> sessions;
+  for (const std::filesystem::path& file : files)
+    for (Session& session : readRepeatedSessions(file)) sessions.push_back(std::move(session));
+  return repeatOf(std::move(sessions));
+}
+
+RepeatInput readRepeat(std::span<const std::filesystem::path> files, const std::optional<Session>& like) {
+  std::vector<std::vector<Session>> of_files;
+  std::optional<Session> rig = like;
+  for (const std::filesystem::path& file : files) {
+    of_files.push_back(isSessionFile(file) ? readRepeatedSessions(file) : std::vector<Session>());
+    if (!rig && !of_files.back().empty()) rig = of_files.back().front();
+  }
+  std::vector<Session> sessions;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    if (isSessionFile(files[k])) {
+      std::move(of_files[k].begin(), of_files[k].end(), std::back_inserter(sessions));
+      continue;
+    }
+    if (!rig)
+      throw badInput(files[k].string(),
+                     "is a recording: which sensors it is of, and which board, is not said",
+                     "Add a session of one of the recordings, or open one");
+    Session session = *rig;
+    setRecording(files[k], session);
+    session.source = files[k];
+    sessions.push_back(std::move(session));
+  }
+  return repeatOf(std::move(sessions));
+}
+
+}  // namespace evical

@@ -1,0 +1,53 @@
+#include "core/pipeline/rig/calibrated_lenses.h"
+
+#include "core/data/doubt.h"
+#include "core/geometry/projection_difference.h"
+#include "core/pipeline/lens/joint_intrinsics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// Of a lens that the batch did not solve for again.
+void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
+  const IntrinsicsVector sigmas = found.standardDeviations();
+  std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
+}
+
+}  // namespace
+
+void tellLenses(const Session& session, CalibrationRun& run) {
+  std::vector<std::string> notes;
+  std::string doubt;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (session.sensorOf(k) != k) continue;
+    const std::string name = "intrinsics of " + session.cameras[k].name;
+    const CameraLens& lens = run.result.state.cameras[k].lens;
+    if (k < run.intrinsics.size() && run.intrinsics[k]) {
+      const IntrinsicsResult found =
+          lens.solved ? jointIntrinsics(*run.intrinsics[k], session.cameras[k].name, *lens.solved,
+                                        run.result.uncertainty, session.options.intrinsics)
+                      : *run.intrinsics[k];
+      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
+                                  name, found.views_used, found.elapsed_s, found.image.rms_px));
+      for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
+      if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
+      if (found.status != CalibrationStatus::Ok && doubt.empty())
+        doubt = fmt::format("{}: {}", name, found.reason);
+    }
+    if (!lens.solved) continue;
+    if (lens.given_with) notes.push_back(name + ": weighed by the sigmas that they were given with");
+    notes.push_back(
+        fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
+                    projectionDifference(*lens.seen_with, *lens.solved).rms_px));
+  }
+  run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
+  addDoubt(doubt, run.result, "first_look_at_lens");
+}
+
+}  // namespace evical

@@ -1,0 +1,225 @@
+#include "core/pipeline/rig/calibration_checks.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/initialisation/agreement_check.h"
+#include "core/numerics/robust.h"
+#include "core/pipeline/pass/blink_views.h"
+#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/detected_recording.h"
+#include "core/recording/inspection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
+// when it is absurd.
+void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
+  std::vector<double> norms;
+  double rate2 = 0.0;
+  for (const ImuSample& sample : imu.samples) {
+    norms.push_back(sample.specific_force_m_s2.norm());
+    rate2 += sample.angular_rate_rad_s.squaredNorm();
+  }
+  const double norm = medianOf(std::move(norms));
+  constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
+  if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
+    const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
+    throw badInput(
+        imu.name,
+        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
+                    g ? ": they look like g" : ""),
+        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
+        .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
+  }
+  const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
+  if (rms > options.largest_rotation_rate_rad_s) {
+    throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
+                   "Set angular_rate_unit: deg/s for this IMU")
+        .repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", "deg/s"});
+  }
+}
+
+// Two streams may be exchanged, empty, or of different times.
+void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
+  const auto spanOf = [&](const std::string& stream, const char* sensor, auto measures,
+                          Eigen::Vector3d ImuSample::*value) {
+    std::optional<std::pair<std::int64_t, std::int64_t>> span_ns;
+    for (const ImuSample& sample : imu.samples)
+      if (measures(sample) && !(sample.*value).isZero(0.0))
+        span_ns = {span_ns ? span_ns->first : sample.time_ns, sample.time_ns};
+    if (!span_ns)
+      throw badInput(imu.name, fmt::format("the stream {} has no measurements of the {}", stream, sensor),
+                     "Check the lines gyroscope: and accelerometer: of the session: they may be exchanged");
+    return *span_ns;
+  };
+  const auto rates =
+      spanOf(session.stream, "gyroscope", measuresRate<ImuSample>, &ImuSample::angular_rate_rad_s);
+  const auto forces = spanOf(session.accelerometer_stream, "accelerometer", measuresForce<ImuSample>,
+                             &ImuSample::specific_force_m_s2);
+  constexpr double kLeastShared = 0.5;  // of the longer one's time
+  const double shared_s =
+      secondsSince(std::max(rates.first, forces.first), std::min(rates.second, forces.second));
+  const double whole_s =
+      std::max(secondsSince(rates.first, rates.second), secondsSince(forces.first, forces.second));
+  if (shared_s < kLeastShared * whole_s)
+    throw badInput(imu.name,
+                   fmt::format("{} and {} share only {:.2f} s of {:.2f} s", session.stream,
+                               session.accelerometer_stream, std::max(shared_s, 0.0), whole_s),
+                   "Check the timestamps of the two streams, or give time_range_s where both have samples");
+}
+
+// Drivers that publish the two sensors separately set the values of the other sensor to 0.
+void checkBothSensors(const ImuData& imu, const SessionImu& session) {
+  if (!session.accelerometer_stream.empty()) return checkSeparateSensors(imu, session);
+  const ImuStreamKind kind = imuStreamKind(imu.samples);
+  if (kind == ImuStreamKind::Whole) return;
+  const bool gyroscope = kind != ImuStreamKind::Accelerometer,
+             accelerometer = kind != ImuStreamKind::Gyroscope;
+  throw badInput(
+      imu.name,
+      gyroscope && accelerometer
+          ? fmt::format("each message of {} is of the gyroscope or of the accelerometer, the rest is 0",
+                        session.stream)
+          : fmt::format("the messages of {} hold {} only, the rest is 0", session.stream,
+                        gyroscope ? "angular rates" : "accelerations"),
+      fmt::format("Name both streams in the session, in place of stream: gyroscope: {} and accelerometer: {}",
+                  gyroscope ? session.stream : "STREAM", accelerometer ? session.stream : "STREAM"));
+}
+
+double durationOf(const BoardObservations& camera) {
+  return camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s;
+}
+double durationOf(const ImuData& imu) {
+  return imu.samples.empty() ? 0.0 : secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
+}
+
+void checkDuration(const Session& session, const RecordingPass& pass) {
+  const double least_s = session.options.initialisation.least_overlap_s;
+  const auto check = [&](const std::string& sensor, double duration_s) {
+    if (duration_s >= least_s) return;
+    throw withClockRate(
+        calibrationFailed(sensor,
+                          fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}",
+                                      duration_s, least_s, session.time_range_s ? " in time_range_s" : ""),
+                          "Record 20 s or more of varied motion"),
+        session, pass.cameras.front(), pass.imus);
+  };
+  for (const BoardObservations& camera : pass.cameras) check(camera.camera, durationOf(camera));
+  for (const ImuData& imu : pass.imus) check(imu.name, durationOf(imu));
+}
+
+void logDetections(const RecordingPass& pass, const RunContext& context) {
+  for (const BoardObservations& camera : pass.cameras) {
+    const bool windows = camera.kind == CameraKind::Events;
+    context.progress.log(LogLevel::Info,
+                         fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
+                                     measurementsOf(camera.kind), camera.views.size(), camera.windows.size(),
+                                     windows ? "windows" : "frames", outcomes(camera)));
+    if (const std::string rejected = rejectedSentence(camera); !rejected.empty())
+      context.progress.log(LogLevel::Info, rejected);
+  }
+}
+
+// Of a pass that comes from a run before, they may be known.
+void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
+  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
+  if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
+}
+
+}  // namespace
+
+CalibrationError withClockRate(const CalibrationError& error, const Session& session,
+                               const BoardObservations& seen, std::span<const ImuData> imus) {
+  constexpr std::array kFactors = {2.0, 0.5, 1e3, 1e-3, 1e6, 1e-6};
+  constexpr double kNear = 0.03;
+  constexpr double kSlowestImu_hz = 10.0, kFastestImu_hz = 20'000.0;
+  if (session.time_range_s) return error;
+  const double camera_s = durationOf(seen);
+  for (const ImuData& imu : imus) {
+    const double imu_s = durationOf(imu), factor = camera_s / imu_s;
+    if (!(camera_s > 0.0) || !(imu_s > 0.0)) continue;
+    const auto found = std::find_if(kFactors.begin(), kFactors.end(),
+                                    [&](double each) { return std::abs(factor / each - 1.0) < kNear; });
+    if (found == kFactors.end()) continue;
+    // An IMU with a usual rate of samples is right, except that a doubled clock looks usual too.
+    const double rate_hz = static_cast<double>(imu.samples.size()) / imu_s;
+    const bool usual = rate_hz > kSlowestImu_hz && rate_hz < kFastestImu_hz && (*found > 2.0 || *found < 0.5);
+    const std::string& camera = seen.camera;
+    const std::string wrong = usual ? camera : imu.name;
+    const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);
+    const std::string key = fmt::format("{}.{}.clock_scale", usual ? "cameras" : "imus", wrong);
+    return CalibrationError(
+               error.kind(), error.place(),
+               fmt::format(
+                   "{}; the times of {} span {:.3f} s and those of {} {:.3f} s, so the clock of {} may "
+                   "count {:g} times as much as it should",
+                   error.problem(), imu.name, imu_s, camera, camera_s, wrong, usual ? *found : 1.0 / *found),
+               fmt::format("If so, set {} to {}", key, scale))
+        .repairedBy(Repair{key, scale});
+  }
+  return error;
+}
+
+void checkSession(const Session& session) {
+  if (session.board_blinks)
+    throw badInput(
+        session.source.string() + ": board.blinking",
+        "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
+        "the sensors' clocks, and the camera must all but stand still before it",
+        "Calibrate each camera's intrinsics with 'evical intrinsics', then move the sensors before a "
+        "printed board of circles");
+  if (session.imus.empty() && session.cameras.size() == 1) {
+    throw badInput(
+        session.source.string() + ": imus", "there is neither an IMU nor a second camera",
+        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
+        "'evical intrinsics'");
+  }
+  for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
+    if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
+    throw badInput(session.source.string() + ": board",
+                   "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
+                   "against each other",
+                   "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
+                   "there is 'evical intrinsics'");
+  }
+}
+
+void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
+  for (std::size_t k = 0; k < pass.imus.size(); ++k) {
+    const ImuData& imu = pass.imus[k];
+    if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);
+    checkStampsApart(imu);
+    checkAxesAlive(imu);
+    checkUnits(imu, session.options.initialisation);
+    for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
+  }
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
+    if (unseen) addFault(*unseen, pass.faults);
+  }
+  for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  logDetections(pass, context);
+  checkDuration(session, pass);
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const BoardObservations& camera = pass.cameras[k];
+    if (camera.views.empty())
+      if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
+        throw CalibrationError(*blink);
+    checkBoardSeen(camera, session.boardOf(k));
+    checkBoardSize(camera, session.boardOf(k), session.options.front_end.extent);
+  }
+}
+
+}  // namespace evical

@@ -1,0 +1,365 @@
+#include "core/pipeline/rig/calibration_pipeline.h"
+
+#include "core/base/error.h"
+#include "core/base/process_memory.h"
+#include "core/base/stopwatch.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_stage.h"
+#include "core/data/doubt.h"
+#include "core/geometry/projection_difference.h"
+#include "core/initialisation/initialise.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_errors.h"
+#include "core/optimisation/uncertainty/covariance.h"
+#include "core/optimisation/uncertainty/prior_check.h"
+#include "core/optimisation/uncertainty/shared_sensors.h"
+#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/pass_input.h"
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/calibrated_lenses.h"
+#include "core/pipeline/rig/calibration_checks.h"
+#include "core/pipeline/rig/causes.h"
+#include "core/pipeline/rig/cross_validation.h"
+#include "core/pipeline/rig/detected_recording.h"
+#include "core/pipeline/rig/misfit.h"
+#include "core/pipeline/session/session_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace evical {
+namespace {
+
+// A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
+void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
+                      CalibrationResult& result) {
+  result.cross_validation = crossValidate(input, result.state, session.options.optimisation,
+                                          session.options.report.cross_validation_block_s, context);
+  const CrossValidation& validation = *result.cross_validation;
+  context.progress.log(
+      LogLevel::Info,
+      validation.failure.empty()
+          ? fmt::format("halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
+          : "halves of the recording: " + validation.failure);
+}
+
+// Leaves the views out that lie on the smaller part's side of a step, and those near it. Returns their share.
+double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
+  constexpr double kMargin_s = 1.5;  // as well as it is known where it is
+  const auto before = static_cast<double>(views.size());
+  std::erase_if(views, [&](const BoardView& view) {
+    return step.larger_part_first ? view.time_s > step.at_s - kMargin_s : view.time_s < step.at_s + kMargin_s;
+  });
+  return 1.0 - static_cast<double>(views.size()) / std::max(before, 1.0);
+}
+
+// One run: what its stages hand on to each other, and what each of them does.
+class Calibration {
+ public:
+  Calibration(const Session& session, const RunContext& context) : session_(session), context_(context) {}
+
+  CalibrationOutcome fromRecording() {
+    return outcomeOf([this] {
+      checkSession(session_);
+      FoundLenses found = findLenses(session_, context_);
+      lenses_ = std::move(found.lenses);
+      run_.intrinsics = std::move(found.intrinsics);
+      runFrom(CalibrationStage::Detect);
+    });
+  }
+
+  CalibrationOutcome fromDetections(RecordingPass pass,
+                                    std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+    run_.pass = std::move(pass);
+    run_.intrinsics = std::move(intrinsics);
+    before_s_ = std::max(run_.pass.read_s, run_.pass.detect_s);
+    return outcomeOf([this] {
+      checkSession(session_);
+      prepareInput();
+      runFrom(CalibrationStage::Initialise);
+    });
+  }
+
+  CalibrationStart toInitialState(RecordingPass pass,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+    run_.pass = std::move(pass);
+    run_.intrinsics = std::move(intrinsics);
+    checkSession(session_);
+    prepareInput();
+    initialiseState();
+    return {std::move(input_), std::move(initial_)};
+  }
+
+ private:
+  struct StageWork {
+    CalibrationStage stage;
+    void (Calibration::*work)();
+  };
+  static const std::array<StageWork, 4> kWork;  // those of cameras without intrinsics come before
+
+  template <class Work>
+  CalibrationOutcome outcomeOf(const Work& work) {
+    CalibrationOutcome outcome;
+    try {
+      work();
+      returnPass();
+      outcome.run = std::move(run_);
+      return outcome;
+    } catch (const Cancelled&) {
+      outcome.status = RunStatus::Cancelled;
+    } catch (const CalibrationError& error) {
+      outcome.status = RunStatus::Failed;
+      outcome.error = error;
+      if (error.repair())
+        outcome.error = CalibrationError(error).repairedBy(ofRawAxes(*error.repair(), session_));
+    }
+    returnPass();
+    outcome.pass = std::move(run_.pass);
+    return outcome;
+  }
+
+  void runFrom(CalibrationStage first) {
+    for (const StageWork& each : kWork) {
+      if (each.stage < first) continue;
+      if (each.stage == CalibrationStage::CrossValidate && !session_.options.report.cross_validation)
+        continue;
+      const StageRow& row = rowOf(each.stage);
+      context_.progress.stageStarted(row.name);
+      const Stopwatch stopwatch;
+      (this->*each.work)();
+      giveBackFreeMemory();
+      context_.progress.stageProgress(1.0);
+      run_.result.timing.*row.duration_s = stopwatch.elapsed_s();
+    }
+    conclude();
+  }
+
+  void detect() {
+    run_.pass = readAndDetect(session_, lenses_, context_);
+    prepareInput();
+  }
+
+  void prepareInput() {
+    checkPass(session_, context_, run_.pass);
+    input_ = takeInput(session_, run_.pass);
+    if (context_.observer != nullptr) context_.observer->detectionDone(input_);
+  }
+
+  // What the input took of it, and what was left out of that.
+  void returnPass() {
+    returnInput(std::exchange(input_, {}), run_.pass);
+    for (std::size_t k = 0; k < whole_views_.size(); ++k)
+      if (std::optional<std::vector<BoardView>> whole = std::exchange(whole_views_[k], std::nullopt))
+        run_.pass.cameras[k].views = std::move(*whole);
+  }
+
+  void initialiseState() {
+    try {
+      initial_ = initialise(input_, session_.options.initialisation, context_);
+    } catch (const CalibrationError& error) {
+      if (input_.cameras.empty()) throw;
+      throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
+    }
+    keepLargerParts();
+    for (const InitialisationStep& step : initial_.steps)
+      context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
+    for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
+  }
+
+  // Where clocks step, one offset holds for a part of the recording only.
+  void keepLargerParts() {
+    std::string doubt;
+    for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
+      const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
+      if (!step) continue;
+      std::vector<BoardView>& views = input_.cameras[k].observations.views;
+      whole_views_.resize(input_.cameras.size());
+      whole_views_[k] = views;
+      const double share = keepBeside(*step, views);
+      doubt += fmt::format(
+          "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
+          "start: {:.0f} % of the views lie on the other side and are left out",
+          doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
+    }
+    if (doubt.empty()) return;
+    initial_ = initialise(input_, session_.options.initialisation, context_);
+    initial_.warnings.push_back(doubt);
+    clock_doubt_ = doubt;
+  }
+
+  void optimise() {
+    const OptimisationOptions& options = session_.options.optimisation;
+    CalibrationResult& result = run_.result;
+    BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
+    giveBackFreeMemory();
+    UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
+    PriorCheck priors = checkPriors(input_, solution, options, context_);
+    result.status = uncertainty.status;
+    result.reason = uncertainty.reason;
+    if (!result.reason.empty()) result.causes = {Doubt{result.reason, {}, "observability"}};
+    if (!solution.converged && result.status == CalibrationStatus::Ok)
+      addDoubt(Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, "
+                     "or see the residuals",
+                     Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)},
+                     "not_converged"},
+               result);
+    addDoubt(uncertainty.other_sensors, result, "another_sensor");
+    addDoubt(uncertainty.rolling_shutters, result, "rolling_shutter");
+    addDoubt(priors.doubt, result, "prior");
+    addDoubt(boardDoubt(uncertainty, solution.state), result, "board_size");
+    addDoubt(uncertainty.stretch_doubt, result, "board_stretch");
+    addDoubt(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
+    addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
+    addDoubt(clock_doubt_, result, "clock_step");
+    judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
+    if (result.status == CalibrationStatus::Doubtful)
+      addDoubt(saturationIn(input_, options), result, "saturation");
+    result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
+    result.state = std::move(solution.state);
+    result.uncertainty = std::move(uncertainty.report);
+    run_.as_weighed = std::move(uncertainty.as_weighed);
+    result.latencies = sensorLatencies(input_, result.state, result.uncertainty);
+    result.cameras = std::move(solution.cameras);
+    result.imus = std::move(solution.imus);
+    result.iterations = std::move(solution.iterations);
+    notes_ = std::move(solution.notes);
+    std::vector<std::string> slow = notesOnSlowPixels(input_, options);
+    for (const auto* more : {&uncertainty.notes, &priors.notes, &slow})
+      notes_.insert(notes_.end(), more->begin(), more->end());
+  }
+
+  // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look is
+  // led astray by a stretch, or by a lens or a late accelerometer that the batch has put right since.
+  std::string boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
+    // Chosen by size, not measured: 1 px at the edge of a 346x260 image is 0.6 % of focal length, as much as a board's spacing
+    // that is said wrongly; and 2 ms are 10 % of an acceleration that swings at 8 Hz.
+    constexpr double kAnotherLens_px = 1.0, kLate_s = 2e-3;
+    const bool led_astray =
+        !uncertainty.stretch_doubt.empty() ||
+        std::any_of(state.imus.begin(), state.imus.end(),
+                    [](const ImuState& imu) { return std::abs(imu.accelerometer_delay_s) > kLate_s; }) ||
+        std::any_of(state.cameras.begin(), state.cameras.end(), [](const CameraState& camera) {
+          const CameraLens& lens = camera.lens;
+          return lens.solved && projectionDifference(*lens.seen_with, *lens.solved).rms_px > kAnotherLens_px;
+        });
+    return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
+  }
+
+  // Of what is held. A prior that is far off looks like a turned gyroscope, too.
+  static Doubt heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
+    if (!uncertainty.bent_board.empty())
+      return {uncertainty.bent_board, kFreeBow, causeName(CauseKind::BentBoard)};
+    if (prior_is_off) return {};
+    if (!uncertainty.turned_gyroscopes.empty())
+      return {uncertainty.turned_gyroscopes, kFreeTurn, causeName(CauseKind::GyroscopeTurned)};
+    return {uncertainty.wandering_imus, {}, "wandering_imu"};
+  }
+
+  // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
+  // much that is not modelled looks like it, a bent board, too.
+  void judge(const BatchSolution& solution, const Doubt& held, const Doubt& change) {
+    const OptimisationOptions& options = session_.options.optimisation;
+    const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
+    if (misfit.doubt.empty() && held.text.empty() && change.text.empty()) return;
+    Doubt cause = change;
+    if (cause.text.empty())
+      if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
+        cause = {found->text, found->repair, causeName(found->kind), found->explains};
+    if (!misfit.failure.empty())
+      throw calibrationFailed(session_.source.string(),
+                              cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
+                              "Check the board, the lens and the streams in the session")
+          .repairedBy(cause.repair);
+    if (misfit.doubt.empty() && cause.text.empty()) addDoubt(held, run_.result);
+    addDoubt(misfit.doubt, run_.result, "misfit");
+    addDoubt(cause, run_.result);
+  }
+
+  void compareHalves() {
+    validateByHalves(session_, input_, context_, run_.result);
+    const std::string doubt = doubtOfHalves(*run_.result.cross_validation, session_.options.optimisation);
+    if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result, "halves");
+  }
+
+  void tellRejected() {
+    for (std::size_t k = 0; k < run_.pass.cameras.size(); ++k) {
+      for (const double time_s : rejectedTimes_s(run_.pass.cameras[k]))
+        run_.result.rejected_windows.push_back({k, time_s});
+      if (std::string rejected = rejectedSentence(run_.pass.cameras[k]); !rejected.empty())
+        run_.result.notes.push_back(std::move(rejected));
+    }
+  }
+
+  void conclude() {
+    returnPass();
+    CalibrationResult& result = run_.result;
+    result.start_ns = run_.pass.start_ns;
+    tellRejected();
+    for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
+    for (const InitialisationStep& step : initial_.steps)
+      result.notes.push_back(step.name + ": " + step.result);
+    result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
+    result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
+    Timing& timing = result.timing;
+    timing.read_s = run_.pass.read_s;  // of the threads, which overlap; also where the pass came from before
+    timing.detect_s = run_.pass.detect_s;
+    timing.total_s = before_s_ + stopwatch_.elapsed_s();
+    result.memory_peak_mb = peakMemory_mb();
+    tellLenses(session_, run_);
+  }
+
+  const Session& session_;
+  const RunContext& context_;
+  std::vector<CameraLens> lenses_;  // that the front end is to see with
+  CalibrationRun run_;
+  CalibrationInput input_;
+  Initialisation initial_;
+  const Stopwatch stopwatch_;
+  double before_s_ = 0.0;                                           // that a pass took that comes from before
+  std::string clock_doubt_;                                         // that clocks step
+  std::vector<std::string> notes_;                                  // of the batch
+  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, where some were left out
+};
+
+const std::array<Calibration::StageWork, 4> Calibration::kWork = {
+    {{CalibrationStage::Detect, &Calibration::detect},
+     {CalibrationStage::Initialise, &Calibration::initialiseState},
+     {CalibrationStage::Optimise, &Calibration::optimise},
+     {CalibrationStage::CrossValidate, &Calibration::compareHalves}}};
+
+}  // namespace
+
+CalibrationRun CalibrationOutcome::runOrThrow() && {
+  if (status == RunStatus::Cancelled) throw Cancelled{};
+  if (error) throw CalibrationError(*error);
+  return std::move(*run);
+}
+
+CalibrationOutcome runCalibration(const Session& session, const RunContext& context) {
+  return Calibration(session, context).fromRecording();
+}
+
+CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics));
+}
+
+CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  return Calibration(session, context).toInitialState(std::move(pass), std::move(intrinsics));
+}
+
+CalibrationRun calibrate(const Session& session, const RunContext& context) {
+  return runCalibration(session, context).runOrThrow();
+}
+
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+                         std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  return runCalibration(session, std::move(pass), context, std::move(intrinsics)).runOrThrow();
+}
+
+}  // namespace evical

@@ -1,0 +1,62 @@
+#include "core/pipeline/rig/detected_recording.h"
+
+#include "core/data/calibration_stage.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
+#include "core/pipeline/pass/session_recording.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+// Only what detection depends on.
+Session withoutLaterStages(Session session) {
+  session.options.initialisation = {};
+  session.options.optimisation = {};
+  session.options.report = {};
+  session.exports.clear();
+  for (SessionCamera& camera : session.cameras) camera.prior = {};
+  for (SessionImu& imu : session.imus) {
+    imu.prior = {};
+    imu.noise = {};
+  }
+  return session;
+}
+
+}  // namespace
+
+FoundLenses findLenses(const Session& session, const RunContext& context) {
+  FoundLenses found{givenLenses(session), {}};
+  std::vector<CameraLens>& lenses = found.lenses;
+  const auto missing = [](const CameraLens& lens) { return !lens.given; };
+  if (std::none_of(lenses.begin(), lenses.end(), missing)) return found;
+  SessionRecording{session};  // streams that are missing are missed now, not after minutes
+  found.intrinsics.resize(lenses.size());
+  for (std::size_t k = 0; k < lenses.size(); ++k) {
+    if (lenses[k].given || session.sensorOf(k) != k) continue;
+    found.intrinsics[k] = calibrateIntrinsics(session, k, context.unobserved()).result;
+    lenses[k].seen_with = found.intrinsics[k]->intrinsics;
+  }
+  for (std::size_t k = 0; k < lenses.size(); ++k) lenses[k] = lenses[session.sensorOf(k)];
+  return found;
+}
+
+DetectedRecording detectRecording(const Session& session, const RunContext& context) {
+  FoundLenses found = findLenses(session, context);
+  context.progress.stageStarted(nameOf(CalibrationStage::Detect));
+  return {readAndDetect(session, std::move(found.lenses), context), std::move(found.intrinsics)};
+}
+
+bool detectsTheSame(const Session& one, const Session& other) {
+  const std::filesystem::path folder = "/";
+  return sessionYaml(withoutLaterStages(one), folder) == sessionYaml(withoutLaterStages(other), folder);
+}
+
+DetectedRecording forSession(DetectedRecording detected, const Session& session) {
+  for (std::size_t k = 0; k < detected.pass.imus.size(); ++k)
+    detected.pass.imus[k].noise = session.imus.at(k).noise;
+  return detected;
+}
+
+}  // namespace evical

@@ -1,0 +1,398 @@
+#include "core/pipeline/runs/saved_run.h"
+
+#include "core/base/file_places.h"
+#include "core/base/yaml_node.h"
+#include "core/pipeline/pass/detections_check.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/session/given_points.h"
+#include "core/pipeline/session/session_keys.h"
+#include "core/report/detections_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr const char *kRun = "run.yaml", *kData = "run.data", *kLog = "log.txt";
+
+std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// The session's first, then those that sensors have of their own.
+template <class Sessions, class Visit>
+void forEachRecording(Sessions& session, Visit&& visit) {
+  visit(session.recording);
+  for (auto& more : session.more_recordings) visit(more);
+  for (auto& camera : session.cameras)
+    if (!camera.recording.empty()) visit(camera.recording);
+  for (auto& imu : session.imus)
+    if (!imu.recording.empty()) visit(imu.recording);
+}
+
+// Where recordings are as seen from the folder: it may be moved together with them.
+std::string placesYaml(const std::filesystem::path& folder, const Session& session) {
+  std::string text;
+  forEachRecording(session, [&](const std::filesystem::path& recording) {
+    const auto place = std::filesystem::weakly_canonical(recording).lexically_relative(
+        std::filesystem::weakly_canonical(folder));
+    text += fmt::format("  - {}\n", yamlText(place.string()));
+  });
+  return "recordings_from_here:\n" + text;
+}
+
+std::string optionsYaml(const std::vector<OptionRow>& rows) {
+  std::string text = rows.empty() ? "options: {}\n" : "options:\n";
+  for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, yamlText(row.value));
+  return text;
+}
+
+std::string summaryYaml(const RunSummary& summary, const std::string& places) {
+  return fmt::format(
+             "evical_run: 1\nname: {}\nmade_s: {}\nstatus: {}\nreason: {}\nrecording: {}\ntook_s: {:.3f}\n"
+             "rejected_windows: {}\n",
+             yamlText(summary.name), summary.made_s, statusName(summary.status), yamlText(summary.reason),
+             yamlText(summary.recording), summary.took_s, summary.rejected_windows) +
+         optionsYaml(summary.options) + places;
+}
+
+RunSummary summaryOf(const Session& session, const CalibrationResult& result) {
+  RunSummary summary;
+  summary.status = result.status;
+  summary.reason = result.reason;
+  summary.recording = session.recording.filename().string();
+  summary.took_s = result.timing.total_s;
+  summary.rejected_windows = static_cast<int>(result.rejected_windows.size());
+  summary.options = differingOptions(session.options);
+  return summary;
+}
+
+RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder) {
+  if (!root.isMap() || !root.has("evical_run"))
+    throw root.error("is no list entry of a run", "Open result.yaml instead");
+  root["evical_run"].integer(1, 1);
+  constexpr int kMost = 1'000'000'000;
+  RunSummary summary;
+  summary.folder = folder;
+  summary.name = root["name"].text();
+  summary.made_s = root["made_s"].nanoseconds();
+  summary.status = static_cast<CalibrationStatus>(root["status"].choice({"ok", "doubtful", "failed"}));
+  summary.reason = root["reason"].text();
+  summary.recording = root["recording"].text();
+  summary.took_s = root["took_s"].real();
+  summary.rejected_windows = root["rejected_windows"].integer(0, kMost);
+  const YamlNode options = root["options"];
+  for (const std::string& key : options.keys()) {
+    OptionRow& row = summary.options.emplace_back();
+    row.name = key;
+    row.value = options[key].text();
+  }
+  return summary;
+}
+
+// What is not at its old place may have moved together with the folder.
+void findRecordings(const YamlNode& places, const std::filesystem::path& folder, Session& session) {
+  const std::vector<YamlNode> items = places.items();
+  std::size_t next = 0;
+  forEachRecording(session, [&](std::filesystem::path& recording) {
+    const std::size_t place = next++;
+    if (place >= items.size() || isThere(recording)) return;
+    const auto moved = (folder / items[place].text()).lexically_normal();
+    if (isThere(moved)) recording = moved;
+  });
+}
+
+// A folder that an earlier version wrote names its sensors in result.yaml, and the board in detections.yaml.
+Session sessionFrom(const NamedResult& named, const std::filesystem::path& folder) {
+  Session session;
+  session.source = folder / kResultFile;
+  session.recording = folder / "recording";
+  session.reference = named.reference;
+  session.board_name = named.boards.front();
+  for (std::size_t k = 0; k < named.cameras.size(); ++k) {
+    SessionCamera camera;
+    camera.name = named.cameras[k].name;
+    camera.stream = named.cameras[k].stream;
+    camera.intrinsics = named.result->state.cameras.at(k).lens.inUse();
+    if (camera.intrinsics) camera.resolution_px = camera.intrinsics->resolution_px;
+    session.cameras.push_back(std::move(camera));
+  }
+  for (const SensorDescription& known : named.imus) {
+    SessionImu& imu = session.imus.emplace_back();
+    imu.name = known.name;
+    imu.stream = known.stream;
+    imu.noise = known.noise;
+  }
+  return session;
+}
+
+void readBoard(const YamlNode& detections, Session& session) {
+  constexpr int kMost = 1000;
+  constexpr double kMost_m = 100.0;
+  const YamlNode map = detections["board"];
+  session.recording = session.source.parent_path() / detections["recording"].text();
+  session.board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
+  if (!session.board.hasPattern()) {
+    session.board = boardOfPoints(pointsFrom(map["points_m"]));
+    return;
+  }
+  session.board.rows = map["rows"].integer(1, kMost);
+  session.board.cols = map["cols"].integer(1, kMost);
+  session.board.spacing_m = map["spacing_m"].real(1e-6, kMost_m, "m");
+  session.board.radius_m = map["radius_m"].real(0.0, kMost_m, "m");
+  session.board.tag_size_m = map["tag_size_m"].real(0.0, kMost_m, "m");
+}
+
+// Reads what is in a folder, piece by piece; what cannot be read is noted.
+class FolderReader {
+ public:
+  explicit FolderReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  SavedRun read() {
+    saved_.log = contentOf(folder_ / kLog);
+    readResult();
+    readData();
+    readSession();
+    readSummary();
+    if (!has_pass_) readTables();
+    checkSizes();
+    saved_.summary.folder = folder_;
+    saved_.run = std::make_shared<const CalibrationRun>(std::move(run_));
+    return std::move(saved_);
+  }
+
+ private:
+  void note(const std::string& what, const CalibrationError& error) {
+    saved_.missing.push_back(fmt::format("{}: {}", what, error.what()));
+  }
+
+  void readResult() {
+    try {
+      named_ = readResultYaml(folder_ / kResultFile);
+      run_.result = *named_->result;
+    } catch (const CalibrationError& error) {
+      result_error_ = error;
+      note("the numbers as people read them", error);
+    }
+  }
+
+  void readData() {
+    ReadRunData data = readRunData(folder_ / kData);
+    if (!data.has_result && !named_) throw CalibrationError(*result_error_);
+    if (data.has_result) run_.result = std::move(data.run.result);
+    run_.intrinsics = std::move(data.run.intrinsics);
+    has_pass_ = data.has_pass && data.run.pass.cameras.size() == run_.result.state.cameras.size() &&
+                data.run.pass.imus.size() == run_.result.state.imus.size();
+    if (has_pass_) run_.pass = std::move(data.run.pass);
+    saved_.missing.insert(saved_.missing.end(), data.missing.begin(), data.missing.end());
+  }
+
+  void readSummary() {
+    try {
+      const YamlNode root = YamlNode::load(folder_ / kRun);
+      saved_.summary = summaryFrom(root, folder_);
+      findRecordings(root["recordings_from_here"], folder_, saved_.session);
+    } catch (const CalibrationError& error) {
+      saved_.summary = summaryOf(saved_.session, run_.result);
+      if (isThere(folder_ / kRun)) note("its name and date", error);
+    }
+  }
+
+  void readSession() {
+    try {
+      if (!isThere(folder_ / kSessionFile))
+        throw badInput(kSessionFile, "is not there",
+                       "An earlier version wrote none: choose the recording again");
+      saved_.session = readSessionOfRun(folder_ / kSessionFile);
+      return;
+    } catch (const CalibrationError& error) {
+      if (!named_) throw;
+      note("the session that it was made from", error);
+    }
+    saved_.session = sessionFrom(*named_, folder_);
+    try {
+      readBoard(loadDetections(folder_), saved_.session);
+    } catch (const CalibrationError& error) {
+      note("the board", error);
+    }
+  }
+
+  // Of what was found: names, and views and windows as far as the tables have them.
+  void readTables() {
+    run_.pass = {};
+    run_.pass.start_ns = run_.result.start_ns.value_or(0);
+    for (std::size_t k = 0; k < run_.result.state.cameras.size(); ++k) {
+      const CameraLens& lens = run_.result.state.cameras[k].lens;
+      run_.pass.cameras.emplace_back();
+      run_.pass.lenses.push_back(lens);
+      run_.pass.resolutions_px.push_back(lens.inUse() ? lens.inUse()->resolution_px : Resolution{});
+      if (k < saved_.session.cameras.size()) run_.pass.cameras[k].camera = saved_.session.cameras[k].name;
+    }
+    int points = saved_.session.board.pointCount();
+    for (const SessionBoard& board : saved_.session.further_boards)
+      points = std::max(points, board.board.pointCount());
+    try {
+      for (BoardObservations& found : readDetections(folder_, points))
+        for (BoardObservations& camera : run_.pass.cameras)
+          if (camera.camera == found.camera) camera = found;
+    } catch (const CalibrationError& error) {
+      note("what was found of the board", error);
+    }
+  }
+
+  // Pages go by the session's lists and by the board's points.
+  void checkSizes() {
+    const Session& session = saved_.session;
+    bool same = session.cameras.size() == run_.result.state.cameras.size() &&
+                session.imus.size() == run_.result.state.imus.size() &&
+                session.further_boards.size() == run_.result.state.further_boards.size();
+    for (std::size_t k = 0; same && k < run_.pass.cameras.size(); ++k)
+      for (const BoardView& view : run_.pass.cameras[k].views)
+        for (const CircleObservation& circle : view.circles)
+          same = same && circle.circle < session.boardOf(k).pointCount();
+    dropResidualsOfNoView();
+    if (!same && run_.result.status != CalibrationStatus::Failed)
+      throw badInput((folder_ / kSessionFile).string(),
+                     "it is the session of another run than what is beside it",
+                     "Export or calibrate again: the folder holds parts of two runs");
+  }
+
+  // Views that come from the tables may be fewer.
+  void dropResidualsOfNoView() {
+    std::erase_if(run_.result.circle_residuals, [&](const CircleResidual& r) {
+      return static_cast<std::size_t>(r.view) >=
+             run_.pass.cameras.at(static_cast<std::size_t>(r.camera)).views.size();
+    });
+  }
+
+  std::filesystem::path folder_;
+  SavedRun saved_;
+  CalibrationRun run_;
+  std::optional<NamedResult> named_;
+  std::optional<CalibrationError> result_error_;
+  bool has_pass_ = false;
+};
+
+std::filesystem::path folderOf(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) ? path : path.parent_path();
+}
+
+std::uintmax_t sizeOf(const std::filesystem::path& folder) {
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator file(folder, error), end; !error && file != end;
+       file.increment(error)) {
+    std::error_code ignored;
+    if (file->is_regular_file(ignored)) bytes += file->file_size(ignored);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Session& session,
+                                  const CalibrationRun& run, std::int64_t made_s) {
+  RunSummary summary = summaryOf(session, run.result);
+  summary.made_s = made_s;
+  return {{kSessionFile, sessionYaml(session, folder)},
+          {kData, {}, [&run](const TextSink& sink) { writeRunData(run, sink); }},
+          {kRun, summaryYaml(summary, placesYaml(folder, session))}};
+}
+
+void keepRun(const std::filesystem::path& folder, const Session& session,
+             const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
+             const std::string& log, std::int64_t made_s) {
+  makeOutputFolder(folder);
+  std::vector<FileContent> files = runFiles(folder, session, *run, made_s);
+  files.push_back({kLog, log});
+  files.push_back(
+      {kResultFile, resultYaml(namedRun(session, run, version))});  // the last tells that all are there
+  for (FileContent& file : files) file.path = folder / file.path;
+  writeFilesWhole(files);
+}
+
+bool isSavedRun(const std::filesystem::path& path) {
+  const std::filesystem::path name = path.filename();
+  if (name == kResultFile || name == kRun) return isThere(path);
+  return isThere(path / kResultFile) || isThere(path / kRun);
+}
+
+SavedRun readSavedRun(const std::filesystem::path& path) {
+  return FolderReader(folderOf(path)).read();
+}
+
+RunSummary readRunSummary(const std::filesystem::path& folder) {
+  return summaryFrom(YamlNode::load(folder / kRun), folder);
+}
+
+void renameRun(const std::filesystem::path& folder, const std::string& name) {
+  const YamlNode root = YamlNode::load(folder / kRun);
+  RunSummary summary = summaryFrom(root, folder);
+  summary.name = name;
+  std::string places = "recordings_from_here:\n";
+  for (const YamlNode& place : root["recordings_from_here"].items())
+    places += fmt::format("  - {}\n", yamlText(place.text()));
+  writeFileWhole(folder / kRun, summaryYaml(summary, places));
+}
+
+std::vector<RunSummary> listRuns(const std::filesystem::path& folder) {
+  std::vector<RunSummary> runs;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!isThere(entry->path() / kRun)) continue;
+    try {
+      runs.push_back(readRunSummary(entry->path()));
+    } catch (const CalibrationError&) {
+      // Opened by itself it says what is wrong.
+    }
+  }
+  std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) {
+    return std::pair(a.made_s, a.folder) < std::pair(b.made_s, b.folder);
+  });
+  return runs;
+}
+
+std::vector<std::string> differingFrom(const RunSummary& before, const RunSummary& run) {
+  const auto valueIn = [](const RunSummary& summary, const std::string& name) {
+    const auto found = std::find_if(summary.options.begin(), summary.options.end(),
+                                    [&](const OptionRow& row) { return row.name == name; });
+    return found == summary.options.end() ? std::string("default") : found->value;
+  };
+  std::vector<std::string> texts;
+  for (const OptionRow& row : run.options)
+    if (const std::string was = valueIn(before, row.name); was != row.value)
+      texts.push_back(fmt::format("{} {} (was {})", row.name, row.value, was));
+  for (const OptionRow& row : before.options)
+    if (valueIn(run, row.name) == "default")
+      texts.push_back(fmt::format("{} default (was {})", row.name, row.value));
+  return texts;
+}
+
+void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t most_bytes) {
+  if (runs.empty()) return;
+  std::sort(runs.begin(), runs.end(),
+            [](const RunSummary& a, const RunSummary& b) { return a.made_s < b.made_s; });
+  std::stable_partition(runs.begin(), runs.end() - 1, [](const RunSummary& run) { return run.name.empty(); });
+  std::vector<std::uintmax_t> sizes;
+  for (const RunSummary& run : runs) sizes.push_back(sizeOf(run.folder));
+  std::uintmax_t bytes = 0;
+  for (const std::uintmax_t size : sizes) bytes += size;
+  for (std::size_t k = 0; k + 1 < runs.size() && (runs.size() - k > most || bytes > most_bytes); ++k) {
+    std::error_code ignored;
+    std::filesystem::remove_all(runs[k].folder, ignored);
+    bytes -= sizes[k];
+  }
+}
+
+}  // namespace evical

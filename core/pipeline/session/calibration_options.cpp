@@ -1,0 +1,129 @@
+#include "core/pipeline/session/calibration_options.h"
+
+#include "core/base/option_table.h"
+#include "core/egomotion/egomotion_options.h"
+#include "core/frontend/edge_slopes.h"
+#include "core/maintenance/maintenance_options.h"
+#include "core/pipeline/session/check_options.h"
+
+#include <iterator>
+#include <type_traits>
+
+namespace evical {
+namespace {
+
+// One group of the batch's options, const where these are.
+template <class Part, class Options>
+auto& partOf(Options& options) {
+  return static_cast<std::conditional_t<std::is_const_v<Options>, const Part, Part>&>(options);
+}
+
+// Visits a copy of shared options and stores it if the visitor changed it.
+template <class Options, class Visitor>
+void visitShared(const char* name, const char* help, const SharedOptions<Options>& shared, Visitor&& visit) {
+  visit(name, help, *shared);
+}
+template <class Options, class Visitor>
+void visitShared(const char* name, const char* help, SharedOptions<Options>& shared, Visitor&& visit) {
+  Options options = *shared;
+  visit(name, help, options);
+  if (options != *shared) shared = options;
+}
+
+// The one list of groups: visit(name, help, options of the group).
+template <class Options, class Visitor>
+void forEachGroup(Options& all, Visitor&& visit) {
+  auto& front_end = all.front_end;
+  visit("detection", "The front end as a whole", front_end.detection);
+  visit("bursts", "Edge timing: events of one edge at one pixel", front_end.bursts);
+  visit("ring_vote", "Circle candidates", front_end.ring_vote);
+  visit("normal_flow", "Circle candidates the published way", front_end.normal_flow);
+  visit("moving_circle", "Moving circles, one by one", front_end.moving_circle);
+  visit("grid", "Circles to board", front_end.grid);
+  visit("tracking", "All circles of a window together, and from window to window", front_end.tracking);
+  visit("extent", "Does the board have the rows and columns that the session says?", front_end.extent);
+  visit("frames", "Frame cameras: how their pictures are searched for the board", all.frames);
+  visit("blink", "Blinking boards before event cameras: how the blink is noticed and the flashes added up",
+        all.blink);
+  visit("intrinsics", "Camera intrinsics, where the session gives none", all.intrinsics);
+  visit("initialisation", "From single views to a first trajectory", all.initialisation);
+  visit("optimisation.model", "Batch optimisation: what is estimated, and how measurements are taken",
+        partOf<ModelOptions>(all.optimisation));
+  visit("optimisation.priors", "Batch optimisation: how weakly what a recording may leave open is held",
+        partOf<PriorOptions>(all.optimisation));
+  visit("optimisation.solver", "Batch optimisation: how it is solved",
+        partOf<SolverOptions>(all.optimisation));
+  visit("optimisation.verdict", "Uncertainty, and what makes a result doubtful",
+        partOf<VerdictOptions>(all.optimisation));
+  visit("report", "What is worked out for the report only", all.report);
+  visitShared("check", "Whether an old calibration still holds", all.check, visit);
+  visitShared("edge_slopes", "Without a board: the speed of edges in the scene", all.edge_slopes, visit);
+  visitShared("egomotion", "Without a board: how the camera turns, compared with the gyroscope",
+              all.egomotion, visit);
+  visitShared("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain,
+              visit);
+}
+
+template <class Options>
+const OptionTable<Options>& tableOf(const Options&) {
+  return Options::table();
+}
+
+std::vector<std::string> fullNames() {
+  std::vector<std::string> names;
+  for (const OptionRow& row : optionRows()) names.push_back(row.name);
+  return names;
+}
+
+}  // namespace
+
+CalibrationOptions::CalibrationOptions() = default;
+
+bool CalibrationOptions::operator==(const CalibrationOptions&) const = default;
+
+std::vector<OptionSection> optionSections(const CalibrationOptions& options) {
+  std::vector<OptionSection> sections;
+  forEachGroup(options, [&](const char* group, const char* help, const auto& group_options) {
+    sections.push_back({group, help, tableOf(group_options).rows(group_options, group)});
+  });
+  return sections;
+}
+
+void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value) {
+  const std::size_t dot = full_name.rfind('.');
+  if (dot == std::string_view::npos)
+    throw badInput(std::string(full_name), "is not the name of an option",
+                   "Options are named group.option; " + nameAdvice(full_name, fullNames()));
+  const std::string group(full_name.substr(0, dot));
+  const std::string_view name = full_name.substr(dot + 1);
+  bool found = false;
+  forEachGroup(options, [&](const std::string& known, const char*, auto& group_options) {
+    const bool part_of_it = known.starts_with(group + ".") && tableOf(group_options).has(name);
+    if (found || (known != group && !part_of_it)) return;
+    found = true;
+    tableOf(group_options).set(group_options, known, name, value);
+  });
+  if (!found) throw badInput(std::string(full_name), "no such option", nameAdvice(full_name, fullNames()));
+}
+
+void validate(const CalibrationOptions& options) {
+  forEachGroup(options, [](const char* group, const char*, const auto& group_options) {
+    tableOf(group_options).checkOrder(group_options, group);
+  });
+}
+
+std::vector<OptionRow> optionRows(const CalibrationOptions& options) {
+  std::vector<OptionRow> rows;
+  for (OptionSection& section : optionSections(options))
+    rows.insert(rows.end(), std::make_move_iterator(section.rows.begin()),
+                std::make_move_iterator(section.rows.end()));
+  return rows;
+}
+
+std::vector<OptionRow> differingOptions(const CalibrationOptions& options) {
+  std::vector<OptionRow> rows = optionRows(options);
+  std::erase_if(rows, [](const OptionRow& row) { return row.value == row.default_value; });
+  return rows;
+}
+
+}  // namespace evical

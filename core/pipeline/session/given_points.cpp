@@ -1,0 +1,134 @@
+#include "core/pipeline/session/given_points.h"
+
+#include "core/base/error.h"
+#include "core/recording/text/text_columns.h"
+#include "core/recording/text/text_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kMostPoints = 10'000;
+const char* const kFlat =
+    "Points must lie in one plane: give them as the target lies flat, with one z or none";
+
+// The first point's plane is the target's.
+class Flat {
+ public:
+  bool take(double z_m) {
+    constexpr double kSame_m = 1e-6;
+    if (!first_m_) first_m_ = z_m;
+    return std::abs(z_m - *first_m_) < kSame_m;
+  }
+
+ private:
+  std::optional<double> first_m_;
+};
+
+struct PointTable {
+  std::array<std::size_t, 3> columns = {0, 1, 2};  // of index, x and y
+  std::optional<std::size_t> z_column = 3;
+  std::size_t least_columns = 3;
+  std::vector<std::optional<Eigen::Vector2d>> places_m;
+  Flat flat;
+};
+
+// Which column is what, by their names.
+void readNames(const std::vector<std::string_view>& names, const std::string& place, PointTable& table) {
+  constexpr std::array<std::string_view, 3> kNeeded = {"point", "x_m", "y_m"};
+  const auto columnOf = [&](std::string_view name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  table.least_columns = 0;
+  for (std::size_t k = 0; k < kNeeded.size(); ++k) {
+    table.columns.at(k) = columnOf(kNeeded.at(k));
+    if (table.columns.at(k) == names.size())
+      throw badInput(place, fmt::format("has no column {}", kNeeded.at(k)),
+                     "Give point,x_m,y_m: each point's index and its place in metres");
+    table.least_columns = std::max(table.least_columns, table.columns.at(k) + 1);
+  }
+  const std::size_t z = columnOf("z_m");
+  table.z_column = z < names.size() ? std::optional(z) : std::nullopt;
+}
+
+void readPoint(const std::vector<std::string_view>& columns, const std::string& place, PointTable& table) {
+  double index = 0.0, z_m = 0.0;
+  Eigen::Vector2d at_m;
+  const auto parsed = [&](std::size_t k, double& value) {
+    return parseNumber(columns[table.columns.at(k)], value);
+  };
+  if (columns.size() < table.least_columns || !parsed(0, index) || !parsed(1, at_m.x()) ||
+      !parsed(2, at_m.y()) ||
+      (table.z_column && *table.z_column < columns.size() && !parseNumber(columns[*table.z_column], z_m)))
+    throw badInput(place, "is no point: index, x and y are expected", "Give point,x_m,y_m in each line");
+  if (!(index >= 0.0 && index < static_cast<double>(kMostPoints)) || index != std::floor(index))
+    throw badInput(place, fmt::format("{} is no index of a point: they are 0 to {}", index, kMostPoints - 1),
+                   "Count the points from 0 on");
+  if (!table.flat.take(z_m)) throw badInput(place, fmt::format("z is {} m, elsewhere it is not", z_m), kFlat);
+  const auto point = static_cast<std::size_t>(index);
+  if (point >= table.places_m.size()) table.places_m.resize(point + 1);
+  if (table.places_m[point])
+    throw badInput(place, fmt::format("point {} is there a second time", point), "Give each point once");
+  table.places_m[point] = at_m;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> pointsFrom(const YamlNode& list) {
+  std::vector<Eigen::Vector2d> points_m;
+  Flat flat;
+  for (const YamlNode& item : list.items()) {
+    const std::vector<YamlNode> numbers = item.items();
+    if (numbers.size() != 2 && numbers.size() != 3) throw item.error("must be [x, y] in metres");
+    if (points_m.size() == kMostPoints)
+      throw item.error(fmt::format("is beyond the {} points that a board may have", kMostPoints));
+    points_m.emplace_back(numbers[0].real(), numbers[1].real());
+    const double z_m = numbers.size() > 2 ? numbers[2].real() : 0.0;
+    if (!flat.take(z_m)) throw item.error(fmt::format("z is {} m, elsewhere it is not", z_m), kFlat);
+  }
+  return points_m;
+}
+
+std::vector<Eigen::Vector2d> loadPoints(const std::filesystem::path& file) {
+  PointTable table;
+  TextLines lines(file);
+  bool begun = false;
+  std::vector<std::string_view> columns;
+  for (std::string_view line; lines.next(line);) {
+    splitColumns(line, columns);
+    if (columns.empty() || columns.front().starts_with('#')) continue;
+    const std::string place = fmt::format("{}: line {}", file.string(), lines.number());
+    double number = 0.0;
+    if (!begun && !parseNumber(columns.front(), number))
+      readNames(columns, place, table);
+    else
+      readPoint(columns, place, table);
+    begun = true;
+  }
+  std::vector<Eigen::Vector2d> points_m;
+  for (std::size_t point = 0; point < table.places_m.size(); ++point) {
+    if (!table.places_m[point])
+      throw badInput(
+          file.string(),
+          fmt::format("point {} is missing: there are indices up to {}", point, table.places_m.size() - 1),
+          "Give each point once, counted from 0 on");
+    points_m.push_back(*table.places_m[point]);
+  }
+  return points_m;
+}
+
+std::string pointsYaml(const Board& board) {
+  std::string text;
+  for (const Eigen::Vector2d& point_m : board.given_m)
+    text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", point_m.x(), point_m.y());
+  return "[" + text + "]";
+}
+
+}  // namespace evical

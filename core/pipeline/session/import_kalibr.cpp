@@ -1,0 +1,167 @@
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session/import_sources.h"
+#include "core/pipeline/session/session_guess.h"
+#include "core/recording/inspection.h"
+#include "core/recording/recording_reader.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// eKalibr's own boards have it, and it is what prints well.
+constexpr double kUsualRadiusRate = 2.5;  // spacing by radius
+
+// Kalibr's rows and columns are of tags; its spacing is the gap between two as a share of a tag.
+void readAprilGrid(const YamlNode& root, Board& board) {
+  board.type = BoardType::AprilGrid;
+  board.rows = root["tagRows"].integer(1, 100);
+  board.cols = root["tagCols"].integer(1, 100);
+  board.tag_size_m = root["tagSize"].real(1e-4, 10.0, "m");
+  board.spacing_m = (1.0 + root["tagSpacing"].real(1e-3, 100.0, "")) * board.tag_size_m;
+  board.radius_m = 0.0;
+}
+
+void readCheckerboard(const YamlNode& root, Board& board) {
+  board.type = BoardType::Checkerboard;
+  board.rows = root["targetRows"].integer(2, 100);
+  board.cols = root["targetCols"].integer(2, 100);
+  board.spacing_m = root["rowSpacingMeters"].real(1e-4, 10.0, "m");
+  board.radius_m = 0.0;
+  constexpr double kSame = 1e-6;
+  const YamlNode other = root["colSpacingMeters"];
+  if (std::abs(other.real(1e-4, 10.0, "m") / board.spacing_m - 1.0) > kSame)
+    throw other.error("is another one than rowSpacingMeters, and Evical's checkerboards have squares",
+                      "Measure the board again, or use another one");
+}
+
+void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
+  const std::string type = root["target_type"].text();
+  Board& board = imported.session.board;
+  if (type == "aprilgrid") return readAprilGrid(root, board);
+  if (type == "checkerboard") return readCheckerboard(root, board);
+  if (type != "circlegrid")
+    throw root["target_type"].error(fmt::format("'{}' is no target that Evical knows", type),
+                                    "Known are aprilgrid, checkerboard and circlegrid");
+  const bool asymmetric =
+      root["asymmetricGrid"].choice({"false", "true", "False", "True", "0", "1"}) % 2 == 1;
+  board.type = asymmetric ? BoardType::AsymmetricCircles : BoardType::SymmetricCircles;
+  board.rows = root["targetRows"].integer(2, 100);
+  board.cols = root["targetCols"].integer(2, 100);
+  board.spacing_m = root["spacingMeters"].real(1e-4, 10.0, "m");
+  board.radius_m = request.radius_m.value_or(board.spacing_m / kUsualRadiusRate);
+  if (!request.radius_m)
+    imported.notes.push_back(
+        fmt::format("board: Kalibr's target does not say how large the circles are: {:.4g} mm of radius are "
+                    "assumed; measure, and "
+                    "give --radius-m",
+                    1e3 * board.radius_m));
+}
+
+// Files of Kimera and EuRoC name no topic. Then the recording's only IMU is used.
+std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
+  std::vector<std::string> streams;
+  if (!request.recording.empty())
+    for (const StreamInfo& stream : openRecording(request.recording)->streams())
+      if (stream.type == StreamType::Imu) streams.push_back(stream.name);
+  if (streams.size() == 1) return streams.front();
+  throw map.error("has no rostopic",
+                  streams.empty()
+                      ? "Add rostopic: with the IMU's topic, or give --recording FILE with one IMU"
+                      : "Add rostopic: with one of " + joined(streams));
+}
+
+void readImu(const YamlNode& map, const std::string& key, const ImportRequest& request,
+             ImportedSession& imported) {
+  SessionImu imu;
+  const auto topic = map.find("rostopic");
+  imu.stream = topic ? topic->text() : onlyImuOf(map, request);
+  imu.name = key.empty() ? sensorName(imu.stream, true, imported.session) : key;
+  imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
+  imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  if (const auto walk = map.find("accelerometer_random_walk"))
+    imu.noise.accelerometer_random_walk = walk->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+  if (const auto walk = map.find("gyroscope_random_walk"))
+    imu.noise.gyroscope_random_walk = walk->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
+  const auto model = map.find("model");
+  if (model && model->text() != "calibrated")
+    imported.notes.push_back(fmt::format(
+        "{}: its model {} is left out: scales and misalignment are estimated anew", imu.name, model->text()));
+  imported.session.imus.push_back(std::move(imu));
+}
+
+void readImus(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
+  if (!root.has("imu0")) return readImu(root, "", request, imported);
+  for (const std::string& key : root.keys()) readImu(root[key], key, request, imported);
+}
+
+void readCameras(const YamlNode& root, ImportedSession& imported) {
+  for (const std::string& key : camchainCameras(root)) {
+    const YamlNode map = root[key];
+    SessionCamera camera;
+    camera.name = key;
+    camera.stream = map["rostopic"].text();
+    camera.intrinsics = readIntrinsics(map);
+    camera.resolution_px = camera.intrinsics->resolution_px;
+    if (camera.stream.find("image") != std::string::npos)
+      imported.notes.push_back(fmt::format(
+          "{}: {} looks like images: put the topic of the events in the session", key, camera.stream));
+    imported.session.cameras.push_back(std::move(camera));
+  }
+}
+
+const char* nameOf(ImportKind kind) {
+  if (kind == ImportKind::KalibrTarget) return "target";
+  return kind == ImportKind::KalibrImu ? "imu" : "camchain";
+}
+
+// Before Kalibr has run there is no camchain: then every stream of events is a camera, as `evical init` has it.
+void addRecordedCameras(const ImportRequest& request, ImportedSession& imported) {
+  if (request.recording.empty())
+    throw badInput(
+        "cameras", "none of the files describes one",
+        "Give Kalibr's camchain file too; or --recording FILE, whose event streams become the cameras");
+  const Inspection inspection = inspectRecording(*openRecording(request.recording));
+  Session& session = imported.session;
+  for (const StreamSummary& stream : inspection.streams) {
+    const bool camera = stream.info.readable && stream.count > 0 &&
+                        (stream.info.type == StreamType::Events || stream.info.type == StreamType::Frames);
+    if (!camera) continue;
+    session.cameras.push_back(withSeenResolution(guessedCamera(stream, session), stream));
+    imported.notes.push_back(
+        fmt::format("{}: the camera of the stream {}; its lens is calibrated first, from the same recording",
+                    session.cameras.back().name, stream.info.name));
+  }
+  if (session.cameras.empty())
+    throw badInput(request.recording.string(), "has no stream of events or frames",
+                   "Give the recording of the cameras");
+}
+
+}  // namespace
+
+void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest& request,
+                  ImportedSession& imported) {
+  std::array<bool, 6> seen{};
+  for (const ImportSource& source : sources) {
+    bool& before = seen.at(static_cast<std::size_t>(source.kind));
+    if (before && source.kind != ImportKind::KalibrImu)
+      throw badInput(source.path.string(), fmt::format("is the second {} file", nameOf(source.kind)),
+                     "Give one of each kind");
+    before = true;
+    if (source.kind == ImportKind::KalibrTarget) readTarget(source.root, request, imported);
+    if (source.kind == ImportKind::KalibrImu) readImus(source.root, request, imported);
+    if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, imported);
+    if (source.kind == ImportKind::Intrinsics || source.kind == ImportKind::LensFile)
+      throw badInput(source.path.string(), "holds intrinsics alone, without the name of a stream",
+                     "Give Kalibr's camchain, or import this file by itself");
+  }
+  if (!seen[static_cast<std::size_t>(ImportKind::KalibrTarget)])
+    throw badInput("board", "none of the files describes it", "Give Kalibr's target file too");
+  if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)]) addRecordedCameras(request, imported);
+}
+
+}  // namespace evical

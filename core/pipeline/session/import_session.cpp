@@ -1,0 +1,224 @@
+#include "core/pipeline/session/import_session.h"
+
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/geometry/camera_model.h"
+#include "core/pipeline/session/import_sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+const char* programOf(ImportKind kind) {
+  if (kind == ImportKind::EkalibrConfiguration) return "ekalibr";
+  if (kind == ImportKind::LensFile) return "";
+  return kind == ImportKind::Intrinsics ? "ros" : "kalibr";
+}
+
+void checkFrom(const ImportRequest& request, const std::vector<ImportSource>& sources) {
+  if (request.from.empty()) return;
+  const std::array<std::string, 3> known{"kalibr", "ekalibr", "ros"};
+  if (std::find(known.begin(), known.end(), request.from) == known.end())
+    throw badInput("--from", fmt::format("'{}' is no program whose files can be imported", request.from),
+                   nameAdvice(request.from, known));
+  for (const ImportSource& source : sources) {
+    const bool lens = source.kind == ImportKind::Intrinsics;  // eKalibr's, ROS's or Evical's own
+    if (request.from != programOf(source.kind) && !(lens && request.from == "ekalibr"))
+      throw badInput(source.path.string(), fmt::format("is no file of {}", request.from), "Leave out --from");
+  }
+}
+
+std::vector<ImportSource> readSources(const ImportRequest& request) {
+  std::vector<ImportSource> sources;
+  for (const std::filesystem::path& file : request.files) sources.push_back(recogniseSource(file));
+  checkFrom(request, sources);
+  return sources;
+}
+
+void setRecording(const ImportRequest& request, ImportedSession& imported) {
+  Session& session = imported.session;
+  if (!request.recording.empty()) session.recording = request.recording;
+  if (session.recording.empty())
+    throw badInput("recording", "none of the files names one", "Give it with --recording FILE");
+  std::error_code ignored;
+  if (std::filesystem::exists(session.recording, ignored)) return;
+  if (!request.recording.empty())
+    throw badInput(session.recording.string(), "does not exist", "Check the path after --recording");
+  imported.notes.push_back(
+      fmt::format("recording {} does not exist here: give another one with --recording FILE",
+                  session.recording.string()));
+}
+
+bool intrinsicsAlone(const std::vector<ImportSource>& sources) {
+  return std::all_of(sources.begin(), sources.end(), [](const ImportSource& source) {
+    return source.kind == ImportKind::Intrinsics || source.kind == ImportKind::KalibrCamchain ||
+           source.kind == ImportKind::LensFile;
+  });
+}
+
+struct ImportedIntrinsics {
+  std::string name;
+  CameraIntrinsics intrinsics;
+};
+
+// No camera has them: then numbers are in another unit, or of another image size.
+void checkPlausible(const CameraIntrinsics& lens, const std::string& place) {
+  constexpr double kLeastFocal_px = 5.0;
+  const Eigen::Vector2d& centre = lens.principal_point_px;
+  if (lens.focal_length_px.minCoeff() < kLeastFocal_px)
+    throw badInput(
+        place, fmt::format("a focal length of {:.3g} px cannot be right", lens.focal_length_px.minCoeff()),
+        "Give it in pixels");
+  const Resolution size = lens.resolution_px;
+  if (size.known() &&
+      !(centre.x() > 0.0 && centre.x() < size.width_px && centre.y() > 0.0 && centre.y() < size.height_px))
+    throw badInput(place,
+                   fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image of {} x {}",
+                               centre.x(), centre.y(), size.width_px, size.height_px),
+                   "Check that the resolution and the intrinsics belong together");
+}
+
+// Takes names from the file, if it has names that can be part of a path.
+void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
+  const std::vector<ReadCamera>& found = file.read.cameras;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::string name = found[i].name;
+    std::replace(name.begin(), name.end(), '/', '_');
+    name.erase(0, std::min(name.find_first_not_of("_."), name.size()));
+    if (name.empty()) name = found.size() > 1 ? fmt::format("cam{}", i) : file.read.path.stem().string();
+    CameraIntrinsics lens = *found[i].lens;
+    CameraIntrinsics checked = lens;
+    constexpr int kMost_px = 30000;  // used if the file has no resolution: the recording knows it
+    if (!checked.resolution_px.known()) checked.resolution_px = {kMost_px, kMost_px};
+    const std::string place = fmt::format("{}: {}", file.read.path.string(), name);
+    validate(checked, place);
+    checkPlausible(lens, place);
+    cameras.push_back({name, lens});
+  }
+}
+
+// Contents other than the lens, which are not imported.
+void noteLeftOut(const LensFile& file, std::vector<std::string>& notes) {
+  const std::string name = file.read.path.filename().string();
+  const auto any = [&](const auto& has) {
+    return std::any_of(file.read.cameras.begin(), file.read.cameras.end(), has);
+  };
+  std::vector<std::string> left_out;
+  if (any([](const ReadCamera& camera) { return camera.frame_from_camera.has_value(); }))
+    left_out.emplace_back("poses");
+  if (any([](const ReadCamera& camera) { return camera.time_offset_s.has_value(); }))
+    left_out.emplace_back("time offsets");
+  if (!file.read.imus.empty()) left_out.emplace_back("IMU parameters");
+  notes.push_back(fmt::format("{}: read as {}", name, file.layout));
+  if (!left_out.empty())
+    notes.push_back(fmt::format("{}: {} are not imported and will be estimated", name, joined(left_out)));
+}
+
+std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
+  std::vector<ImportedIntrinsics> cameras;
+  for (const ImportSource& source : sources) {
+    if (source.kind == ImportKind::LensFile) {
+      addLenses(*source.lenses, cameras);
+    } else if (source.kind == ImportKind::Intrinsics) {
+      const std::string name = source.path.stem().string();
+      cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
+    } else {
+      for (const std::string& key : camchainCameras(source.root))
+        cameras.push_back({key, readIntrinsics(source.root[key])});
+    }
+  }
+  return cameras;
+}
+
+// What a camchain knows beyond the lens is an estimate, and becomes no prior unasked.
+void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
+  for (const ImportSource& source : sources) {
+    if (source.kind == ImportKind::LensFile) noteLeftOut(*source.lenses, notes);
+    if (source.kind == ImportKind::Intrinsics)
+      for (const std::string& note : leftOutOf(source.root))
+        notes.push_back(fmt::format("{}: {}", source.path.filename().string(), note));
+    if (source.kind != ImportKind::KalibrCamchain) continue;
+    const std::vector<std::string> cameras = camchainCameras(source.root);
+    for (const std::string& key : source.root.keys()) {
+      if (std::find(cameras.begin(), cameras.end(), key) == cameras.end()) {
+        notes.push_back(fmt::format("{} is left out: it is not a camera", key));
+        continue;
+      }
+      for (const std::string& note : leftOutOf(source.root[key]))
+        notes.push_back(fmt::format("{}: {}", key, note));
+      if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
+        notes.push_back(
+            fmt::format("{}: its pose and time offset are left out and estimated anew; where they are to be "
+                        "held, give them under prior",
+                        key));
+    }
+  }
+}
+
+ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,
+                               const std::filesystem::path& output) {
+  const std::vector<ImportedIntrinsics> cameras = intrinsicsOf(sources);
+  ImportedFiles imported;
+  for (const ImportedIntrinsics& camera : cameras) {
+    std::filesystem::path path = output;
+    if (cameras.size() > 1)
+      path.replace_filename(
+          fmt::format("{}-{}{}", output.stem().string(), camera.name, output.extension().string()));
+    for (const FileContent& other : imported.files)
+      if (other.path == path)
+        throw badInput(camera.name, "is the name of two cameras", "Import the files one by one");
+    imported.files.push_back({path, intrinsicsYaml(camera.intrinsics, 0)});
+  }
+  notePriors(sources, imported.notes);
+  return imported;
+}
+
+ImportedSession sessionOf(const std::vector<ImportSource>& sources, const ImportRequest& request) {
+  ImportedSession imported;
+  const auto configuration = std::find_if(sources.begin(), sources.end(), [](const ImportSource& source) {
+    return source.kind == ImportKind::EkalibrConfiguration;
+  });
+  if (configuration != sources.end()) {
+    if (sources.size() > 1)
+      throw badInput(configuration->path.string(),
+                     "is a whole configuration of eKalibr, yet further files are given",
+                     "Import it alone; it names its files of intrinsics itself");
+    importEkalibr(*configuration, request, imported);
+  } else {
+    importKalibr(sources, request, imported);
+    notePriors(sources, imported.notes);
+  }
+  setRecording(request, imported);
+  Session& session = imported.session;
+  if (request.radius_m) session.board.radius_m = *request.radius_m;
+  validate(session.board);
+  if (session.reference.empty())
+    session.reference = session.imus.empty() ? session.cameras.at(0).name : session.imus[0].name;
+  validate(session, "import");
+  return imported;
+}
+
+}  // namespace
+
+ImportedSession importSession(const ImportRequest& request) {
+  return sessionOf(readSources(request), request);
+}
+
+ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output) {
+  std::error_code ignored;
+  for (const std::filesystem::path& file : request.files)
+    if (std::filesystem::equivalent(file, output, ignored))
+      throw badInput(output.string(), "input and output are the same", "Choose another output");
+  const std::vector<ImportSource> sources = readSources(request);
+  if (intrinsicsAlone(sources)) return importIntrinsics(sources, output);
+  const ImportedSession imported = sessionOf(sources, request);
+  const auto folder = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
+  return {{{output, sessionYaml(imported.session, folder)}}, imported.notes};
+}
+
+}  // namespace evical

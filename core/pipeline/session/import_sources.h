@@ -1,0 +1,36 @@
+// What the files of an import hold, by program.
+#pragma once
+
+#include "core/base/yaml_node.h"
+#include "core/pipeline/session/import_session.h"
+#include "core/report/export/read_back/lens_files.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+enum class ImportKind { EkalibrConfiguration, KalibrTarget, KalibrImu, KalibrCamchain, Intrinsics, LensFile };
+
+struct ImportSource {
+  std::filesystem::path path;
+  YamlNode root;  // empty for lens files
+  ImportKind kind;
+  std::optional<LensFile> lenses = {};
+};
+
+// Throws CalibrationError (BadInput) where the content is none of these.
+ImportSource recogniseSource(const std::filesystem::path& path);
+
+// Sensor names from topics: "/davis/left/events" is davis_left, and its IMU davis_left_imu; with a number
+// where the name is taken.
+std::string sensorName(const std::string& topic, bool imu, const Session& session);
+
+void importEkalibr(const ImportSource& source, const ImportRequest& request, ImportedSession& imported);
+
+// Target, IMUs and cameras, in any order.
+void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest& request,
+                  ImportedSession& imported);
+
+}  // namespace evical

@@ -1,0 +1,285 @@
+#include "core/pipeline/session/session_guess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+
+namespace evical {
+namespace {
+
+// "/davis/left/events" gives "davis_left": all parts but the last, which says the kind.
+std::string nameFromStream(const std::string& stream, const std::string& kind) {
+  const std::size_t end = stream.rfind('/');
+  std::string name = end == std::string::npos ? "" : stream.substr(0, end);
+  std::replace(name.begin(), name.end(), '/', '_');
+  name.erase(0, name.find_first_not_of('_'));
+  if (name.empty()) return kind;
+  return kind == "imu" ? name + "_imu" : name;
+}
+
+std::string freeName(const std::string& stream, const std::string& kind, const Session& session) {
+  const std::string base = nameFromStream(stream, kind);
+  std::string name = base;
+  for (int i = 2; isSensorName(session, name); ++i) name = base + "_" + std::to_string(i);
+  return name;
+}
+
+bool isSensor(const StreamSummary& stream, StreamType type) {
+  return stream.info.type == type && stream.count > 0;
+}
+
+// For an IMU with separate streams: the stream of the other sensor with the longest common start of the name.
+const StreamSummary* mostAlike(const StreamSummary& stream, const Inspection& inspection) {
+  const ImuStreamKind kind = imuStreamKind(stream);
+  if (kind != ImuStreamKind::Gyroscope && kind != ImuStreamKind::Accelerometer) return nullptr;
+  const ImuStreamKind wanted =
+      kind == ImuStreamKind::Gyroscope ? ImuStreamKind::Accelerometer : ImuStreamKind::Gyroscope;
+  const StreamSummary* best = nullptr;
+  std::ptrdiff_t most_alike = -1;
+  for (const StreamSummary& other : inspection.streams) {
+    if (!isSensor(other, StreamType::Imu) || imuStreamKind(other) != wanted) continue;
+    const auto alike =
+        std::ranges::mismatch(stream.info.name, other.info.name).in1 - stream.info.name.begin();
+    if (alike <= most_alike) continue;
+    best = &other;
+    most_alike = alike;
+  }
+  return best;
+}
+
+// Null if there is none, or if it belongs to another stream: two gyroscopes do not share an accelerometer.
+const StreamSummary* otherSensor(const StreamSummary& stream, const Inspection& inspection) {
+  const StreamSummary* const other = mostAlike(stream, inspection);
+  const StreamSummary* const back = other != nullptr ? mostAlike(*other, inspection) : nullptr;
+  return back != nullptr && back->info.name == stream.info.name ? other : nullptr;
+}
+
+// "/camera/imu" of "/camera/gyro/sample" and "/camera/accel/sample".
+std::string commonPart(const std::string& a, const std::string& b) {
+  const std::string alike(a.begin(), std::ranges::mismatch(a, b).in1);
+  return alike.substr(0, alike.rfind('/') + 1) + "imu";
+}
+
+void addSensors(const std::filesystem::path& own_recording, const Inspection& inspection, StreamType type,
+                Session& session) {
+  for (const StreamSummary& stream : inspection.streams) {
+    if (!isSensor(stream, type)) continue;
+    if (type == StreamType::Events) session.cameras.push_back(guessedCamera(stream, session, own_recording));
+    const bool frames = type == StreamType::Frames && stream.info.readable && stream.info.timed;
+    if (frames || type == StreamType::Points)
+      session.cameras.push_back(guessedCamera(stream, session, own_recording));
+    const bool is_with_gyroscope =
+        imuStreamKind(stream) == ImuStreamKind::Accelerometer && otherSensor(stream, inspection) != nullptr;
+    if (type == StreamType::Imu && !is_with_gyroscope)
+      session.imus.push_back(guessedImu(stream, inspection, session, own_recording));
+  }
+}
+
+}  // namespace
+
+SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
+                            const std::filesystem::path& own_recording) {
+  SessionCamera camera;
+  camera.recording = own_recording;
+  camera.name = freeName(stream.info.name, "camera", session);
+  camera.stream = stream.info.name;
+  camera.resolution_px = stream.info.resolution_px;
+  return camera;
+}
+
+SessionImu guessedImu(const StreamSummary& given, const Inspection& inspection, const Session& session,
+                      const std::filesystem::path& own_recording) {
+  const ImuStreamKind kind = imuStreamKind(given);
+  const StreamSummary* const other = otherSensor(given, inspection);
+  const bool other_is_gyroscope = other != nullptr && kind == ImuStreamKind::Accelerometer;
+  const StreamSummary& gyroscope = other_is_gyroscope ? *other : given;
+  const StreamSummary& stream = other != nullptr && !other_is_gyroscope ? *other : given;
+  SessionImu imu;
+  imu.recording = own_recording;
+  imu.name = freeName(other != nullptr ? commonPart(given.info.name, other->info.name) : given.info.name,
+                      "imu", session);
+  imu.stream = gyroscope.info.name;
+  if (other != nullptr || kind == ImuStreamKind::Alternating) imu.accelerometer_stream = stream.info.name;
+  if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
+    imu.acceleration_unit = AccelerationUnit::Gravity;
+  return imu;
+}
+
+SessionCamera withSeenResolution(SessionCamera camera, const StreamSummary& stream) {
+  const bool known = camera.resolution_px.known() || stream.info.resolution_px.known() ||
+                     (camera.intrinsics && camera.intrinsics->resolution_px.known());
+  if (known || stream.info.type != StreamType::Events) return camera;
+  static constexpr std::array<Resolution, 8> kUsual = {
+      {{128, 128}, {240, 180}, {304, 240}, {320, 240}, {346, 260}, {640, 480}, {1280, 720}, {320, 320}}};
+  constexpr int kUnlit_px = 3;  // at the rim, where nothing moved
+  camera.resolution_px = stream.seen_px;
+  for (const Resolution& usual : kUsual) {
+    const int right_px = usual.width_px - stream.seen_px.width_px,
+              below_px = usual.height_px - stream.seen_px.height_px;
+    if (right_px >= 0 && right_px <= kUnlit_px && below_px >= 0 && below_px <= kUnlit_px)
+      camera.resolution_px = usual;
+  }
+  return camera;
+}
+
+Session withSeenResolutions(Session session, const std::filesystem::path& recording,
+                            const Inspection& inspection) {
+  for (SessionCamera& camera : session.cameras) {
+    if ((camera.recording.empty() ? session.recording : camera.recording) != recording) continue;
+    for (const StreamSummary& stream : inspection.streams)
+      if (stream.info.name == camera.stream) camera = withSeenResolution(std::move(camera), stream);
+  }
+  return session;
+}
+
+void keepReference(Session& session) {
+  const auto choose = [&](const auto& sensors) {
+    const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
+    if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
+  };
+  const auto isSensorOf = [&](const SessionCamera& camera) {
+    return [&camera](const SessionCamera& other) { return other.name == camera.same_sensor_as; };
+  };
+  for (SessionCamera& camera : session.cameras)
+    if (std::none_of(session.cameras.begin(), session.cameras.end(), isSensorOf(camera)))
+      camera.same_sensor_as.clear();
+  if (!session.imus.empty())
+    choose(session.imus);
+  else if (!session.cameras.empty())
+    choose(session.cameras);
+}
+
+Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
+                           const Inspection& inspection) {
+  Session found = session;
+  // Where there are events, frames beside them are for who adds them.
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
+    if (found.cameras.empty()) addSensors(recording, inspection, type, found);
+  if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
+  keepReference(found);
+  return found;
+}
+
+Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection) {
+  Session session;
+  session.recording = recording;
+  return withMissingSensors(session, {}, inspection);
+}
+
+std::optional<CalibrationError> whyUseless(const std::filesystem::path& recording,
+                                           const Inspection& inspection) {
+  const auto useful = [](const StreamSummary& stream) {
+    const StreamType type = stream.info.type;
+    const bool frames = type == StreamType::Frames && stream.info.readable;
+    return frames || type == StreamType::Events || type == StreamType::Imu || type == StreamType::Points;
+  };
+  if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
+  std::string problem = "it holds neither events, frames, points nor IMU samples";
+  for (const RecordingFault& fault : inspection.faults) problem += ". " + fault.text;
+  return badInput(recording.string(), problem,
+                  "Check that the whole file was copied and that the camera's driver was recorded");
+}
+
+namespace {
+
+const StreamSummary* streamOf(const std::string& name, const std::filesystem::path& own_recording,
+                              const std::vector<InspectedRecording>& recordings) {
+  for (const InspectedRecording& recording : recordings) {
+    if (recording.file != (own_recording.empty() ? recordings.front().file : own_recording)) continue;
+    for (const StreamSummary& stream : recording.inspection.streams)
+      if (stream.info.name == name) return &stream;
+  }
+  return nullptr;
+}
+
+// Frames in the event cameras' recordings, as the cameras that they could be.
+std::vector<std::string> framesBeside(const SessionCamera& camera,
+                                      const std::vector<InspectedRecording>& recordings) {
+  std::vector<std::string> lines;
+  const StreamSummary* const own = streamOf(camera.stream, camera.recording, recordings);
+  if (own == nullptr || own->info.type != StreamType::Events) return lines;
+  for (const InspectedRecording& recording : recordings) {
+    if (recording.file != (camera.recording.empty() ? recordings.front().file : camera.recording)) continue;
+    for (const StreamSummary& stream : recording.inspection.streams) {
+      if (!isSensor(stream, StreamType::Frames) || !stream.info.readable || !stream.info.timed) continue;
+      const bool same = stream.info.resolution_px == camera.resolution_px;
+      lines.push_back(
+          fmt::format("There are frames, too, {} as a camera of their own: frames: {{stream: {}{}}}",
+                      same ? "of this sensor perhaps," : "usable", stream.info.name,
+                      same ? ", same_sensor_as: " + camera.name : ""));
+    }
+  }
+  return lines;
+}
+
+SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
+  SessionRemarks remarks;
+  remarks.board =
+      "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows. "
+      "Measure over as many circles as there are: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005}, "
+      "in the place of spacing_m, has the length over ten spacings and the ruler's sigma.";
+  for (const SessionCamera& camera : session.cameras) {
+    std::vector<std::string>& own = remarks.sensors[camera.name];
+    const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);
+    if (!camera.resolution_px.known() && stream != nullptr)
+      own.push_back(
+          fmt::format("resolution_px: [{}, {}]  # not in the recording; this is how far its events reach",
+                      stream->seen_px.width_px, stream->seen_px.height_px));
+    own.emplace_back("intrinsics: camera.yaml  # not known: calibrated first, from the same recording");
+    for (std::string& line : framesBeside(camera, recordings)) own.push_back(std::move(line));
+    if (!camera.recording.empty())
+      own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
+  }
+  for (const SessionImu& imu : session.imus) {
+    std::vector<std::string>& own = remarks.sensors[imu.name];
+    own.emplace_back("These noise densities are a common IMU's: take yours from its data sheet.");
+    if (!imu.recording.empty()) own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
+  }
+  return remarks;
+}
+
+std::vector<std::string> notesOn(const Session& session) {
+  std::vector<std::string> notes = {"board: fill it in"};
+  for (const SessionCamera& camera : session.cameras)
+    if (!camera.resolution_px.known())
+      notes.push_back(
+          fmt::format("cameras.{}: give resolution_px, which the recording does not say", camera.name));
+  if (session.imus.empty() && session.cameras.size() == 1)
+    notes.emplace_back("no IMU: name its recording, too; without one there is 'evical intrinsics'");
+  return notes;
+}
+
+}  // namespace
+
+SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
+                          const std::filesystem::path& folder) {
+  SessionDraft draft;
+  Session& session = draft.session;
+  session.recording = recordings.at(0).file;
+  for (const InspectedRecording& each : recordings)
+    if (const auto useless = whyUseless(each.file, each.inspection)) throw CalibrationError(*useless);
+  const auto addAll = [&](StreamType type) {
+    for (const InspectedRecording& each : recordings) {
+      const bool is_own = &each == &recordings.front();
+      addSensors(is_own ? std::filesystem::path() : each.file, each.inspection, type, session);
+    }
+  };
+  // Where there are events, frames beside them are remarks.
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
+    if (session.cameras.empty()) addAll(type);
+  addAll(StreamType::Imu);
+  if (session.cameras.empty())
+    throw badInput(session.recording.string(),
+                   "there are no events, frames or points to calibrate a camera from",
+                   "Name the camera's recording, too");
+  keepReference(session);
+  validate(session, session.recording.string());
+  draft.yaml = sessionYaml(session, folder, remarksOn(session, recordings));
+  draft.notes = notesOn(session);
+  return draft;
+}
+
+}  // namespace evical

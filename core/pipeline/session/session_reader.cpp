@@ -1,0 +1,341 @@
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/numerics/normal_gravity.h"
+#include "core/pipeline/session/session_boards.h"
+#include "core/pipeline/session/session_boards_reader.h"
+#include "core/pipeline/session/session_keys.h"
+#include "core/pipeline/session/session_priors.h"
+#include "core/report/export/export_target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+struct SessionFolder {
+  std::filesystem::path path;
+  bool recordings_may_be_gone = false;
+};
+
+std::filesystem::path recordingBeside(const YamlNode& node, const SessionFolder& folder) {
+  return folder.recordings_may_be_gone ? folder.path / nameFrom(node) : besideSession(node, folder.path);
+}
+
+Resolution readResolution(const YamlNode& node) {
+  const std::vector<YamlNode> items = node.items();
+  if (items.size() != 2) throw node.error("must be [width, height]");
+  return {items[0].integer(1, 30000), items[1].integer(1, 30000)};
+}
+
+constexpr double kLargestOffset_s = 4.6e9;  // times of recordings lie within (kLatestTime_ns)
+
+// How the stream's own times and columns are to be read.
+template <class Sensor>
+void readTable(const YamlNode& map, Sensor& sensor) {
+  if (const auto node = map.find("clock_offset_s"))
+    sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+  if (const auto node = map.find("clock_scale"))
+    sensor.clock_scale = node->real(kLeastClockScale, 1.0 / kLeastClockScale, "");
+  const auto columns = map.find("columns");
+  if (!columns) return;
+  sensor.columns = nameFrom(*columns);
+  if (sensor.columns.find('?') != std::string::npos)
+    throw columns->error("has a ?", "Put the column's name there, or - if it is not used");
+}
+
+void readStream(const YamlNode& map, SessionCamera& camera) {
+  camera.stream = nameFrom(map["stream"]);
+}
+
+// One stream, or one for each of the two sensors.
+void readStream(const YamlNode& map, SessionImu& imu) {
+  const auto gyroscope = map.find("gyroscope"), accelerometer = map.find("accelerometer");
+  if (!gyroscope && !accelerometer) {
+    imu.stream = nameFrom(map["stream"]);
+    return;
+  }
+  if (const auto node = map.find("stream"))
+    throw node->error("cannot be combined with gyroscope or accelerometer",
+                      "Give either stream, or gyroscope and accelerometer");
+  imu.stream = nameFrom(map["gyroscope"]);
+  imu.accelerometer_stream = nameFrom(map["accelerometer"]);
+}
+
+// Which stream of which file, in which clock.
+template <class Sensor>
+Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
+  Sensor sensor;
+  sensor.name = sensor_name;
+  readStream(map, sensor);
+  if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
+  readTable(map, sensor);
+  return sensor;
+}
+
+// Points that another program has found are a table of their own, whose one stream has the file's name.
+SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_name,
+                               const SessionFolder& folder) {
+  const auto points = map.find("points");
+  if (!points) return readSource<SessionCamera>(map, camera_name, folder);
+  for (const char* const other : {"stream", "recording"})
+    if (const auto node = map.find(other))
+      throw node->error("is there beside points, which name a file of their own", "Keep one of the two");
+  SessionCamera camera;
+  camera.name = camera_name;
+  camera.recording = recordingBeside(*points, folder);
+  camera.stream = camera.recording.filename().string();
+  readTable(map, camera);
+  return camera;
+}
+
+SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
+  map.allowOnly({"recording", "stream", "points", "clock_offset_s", "clock_scale", "columns", "resolution_px",
+                 "shutter", "same_sensor_as", "same_sensor_check", "board", "intrinsics", "intrinsics_std",
+                 "intrinsics_correlation"});
+  SessionCamera camera = readCameraSource(map, camera_name, folder);
+  if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
+  if (const auto node = map.find("shutter"))
+    camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
+  if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = nameFrom(*node);
+  if (const auto node = map.find("board")) camera.board = nameFrom(*node);
+  const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
+  if (sigmas && !intrinsics)
+    throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
+  if (!intrinsics) return camera;
+  KnownIntrinsics known = intrinsics->isMap() ? KnownIntrinsics{readIntrinsics(*intrinsics), {}}
+                                              : readKnownIntrinsics(besideSession(*intrinsics, folder.path),
+                                                                    camera.name, camera.stream);
+  if (sigmas)
+    known.uncertainty = readLensUncertainty(*sigmas, map.find("intrinsics_correlation"), known.camera);
+  camera.intrinsics = known.camera;
+  camera.intrinsics_uncertainty = known.uncertainty;
+  Resolution& own = camera.intrinsics->resolution_px;
+  if (!own.known()) own = camera.resolution_px;
+  if (!camera.resolution_px.known()) camera.resolution_px = own;
+  if (own != camera.resolution_px)
+    throw intrinsics->error(
+        fmt::format("is for {} x {} px, but resolution_px is {} x {}", own.width_px, own.height_px,
+                    camera.resolution_px.width_px, camera.resolution_px.height_px),
+        "Use intrinsics of this camera at this resolution");
+  return camera;
+}
+
+void setFromNode(const YamlNode& node, const std::string& key, SessionImu& imu) {
+  try {
+    setInImu(imu, key, node.text());
+  } catch (const CalibrationError& problem) {
+    throw node.error(problem.problem(), problem.advice());
+  }
+}
+
+SessionImu readImu(const YamlNode& map, const std::string& imu_name, const SessionFolder& folder) {
+  map.allowOnly({"recording", "stream", "gyroscope", "accelerometer", "clock_offset_s", "clock_scale",
+                 "columns", "accelerometer_noise_density", "gyroscope_noise_density",
+                 "accelerometer_random_walk", "gyroscope_random_walk", "acceleration_unit",
+                 "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
+  SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
+  imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
+  imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  if (const auto node = map.find("accelerometer_random_walk"))
+    imu.noise.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+  if (const auto node = map.find("gyroscope_random_walk"))
+    imu.noise.gyroscope_random_walk = node->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
+  for (const char* const key :
+       {"acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"})
+    if (const auto node = map.find(key)) setFromNode(*node, key, imu);
+  return imu;
+}
+
+// Groups, and what groups are parts of: "optimisation" of "optimisation.solver".
+std::vector<std::string> groupNames() {
+  std::vector<std::string> names;
+  for (const OptionSection& section : optionSections()) {
+    for (std::size_t end = section.name.find('.'); end != std::string::npos;
+         end = section.name.find('.', end + 1))
+      if (std::string whole = section.name.substr(0, end);
+          std::find(names.begin(), names.end(), whole) == names.end())
+        names.push_back(std::move(whole));
+    names.push_back(section.name);
+  }
+  return names;
+}
+
+// Both `grid: {least_sine: 0.5}` and `grid.least_sine: 0.5`.
+void setOptions(const YamlNode& map, const std::string& group, CalibrationOptions& options) {
+  for (const std::string& key : map.keys()) {
+    const YamlNode value = map[key];
+    const std::string name = group.empty() ? key : group + "." + key;
+    if (!value.isMap()) {
+      setFromSession(value, options, name);
+      continue;
+    }
+    const std::vector<std::string> groups = groupNames();
+    if (std::find(groups.begin(), groups.end(), name) == groups.end())
+      throw value.error("no such group of options", nameAdvice(name, groups));
+    setOptions(value, name, options);
+  }
+}
+
+void readOptions(const YamlNode& map, CalibrationOptions& options) {
+  if (map.isNull()) return;
+  setOptions(map, "", options);
+  try {
+    validate(options);
+  } catch (const OptionConflict& conflict) {
+    throw map.error(conflict.problem(), conflict.advice());
+  }
+}
+
+void readSensors(const YamlNode& root, const SessionFolder& folder, Session& session) {
+  const YamlNode cameras = root["cameras"];
+  for (const std::string& key : cameras.keys())
+    session.cameras.push_back(readCamera(cameras[key], key, folder));
+  if (session.cameras.empty()) throw cameras.error("is empty", "Describe at least one camera");
+  if (const auto imus = root.find("imus"); imus && !imus->isNull())
+    for (const std::string& key : imus->keys()) session.imus.push_back(readImu((*imus)[key], key, folder));
+  if (const auto node = root.find("reference"))
+    session.reference = node->text();
+  else
+    session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
+}
+
+// Cameras of one sensor share lens and pose, or, all of them, are compared.
+void readSharing(const YamlNode& cameras, Session& session) {
+  std::optional<bool> checked;
+  for (const SessionCamera& camera : session.cameras) {
+    const YamlNode map = cameras[camera.name];
+    const auto node = map.find("same_sensor_check");
+    if (node && camera.same_sensor_as.empty())
+      throw node->error("says nothing without same_sensor_as", "Name the other camera there, or remove this");
+    if (camera.same_sensor_as.empty()) continue;
+    const bool check = node && node->choice({"false", "true"}) == 1;
+    if (checked && *checked != check)
+      throw node.value_or(map).error("is not the same for all cameras that share a sensor",
+                                     "Check all of them, or none");
+    checked = check;
+  }
+  if (checked && *checked) session.options.optimisation.share_sensors = false;
+}
+
+// Where on earth it was recorded.
+void readGravity(const YamlNode& map, CalibrationOptions& options) {
+  map.allowOnly({"latitude_deg", "height_m"});
+  const double latitude_deg = map["latitude_deg"].real(-90.0, 90.0, "deg");
+  const auto height = map.find("height_m");
+  const double height_m = height ? height->real(-1000.0, 10000.0, "m") : 0.0;
+  options.initialisation.gravity_m_s2 = normalGravity_m_s2(latitude_deg, height_m);
+  options.optimisation.gravity_norm_sigma_m_s2 = kGravityAnomaly_m_s2;
+}
+
+void readPriors(const YamlNode& map, Session& session) {
+  map.allowOnly({"time_offset_search_s", "gravity_norm_m_s2", "gravity_norm_std_m_s2", "cameras", "imus"});
+  if (const auto node = map.find("time_offset_search_s"))
+    setFromSession(*node, session.options, "initialisation.time_offset_search_s");
+  const auto gravity_std = map.find("gravity_norm_std_m_s2");
+  if (const auto node = map.find("gravity_norm_m_s2")) {
+    setFromSession(*node, session.options, "initialisation.gravity_m_s2");
+    session.options.optimisation.free_gravity_norm = gravity_std.has_value();  // else it is given
+  }
+  if (gravity_std) setFromSession(*gravity_std, session.options, "optimisation.gravity_norm_sigma_m_s2");
+  readSensorPriors(map, session);
+}
+
+// One, or of a blinking board several.
+void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& session) {
+  if (!node.isSequence()) {
+    session.recording = recordingBeside(node, folder);
+    return;
+  }
+  const std::vector<YamlNode> items = node.items();
+  if (items.empty()) throw node.error("is empty", "Name a recording");
+  session.recording = recordingBeside(items.front(), folder);
+  for (std::size_t k = 1; k < items.size(); ++k)
+    session.more_recordings.push_back(recordingBeside(items[k], folder));
+}
+
+void checkSessionRoot(const YamlNode& root) {
+  if (!root.isMap() || !root.has("evical_session"))
+    throw root.error("is no session file: the key evical_session is missing",
+                     "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
+  root.allowOnly({"evical_session", "recording", "recordings", "time_range_s", "board", "boards", "gravity",
+                  "cameras", "imus", "reference", "prior", "options", "export"});
+  root["evical_session"].integer(1, 1);
+}
+
+// All but its recording, which `read_recording` fills in.
+template <class ReadRecording>
+Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file,
+                    const ReadRecording& read_recording) {
+  Session session;
+  session.source = file;
+  read_recording(session);
+  if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
+  if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
+  readSensors(root, folder, session);
+  readBoards(root, folder.path, session);
+  if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
+  if (const auto node = root.find("options")) readOptions(*node, session.options);
+  readSharing(root["cameras"], session);
+  if (const auto node = root.find("export"); node && !node->isNull())
+    for (const YamlNode& item : node->items())
+      session.exports.emplace_back(exportTarget(item.text(), item.place()).name);
+  validate(session, file.string());
+  return session;
+}
+
+Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file) {
+  checkSessionRoot(root);
+  if (const auto several = root.find("recordings"))
+    throw several->error("lists recordings that are calibrated one by one",
+                         "Give it to 'evical repeat', or name one as recording");
+  return sessionFrom(root, folder, file,
+                     [&](Session& session) { readRecordings(root["recording"], folder, session); });
+}
+
+}  // namespace
+
+Session readSession(const std::filesystem::path& file) {
+  return oneSessionFrom(YamlNode::load(file), {file.parent_path()}, file);
+}
+
+std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
+  const YamlNode root = YamlNode::load(file);
+  checkSessionRoot(root);
+  const auto several = root.find("recordings");
+  if (!several) return {readSession(file)};
+  if (root.has("recording"))
+    throw several->error("is there beside recording", "Keep one of the two: recordings lists them all");
+  const SessionFolder folder{file.parent_path()};
+  std::vector<Session> sessions;
+  for (const YamlNode& item : several->items())
+    sessions.push_back(sessionFrom(
+        root, folder, file, [&](Session& session) { session.recording = recordingBeside(item, folder); }));
+  if (sessions.empty()) throw several->error("is empty", "Name two recordings or more");
+  for (const Session& session : sessions) {
+    const auto hasOwn = [](const auto& sensor) { return !sensor.recording.empty(); };
+    if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
+        std::any_of(session.imus.begin(), session.imus.end(), hasOwn))
+      throw several->error("lists recordings, but a sensor has one of its own",
+                           "Write a session for each, and give 'evical repeat' all of them");
+  }
+  return sessions;
+}
+
+Session readSessionOfRun(const std::filesystem::path& file) {
+  return oneSessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
+}
+
+Session parseSession(const std::string& yaml, const std::filesystem::path& folder) {
+  return oneSessionFrom(YamlNode::parse(yaml, "session"), {folder, true}, {});
+}
+
+// What a file may not say must not be in what would be written as one.
+void validateMembers(const Session& session) {
+  const std::string place = session.source.empty() ? "session" : session.source.string();
+  static_cast<void>(oneSessionFrom(YamlNode::parse(sessionYaml(session, "."), place), {".", true}, place));
+}
+
+}  // namespace evical

@@ -1,0 +1,236 @@
+#include "core/pipeline/simulate/simulation.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/base/new_folder.h"
+#include "core/base/time.h"
+#include "core/frames/picture_file.h"
+#include "core/pipeline/simulate/simulated_cameras.h"
+#include "core/recording/recording_writer.h"
+#include "core/synthetic/frame_simulator.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace evical {
+namespace {
+
+std::vector<StreamInfo> streamsOf(const Scenario& scenario) {
+  std::vector<StreamInfo> streams;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    if (camera.frames) continue;
+    StreamInfo info;
+    info.name = camera.stream;
+    info.type = StreamType::Events;
+    info.resolution_px = camera.intrinsics.resolution_px;
+    streams.push_back(info);
+  }
+  for (const SimulatedImu& imu : scenario.imus) {
+    StreamInfo info;
+    info.name = imu.stream;
+    info.type = StreamType::Imu;
+    streams.push_back(info);
+  }
+  return streams;
+}
+
+// IMU samples go out alongside the events, as a recorder would write them.
+class ImuFeed {
+ public:
+  ImuFeed(std::size_t stream, std::vector<ImuSample> samples)
+      : stream_(stream), samples_(std::move(samples)) {}
+
+  void writeUntil(std::int64_t time_ns, RecordingWriter& writer) {
+    const std::size_t begin = next_;
+    while (next_ < samples_.size() && samples_[next_].time_ns <= time_ns) ++next_;
+    if (next_ > begin)
+      writer.write(stream_, std::span<const ImuSample>(samples_).subspan(begin, next_ - begin));
+  }
+  void writeRest(RecordingWriter& writer) {
+    if (next_ < samples_.size()) writer.write(stream_, std::span<const ImuSample>(samples_).subspan(next_));
+    next_ = samples_.size();
+  }
+  std::size_t size() const { return samples_.size(); }
+
+ private:
+  std::size_t stream_;
+  std::vector<ImuSample> samples_;
+  std::size_t next_ = 0;
+};
+
+// Of the streams of streamsOf, which not every format calls as the scenario does.
+void takeNames(const std::vector<std::string>& names, Scenario& scenario) {
+  auto name = names.begin();
+  for (SimulatedCamera& camera : scenario.cameras)
+    if (!camera.frames) camera.stream = *name++;
+  for (SimulatedImu& imu : scenario.imus) imu.stream = *name++;
+}
+
+// Whole or not, the folder that it is in is made aside.
+void writePicture(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.flush();
+  if (!file)
+    throw calibrationFailed(path.string(), fmt::format("cannot be written: {}", std::strerror(errno)),
+                            "Check the space on the disk");
+}
+
+// Frames of all frame cameras: files named by their stamps in ns, as Kalibr wants them.
+// `start_ns`: the start of the other streams in their files.
+void writeFrames(const Scenario& scenario, std::int64_t start_ns, const std::filesystem::path& folder,
+                 SimulationSummary& summary, const RunContext& context) {
+  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
+    if (!scenario.cameras[k].frames) continue;
+    const std::filesystem::path own = folder / kFramesFolder / scenario.cameras[k].stream;
+    std::filesystem::create_directories(own);
+    const int quality = scenario.cameras[k].frames->jpeg_quality;
+    simulateFrames(
+        scenario, k,
+        [&](const Frame& frame) {
+          const bool lossless = quality == 0;
+          writePicture(own / fmt::format("{}.{}", frame.time_ns - scenario.start_ns + start_ns,
+                                         lossless ? "png" : "jpg"),
+                       lossless ? encodedPng(frame) : encodedJpeg(frame, quality));
+          ++summary.frames;
+        },
+        context);
+  }
+}
+
+// Where all is made until it is whole: in the folder that it is for, so that it can be moved there.
+class Workshop {
+ public:
+  explicit Workshop(const std::filesystem::path& folder) {
+    removeLitterOf(folder / kName);
+    std::string path = (folder / kName).string() + ".part.XXXXXX";
+    if (::mkdtemp(path.data()) == nullptr)
+      throw calibrationFailed(folder.string(), fmt::format("cannot be written to: {}", std::strerror(errno)),
+                              "Check the folder, its permissions and the space on the disk");
+    folder_ = path;
+  }
+  ~Workshop() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  // All that is in it takes its place in `folder`, these two last.
+  void deliver(const std::filesystem::path& folder, const std::string& truth,
+               const std::string& session) const {
+    std::vector<FileMove> moves;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      const std::filesystem::path name = entry.path().filename();
+      if (name != truth && name != session) moves.push_back({entry.path(), folder / name});
+    }
+    moves.push_back({folder_ / truth, folder / truth});
+    moves.push_back({folder_ / session, folder / session});
+    moveFilesWhole(moves);
+  }
+
+ private:
+  static constexpr const char* kName = ".simulation";
+  std::filesystem::path folder_;
+};
+
+// `imu_writer`: the same writer, or one for a separate file with the IMUs.
+void writeRecording(const Scenario& scenario, RecordingWriter& writer, RecordingWriter& imu_writer,
+                    SimulationSummary& summary, const RunContext& context) {
+  const bool apart = &writer != &imu_writer;
+  std::vector<ImuFeed> feeds;
+  std::vector<std::size_t> streams;  // by camera; of frame cameras none is used
+  std::size_t next = 0;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    streams.push_back(next);
+    if (!camera.frames) ++next;
+  }
+  for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
+    feeds.emplace_back(apart ? k : next + k, simulateImu(scenario, k));
+    summary.imu_samples += feeds.back().size();
+  }
+  simulateCameras(
+      scenario,
+      [&](std::size_t camera, EventSpan events) {
+        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, imu_writer);
+        writer.write(streams[camera], events);
+        summary.events += events.size();
+      },
+      context);
+  for (ImuFeed& feed : feeds) feed.writeRest(imu_writer);
+  writer.finish();
+  if (apart) imu_writer.finish();
+}
+
+// Writes what users of Prophesee cameras have: the camera's file, and a table of the IMU next to it.
+void writeApart(const std::filesystem::path& made, const RecordingFormat& format, Scenario& named,
+                SimulationSummary& summary, const RunContext& context) {
+  std::vector<StreamInfo> events = streamsOf(named), imus;
+  const auto is_imu = [](const StreamInfo& stream) { return stream.type == StreamType::Imu; };
+  std::copy_if(events.begin(), events.end(), std::back_inserter(imus), is_imu);
+  std::erase_if(events, is_imu);
+  if (events.size() != 1)
+    throw badInput("--format " + std::string(format.name),
+                   fmt::format("holds the events of one camera, and the scenario has {}", events.size()),
+                   "Choose another format");
+  const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, events);
+  const std::unique_ptr<RecordingWriter> table = createCsv(made.parent_path(), imus);
+  writeRecording(named, *writer, *table, summary, context);
+  std::vector<std::string> names = writer->streamNames();
+  for (const std::string& name : table->streamNames()) names.push_back(name);
+  takeNames(names, named);
+}
+
+}  // namespace
+
+SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
+                           const RunContext& context, const std::string& format_name) {
+  const bool text = scenario.format == SimulatedFormat::Text;
+  const RecordingFormat& format = recordingFormat(!format_name.empty() ? format_name : text ? "text" : "bag");
+  const NewFolder new_folder(folder);
+  const Workshop workshop(folder);
+  SimulationSummary summary;
+  const std::string file = format.isFolder() ? "." : std::string("recording") + format.extension;
+  const std::filesystem::path made = format.isFolder() ? workshop.folder() : workshop.folder() / file;
+  summary.recording = format.isFolder() ? folder : folder / file;
+  summary.session = folder / "session.yaml";
+  summary.truth = folder / "truth.yaml";
+  context.progress.stageStarted("simulate");
+  Scenario named = scenario;
+  const std::vector<StreamInfo> streams = streamsOf(scenario);
+  if (streams.empty()) {
+    summary.recording = folder / kFramesFolder;
+  } else if (format.one_camera) {
+    // These files cannot hold absolute times. The names of frames need at least 12 digits.
+    named.start_ns = 200 * kSecond_ns;
+    writeApart(made, format, named, summary, context);
+  } else {
+    const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);
+    writeRecording(scenario, *writer, *writer, summary, context);
+    takeNames(writer->streamNames(), named);
+  }
+  writeFrames(scenario, named.start_ns, workshop.folder(), summary, context);
+  writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
+  writeFileWhole(workshop.folder() / "session.yaml",
+                 sessionYaml(named, streams.empty() ? kFramesFolder : file,
+                             format.one_camera && !streams.empty() ? "imu.csv" : ""));
+  workshop.deliver(folder, "truth.yaml", "session.yaml");
+  return summary;
+}
+
+}  // namespace evical

@@ -1,0 +1,316 @@
+#include "core/base/error.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/simulate/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_folders.h"
+#include "tests/support/test_program.h"
+
+#include <QTemporaryDir>
+
+#include <cmath>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr std::size_t kEvents = 40'000;
+
+// Steps back in time between packets, over all streams.
+std::int64_t largestStepBack_ns(SessionRecording& recording) {
+  SensorPacket packet;
+  std::int64_t last_ns = recording.start_ns(), largest_ns = 0;
+  while (recording.read(packet)) {
+    const std::int64_t first_ns =
+        packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
+    largest_ns = std::max(largest_ns, last_ns - first_ns);
+    last_ns = first_ns;
+  }
+  return largest_ns;
+}
+
+}  // namespace
+
+class TestSessionRecording : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void init();
+  void oneFile_isReadAsItIs();
+  void twoFiles_areReadTogether();
+  void clockOffset_isAdded();
+  void clockScale_isApplied();
+  void absurdClocks_areRefused();
+  void columns_areThoseOfTheSession();
+  void units_areThoseOfTheSession();
+  void clocksWithoutRelation_areRefused();
+  void missingStream_namesFileAndStreams();
+  void intrinsicsOfAnotherResolution_areRefused();
+  void samplesThatAreNoMeasurements_stayOutside();
+  void strayStamps_moveNeitherBeginningNorEnd();
+  void simulatedRawFiles_haveTheirImuBeside();
+  void simulatedRawFiles_haveFramesOnTheirClock();
+
+ private:
+  std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
+  Recording readSession(std::size_t& imu_sensor) const {
+    SessionRecording recording(session_);
+    imu_sensor = recording.imuSensor(0);
+    Recording all;
+    SensorPacket packet;
+    while (recording.read(packet)) {
+      auto& events = all.events;
+      auto& samples = all.imu_samples;
+      if (packet.sensor == 0) events.insert(events.end(), packet.events.begin(), packet.events.end());
+      if (packet.sensor == 1)
+        samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
+    }
+    return all;
+  }
+  // Events in one bag, IMU samples in another.
+  void useTwoFiles() {
+    const std::vector<StreamInfo> streams = sampleStreams();
+    Recording events = written_, samples = written_;
+    events.imu_samples.resize(1);
+    samples.events.resize(1);
+    writeAll(*createBag(path("events.bag"), streams, false), events);
+    writeAll(*createBag(path("imu.bag"), streams, false), samples);
+    session_.recording = path("events.bag");
+    session_.imus[0].recording = path("imu.bag");
+  }
+
+  QTemporaryDir folder_;
+  Recording written_ = sampleRecording(kEvents);
+  Session session_;
+};
+
+void TestSessionRecording::init() {
+  session_ = {};
+  SessionCamera camera;
+  camera.name = "camera";
+  camera.stream = "/dvs/events";
+  SessionImu imu;
+  imu.name = "imu";
+  imu.stream = "/dvs/imu";
+  session_.cameras = {camera};
+  session_.imus = {imu};
+  session_.recording = path("whole.bag");
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), written_);
+}
+
+void TestSessionRecording::oneFile_isReadAsItIs() {
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(imu_sensor, std::size_t{1});
+  QVERIFY(same(read.events, written_.events));
+  QVERIFY(same(read.imu_samples, written_.imu_samples));
+  SessionRecording recording(session_);
+  QCOMPARE(qint64(recording.start_ns()), qint64(written_.events.front().time_ns));
+  QVERIFY((recording.resolution_px(0) == Resolution{346, 260}));
+}
+
+void TestSessionRecording::twoFiles_areReadTogether() {
+  useTwoFiles();
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QVERIFY(same(read.events, written_.events));
+  QVERIFY(same(read.imu_samples, written_.imu_samples));
+  SessionRecording recording(session_);
+  QVERIFY(largestStepBack_ns(recording) < 20'000'000);
+  QCOMPARE(recording.fractionRead(), 1.0);
+}
+
+void TestSessionRecording::clockOffset_isAdded() {
+  useTwoFiles();
+  session_.imus[0].clock_offset_s = -0.25;
+  session_.cameras[0].clock_offset_s = 1e-6;
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(qint64(read.imu_samples[7].time_ns), qint64(written_.imu_samples[7].time_ns - 250'000'000));
+  QCOMPARE(qint64(read.events[7].time_ns), qint64(written_.events[7].time_ns + 1000));
+  QCOMPARE(qint64(SessionRecording(session_).start_ns()), qint64(read.imu_samples.front().time_ns));
+}
+
+// Counted from the sensor's first stamp; the offset is added then.
+void TestSessionRecording::clockScale_isApplied() {
+  useTwoFiles();
+  session_.imus[0].clock_scale = 0.5;
+  session_.imus[0].clock_offset_s = 0.25;
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  const std::int64_t first_ns = written_.imu_samples.front().time_ns;
+  QCOMPARE(qint64(read.imu_samples[0].time_ns), qint64(first_ns + 250'000'000));
+  QVERIFY(std::abs(read.imu_samples[30].time_ns -
+                   (first_ns + (written_.imu_samples[30].time_ns - first_ns) / 2 + 250'000'000)) <= 1);
+  QVERIFY(same(read.events, written_.events));
+}
+
+void TestSessionRecording::absurdClocks_areRefused() {
+  useTwoFiles();
+  session_.imus[0].clock_offset_s = 4.5e9;  // from 2020 on that is in the year 2162
+  QVERIFY_EXCEPTION_THROWN(SessionRecording recording(session_), CalibrationError);
+}
+
+void TestSessionRecording::columns_areThoseOfTheSession() {
+  std::string table = "t_us,ax,ay,az,gx,gy,gz\n";
+  for (int i = 0; i < 100; ++i)
+    table += std::to_string(1'600'000'000'123'456 + 5000 * i) + ",1,2,3,7,8,9.8\n";
+  writeFile(path("table.csv"), table);
+  session_.imus[0].recording = path("table.csv");
+  session_.imus[0].stream = "table.csv";
+  session_.imus[0].columns = "t_us,gz,gy,gx,ax,ay,az";
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  while (recording.read(packet) && packet.imu_samples.empty()) {
+  }
+  QVERIFY(!packet.imu_samples.empty());
+  QVERIFY((packet.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(3, 2, 1)));
+  QVERIFY((packet.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(7, 8, 9.8)));
+}
+
+void TestSessionRecording::units_areThoseOfTheSession() {
+  session_.imus[0].acceleration_unit = AccelerationUnit::MinusGravity;
+  session_.imus[0].angular_rate_unit = AngularRateUnit::DegreesPerSecond;
+  std::size_t imu_sensor = 0;
+  const ImuSample read = readSession(imu_sensor).imu_samples.at(3), &written = written_.imu_samples.at(3);
+  QVERIFY((read.specific_force_m_s2 + 9.80665 * written.specific_force_m_s2).norm() < 1e-12);
+  QVERIFY((kDegPerRad * read.angular_rate_rad_s - written.angular_rate_rad_s).norm() < 1e-12);
+}
+
+void TestSessionRecording::clocksWithoutRelation_areRefused() {
+  useTwoFiles();
+  Recording samples = written_;
+  samples.events.resize(1);
+  const std::int64_t start_ns = written_.events.front().time_ns;
+  for (ImuSample& sample : samples.imu_samples) sample.time_ns -= start_ns;
+  samples.events[0].time_ns = 0;
+  writeAll(*createBag(path("imu.bag"), sampleStreams(), false), samples);
+  try {
+    SessionRecording recording(session_);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(QString(error.what()).contains("imu.bag"));
+    QVERIFY2(QString(error.what()).contains("1600000000.12"), error.what());
+  }
+  session_.imus[0].clock_offset_s = 1e-9 * static_cast<double>(start_ns);  // what it advised
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QVERIFY(std::abs(read.imu_samples.front().time_ns - written_.imu_samples.front().time_ns) < 1000);
+}
+
+void TestSessionRecording::missingStream_namesFileAndStreams() {
+  useTwoFiles();
+  session_.imus[0].stream = "/dvs/imo";
+  try {
+    SessionRecording recording(session_);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(error.kind() == ErrorKind::BadInput);
+    QVERIFY(QString(error.what()).contains("imu.bag"));
+    QVERIFY(QString(error.what()).contains("/dvs/imu"));
+  }
+}
+
+void TestSessionRecording::intrinsicsOfAnotherResolution_areRefused() {
+  CameraIntrinsics intrinsics;
+  intrinsics.resolution_px = {640, 480};
+  intrinsics.focal_length_px = {500.0, 500.0};
+  intrinsics.principal_point_px = {320.0, 240.0};
+  session_.cameras[0].intrinsics = intrinsics;
+  try {
+    SessionRecording(session_).resolution_px(0);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(error.kind() == ErrorKind::BadInput);
+    QVERIFY2(QString(error.what()).contains("for 640 x 480 px, but the recording is of 346 x 260"),
+             error.what());
+  }
+}
+
+void TestSessionRecording::samplesThatAreNoMeasurements_stayOutside() {
+  Recording spoilt = written_;
+  spoilt.imu_samples[5].specific_force_m_s2.x() = std::nan("");
+  spoilt.imu_samples[9].angular_rate_rad_s.z() = 1e22;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(read.imu_samples.size(), written_.imu_samples.size() - 2);
+  QCOMPARE(qint64(read.imu_samples[5].time_ns), qint64(written_.imu_samples[6].time_ns));
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  while (recording.read(packet)) continue;
+  QCOMPARE(recording.faults().size(), std::size_t{1});
+  const RecordingFault fault = recording.faults().front();
+  QVERIFY(fault.kind == FaultKind::NotFinite);
+  QCOMPARE(fault.stream, std::string("/dvs/imu"));
+  QVERIFY2(fault.text.find("2 IMU samples left out") != std::string::npos, fault.text.c_str());
+}
+
+void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
+  constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
+  Recording spoilt = written_;
+  spoilt.events.front().time_ns = 0;
+  spoilt.events[20'000].time_ns += kDay_ns;
+  spoilt.events.back().time_ns += kDay_ns;
+  spoilt.imu_samples.front().time_ns = 0;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
+  SessionRecording recording(session_);
+  // Of the sensor whose stamps are believed first.
+  const std::int64_t late_ns = recording.start_ns() - written_.events[1].time_ns;
+  QVERIFY2(late_ns >= 0 && late_ns < 10'000'000, qPrintable(QString::number(late_ns)));
+  std::size_t events = 0, samples = 0;
+  SensorPacket packet;
+  while (recording.read(packet)) {
+    for (const Event& event : packet.events)
+      QVERIFY(event.time_ns >= written_.events.front().time_ns &&
+              event.time_ns <= written_.events.back().time_ns);
+    events += packet.events.size();
+    samples += packet.imu_samples.size();
+  }
+  QCOMPARE(events, written_.events.size() - 3);
+  QCOMPARE(samples, written_.imu_samples.size() - 1);
+  QCOMPARE(recording.faults().size(), std::size_t{2});
+  QVERIFY(recording.faults().front().kind == FaultKind::Corrupt);
+  QVERIFY2(recording.faults().front().text.find("3 events left out") != std::string::npos,
+           recording.faults().front().text.c_str());
+}
+
+void TestSessionRecording::simulatedRawFiles_haveFramesOnTheirClock() {
+  Scenario scenario = readScenario(test::scenarioPath("davis346_frames"));
+  scenario.duration_s = 0.5;
+  const Session session =
+      evical::readSession(simulate(scenario, path("frames"), RunContext{}, "raw").session);
+  SessionRecording recording(session);  // refuses clocks that have nothing to do with each other
+  std::uint64_t frames = 0;
+  SensorPacket packet;
+  while (recording.read(packet)) frames += packet.frames.size();
+  QVERIFY(frames > 3);
+}
+
+// Users of Prophesee cameras have these two files. Both are on one clock and hold everything that was simulated.
+void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
+  scenario.duration_s = 0.5;
+  for (const char* const format : {"raw", "dat"}) {
+    const SimulationSummary made = simulate(scenario, path(format), RunContext{}, format);
+    QCOMPARE(made.recording, path(format) / (std::string("recording.") + format));
+    const Session session = evical::readSession(made.session);
+    QCOMPARE(session.imus.at(0).recording.filename(), std::filesystem::path("imu.csv"));
+    SessionRecording recording(session);
+    std::uint64_t events = 0, samples = 0;
+    SensorPacket packet;
+    while (recording.read(packet)) {
+      events += packet.events.size();
+      samples += packet.imu_samples.size();
+    }
+    QVERIFY(events > 10'000);
+    QCOMPARE(events, made.events);
+    QCOMPARE(samples, made.imu_samples);
+    QVERIFY(recording.faults().empty());
+  }
+}
+
+EVICAL_TEST(TestSessionRecording)
+#include "tst_session_recording.moc"

@@ -1,0 +1,78 @@
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
+
+#include <cmath>
+#include <vector>
+
+using namespace evical;
+using namespace evical::test;
+
+class TestViewRejection : public QObject {
+  Q_OBJECT
+
+  SimulatedPass simulated_;
+
+ private slots:
+  void initTestCase() { simulated_ = simulatePass(4.0); }
+
+  void views_areGoneAndTheOthersStayInOrder() {
+    const std::vector<BoardView>& before = simulated_.pass.cameras[0].views;
+    const int last = static_cast<int>(before.size()) - 1;
+    const RecordingPass kept = withoutViews(simulated_.pass, 0, std::vector{last, 0, 3, 3});
+    const std::vector<BoardView>& after = kept.cameras[0].views;
+    QCOMPARE(after.size(), before.size() - 3);
+    QCOMPARE(after[0].time_s, before[1].time_s);
+    QCOMPARE(after[2].time_s, before[4].time_s);
+    QCOMPARE(after[2].circles.size(), before[4].circles.size());
+    QCOMPARE(after.back().time_s, before[before.size() - 2].time_s);
+    QCOMPARE(kept.cameras[0].windows.size(), simulated_.pass.cameras[0].windows.size());
+    QCOMPARE(kept.imus[0].samples.size(), simulated_.pass.imus[0].samples.size());
+  }
+
+  void noViews_leaveThePassAsItWas() {
+    const RecordingPass kept = withoutViews(simulated_.pass, 0, {});
+    QCOMPARE(kept.cameras[0].views.size(), simulated_.pass.cameras[0].views.size());
+  }
+
+  void rejectedViews_comeBackAsTheyWere() {
+    const std::vector<BoardView>& before = simulated_.pass.cameras[0].views;
+    const RecordingPass without = withoutViews(simulated_.pass, 0, std::vector{5, 2, 9});
+    QCOMPARE(rejectedTimes_s(without)[0],
+             (std::vector{before[2].time_s, before[5].time_s, before[9].time_s}));
+    // One of them back, and another one left out.
+    const RecordingPass changed =
+        withRejected(without, {{before[2].time_s, before[3].time_s, before[9].time_s}});
+    QCOMPARE(rejectedTimes_s(changed)[0],
+             (std::vector{before[2].time_s, before[3].time_s, before[9].time_s}));
+    QCOMPARE(changed.cameras[0].views.size(), before.size() - 3);
+    QCOMPARE(changed.cameras[0].views[3].time_s, before[5].time_s);
+    QCOMPARE(changed.cameras[0].views[3].circles.size(), before[5].circles.size());
+    const RecordingPass all = withRejected(changed, {{}});
+    QCOMPARE(all.cameras[0].views.size(), before.size());
+    for (std::size_t k = 0; k < all.cameras[0].windows.size(); ++k)
+      QCOMPARE(all.cameras[0].windows[k].outcome, simulated_.pass.cameras[0].windows[k].outcome);
+  }
+
+  void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
+    // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier
+    // test to drop the window.
+    RecordingPass spoilt = simulated_.pass;
+    std::vector<int> bad;
+    for (int view = 20; view < 60; view += 2) {
+      bad.push_back(view);
+      for (CircleObservation& circle : spoilt.cameras[0].views[static_cast<std::size_t>(view)].circles)
+        circle.centre_px += Eigen::Vector2d(0.15, 0.1);
+    }
+    const CalibrationRun with = calibrate(simulated_.session, spoilt, {});
+    const CalibrationRun without = calibrate(simulated_.session, withoutViews(spoilt, 0, bad), {});
+    const CalibrationRun clean = calibrate(simulated_.session, withoutViews(simulated_.pass, 0, bad), {});
+    QVERIFY(without.result.cameras[0].reprojection_rms_px < 0.9 * with.result.cameras[0].reprojection_rms_px);
+    const double rms_px = clean.result.cameras[0].reprojection_rms_px;
+    QVERIFY(std::abs(without.result.cameras[0].reprojection_rms_px - rms_px) < 1e-6 * rms_px);
+  }
+};
+
+EVICAL_TEST(TestViewRejection)
+#include "tst_view_rejection.moc"

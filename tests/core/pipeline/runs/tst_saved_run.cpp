@@ -1,0 +1,267 @@
+// A run that was written opens again with all that was in it; a folder that is damaged or of an older version shows
+// what it has, and says what it lacks.
+#include "core/base/error.h"
+#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
+#include "core/report/result_yaml.h"
+#include "tests/support/file_content.h"
+#include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
+
+#include <QTemporaryDir>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+void writeForSavedRun(const std::filesystem::path& path, const QByteArray& content) {
+  QFile file(QString::fromStdString(path.string()));
+  QVERIFY(file.open(QIODevice::WriteOnly));
+  file.write(content);
+}
+
+QString missingIn(const SavedRun& saved) {
+  QStringList texts;
+  for (const std::string& text : saved.missing) texts << QString::fromStdString(text);
+  return texts.join('\n');
+}
+
+}  // namespace
+
+class TestSavedRun : public QObject {
+  Q_OBJECT
+
+  SimulatedPass simulated_;
+  std::shared_ptr<const CalibrationRun> run_;
+  QTemporaryDir scratch_;
+  static constexpr int kRejected = 5;
+
+  std::filesystem::path scratch() const { return scratch_.path().toStdString(); }
+  std::filesystem::path result() const { return scratch() / "result"; }
+  std::filesystem::path copy(const char* name) const {
+    std::filesystem::copy(result(), scratch() / name, std::filesystem::copy_options::recursive);
+    return scratch() / name;
+  }
+
+ private slots:
+  void initTestCase() {
+    simulated_ = simulatePass(5.0);
+    writeForSavedRun(scratch() / "recording.bag", "a recording");
+    simulated_.session.recording = scratch() / "recording.bag";
+    simulated_.session.options.optimisation.max_iterations += 1;
+    const RecordingPass pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
+    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, pass, {}));
+    std::filesystem::create_directories(result());
+    writeResultFiles(result(), simulated_.session, run_, "test", "the log\n");
+  }
+
+  void run_isReadBackBitByBit() {
+    const SavedRun saved = readSavedRun(result());
+    QVERIFY2(saved.missing.empty(), qPrintable(missingIn(saved)));
+    QVERIFY(runData(*saved.run) == runData(*run_));
+    QCOMPARE(static_cast<int>(saved.run->pass.rejected_views.at(0).size()), kRejected);  // to be taken back
+    const CalibrationResult& result = saved.run->result;
+    QVERIFY(result.circle_residuals.size() > 1000);
+    QVERIFY(result.iterations.size() > 3 && !result.state.imu_in_world_m.control_points.empty());
+    QVERIFY(saved.run->pass.imus[0].samples.size() == run_->pass.imus[0].samples.size());
+    QCOMPARE(sessionYaml(saved.session, "/"), sessionYaml(simulated_.session, "/"));
+    QVERIFY(QString::fromStdString(saved.log).startsWith("the log"));
+    const NamedResult before = namedRun(simulated_.session, run_, "test"),
+                      after = namedRun(saved.session, saved.run, "test");
+    QCOMPARE(resultYaml(after), resultYaml(before));
+  }
+
+  void file_opensItsFolder() {
+    QVERIFY(isSavedRun(result()) && isSavedRun(result() / "result.yaml"));
+    QVERIFY(!isSavedRun(scratch()) && !isSavedRun(scratch() / "recording.bag"));
+    QVERIFY(runData(*readSavedRun(result() / "result.yaml").run) == runData(*run_));
+  }
+
+  // The log of a run says the same; it is the caller's.
+  void rejectedWindows_areCountedAndNamedAlike() {
+    const CameraFit& fit = run_->result.cameras[0];
+    QCOMPARE(fit.windows_rejected, kRejected);
+    const auto views = static_cast<int>(run_->pass.cameras[0].views.size());
+    QCOMPARE(fit.windows_complete + fit.windows_partial, views);
+
+    QMap<QString, int> outcomes;
+    QStringList times;
+    for (const QByteArray& line : evical::test::fileContent(result() / "windows.csv").split('\n')) {
+      const QStringList words = QString::fromUtf8(line).split(',');
+      if (words.size() < 4) continue;
+      ++outcomes[words[3]];
+      if (words[3] == "rejected by hand") times << words[1];
+    }
+    QCOMPARE(outcomes["rejected by hand"], kRejected);
+    QCOMPARE(outcomes["complete"] + outcomes["partial"], views);
+    QCOMPARE(outcomes["complete"], fit.windows_complete);
+
+    const NamedResult read = readResultYaml(result() / "result.yaml");
+    QVERIFY(read.result->rejected_windows == run_->result.rejected_windows);
+    QCOMPARE(read.result->cameras[0].windows_rejected, kRejected);
+    QCOMPARE(static_cast<int>(read.result->rejected_windows.size()), kRejected);
+    for (int k = 0; k < kRejected; ++k) {
+      const RejectedWindow& window = read.result->rejected_windows[static_cast<std::size_t>(k)];
+      QCOMPARE(window.time_s, times[k].toDouble());
+    }
+    const auto says = [](const std::string& note) {
+      return QString::fromStdString(note).contains("a person rejected 5 windows with the board, at");
+    };
+    QVERIFY(std::any_of(read.result->notes.begin(), read.result->notes.end(), says));
+    const QByteArray report = evical::test::fileContent(result() / "report.html");
+    QVERIFY(report.contains("rejected by hand") && report.contains("a person rejected 5 windows"));
+  }
+
+  void durations_areOfThisRun() {
+    RecordingPass before = simulated_.pass;
+    before.read_s = before.detect_s = 1000.0;
+    const Timing timing =
+        calibrate(simulated_.session, withoutViews(before, 0, std::vector{1}), {}).result.timing;
+    QVERIFY(timing.total_s < 500.0);
+    QVERIFY(timing.total_s >= timing.initialise_s + timing.optimise_s);
+  }
+
+  void damagedData_showsWhatIsThere_data() {
+    QTest::addColumn<int>("at_percent");
+    QTest::addColumn<bool>("cut");
+    QTest::addColumn<QString>("said");
+    QTest::addColumn<bool>("has_trajectory");
+    QTest::addColumn<bool>("has_samples");
+    QTest::newRow("flipped early") << 10 << false << "trajectory, convergence and residuals" << false << true;
+    QTest::newRow("flipped late") << 95 << false << "what was found of the board" << true << false;
+    QTest::newRow("cut off") << 90 << true << "what was found of the board" << true << false;
+    QTest::newRow("empty") << 0 << true << "run.data is not there" << false << false;
+  }
+
+  void damagedData_showsWhatIsThere() {
+    QFETCH(const int, at_percent);
+    QFETCH(const bool, cut);
+    QFETCH(const QString, said);
+    QFETCH(const bool, has_trajectory);
+    QFETCH(const bool, has_samples);
+    const std::filesystem::path folder = copy(QTest::currentDataTag());
+    QByteArray data = evical::test::fileContent(folder / "run.data");
+    const qsizetype at = data.size() * at_percent / 100;
+    if (cut)
+      data.truncate(at);
+    else
+      data[at] = static_cast<char>(data[at] ^ 0x10);
+    writeForSavedRun(folder / "run.data", data);
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY2(missingIn(saved).contains(said), qPrintable(missingIn(saved)));
+    const CalibrationResult& result = saved.run->result;
+    QCOMPARE(!result.state.imu_in_world_m.control_points.empty(), has_trajectory);
+    QCOMPARE(!saved.run->pass.imus.empty(), has_samples);
+    QVERIFY(result.status == run_->result.status);
+    const double moved_m = (result.state.cameras[0].reference_from_camera.translation_m -
+                            run_->result.state.cameras[0].reference_from_camera.translation_m)
+                               .norm();
+    QVERIFY(moved_m < 1e-9);
+    // Views come from the tables where the data lacks them.
+    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());
+    QCOMPARE(saved.run->pass.cameras[0].windows.size(), run_->pass.cameras[0].windows.size());
+    for (const CircleResidual& r : result.circle_residuals)
+      QVERIFY(static_cast<std::size_t>(r.view) < saved.run->pass.cameras[0].views.size());
+  }
+
+  void olderFolder_hasItsNumbersAndDetections() {
+    const std::filesystem::path folder = copy("older");
+    for (const char* name : {"run.data", "run.yaml", "run_session.yaml"})
+      std::filesystem::remove(folder / name);
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY(missingIn(saved).contains("run_session.yaml"));
+    QCOMPARE(saved.session.cameras.size(), simulated_.session.cameras.size());
+    QCOMPARE(saved.session.board.rows, simulated_.session.board.rows);
+    QCOMPARE(QString::fromStdString(saved.session.recording.filename().string()), QString("recording.bag"));
+    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());
+    QCOMPARE(saved.run->result.uncertainty.names.size(), run_->result.uncertainty.names.size());
+  }
+
+  void numbersOfPeople_mayBeMissing() {
+    const std::filesystem::path folder = copy("without_yaml");
+    std::filesystem::remove(folder / "result.yaml");
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY(missingIn(saved).contains("result.yaml"));
+    QVERIFY(runData(*saved.run) == runData(*run_));
+    std::filesystem::remove(folder / "run.data");
+    QVERIFY_EXCEPTION_THROWN(readSavedRun(folder), CalibrationError);
+  }
+
+  void partsOfTwoRuns_areRefused() {
+    const std::filesystem::path folder = copy("two");
+    Session other = simulated_.session;
+    other.cameras.push_back(other.cameras[0]);
+    other.cameras.back().name = "another";
+    other.cameras.back().stream = "/another";
+    writeForSavedRun(folder / "run_session.yaml", QByteArray::fromStdString(sessionYaml(other, folder)));
+    try {
+      readSavedRun(folder);
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("another run"), error.what());
+    }
+  }
+
+  void recordingThatMovedAlong_isFound() {
+    const std::filesystem::path before = scratch() / "before", after = scratch() / "after";
+    std::filesystem::create_directories(before);
+    std::filesystem::copy(scratch() / "recording.bag", before / "recording.bag");
+    Session session = simulated_.session;
+    session.recording = before / "recording.bag";
+    keepRun(before / "runs" / "one", session, run_, "test", "", 100);
+    std::filesystem::rename(before, after);
+    const SavedRun saved = readSavedRun(after / "runs" / "one");
+    QVERIFY(std::filesystem::equivalent(saved.session.recording, after / "recording.bag"));
+  }
+
+  void recordingThatIsGone_leavesTheRest() {
+    const std::filesystem::path folder = scratch() / "gone";
+    writeForSavedRun(scratch() / "short_lived.bag", "a recording");
+    Session session = simulated_.session;
+    session.recording = scratch() / "short_lived.bag";
+    keepRun(folder, session, run_, "test", "", 100);
+    std::filesystem::remove(session.recording);
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY2(saved.missing.empty(), qPrintable(missingIn(saved)));
+    QCOMPARE(saved.session.recording, session.recording);
+    QVERIFY(runData(*saved.run) == runData(*run_));
+  }
+
+  void list_isNamedComparedAndBounded() {
+    const std::filesystem::path place = scratch() / "list";
+    Session session = simulated_.session;
+    for (int k = 0; k < 4; ++k) {
+      session.options.front_end.grid.least_circles = 8 + k / 2;
+      keepRun(place / std::to_string(k), session, run_, "test", "", 1000 + k);
+    }
+    renameRun(place / "1", "the \"good\": one");
+    std::vector<RunSummary> runs = listRuns(place);
+    QCOMPARE(runs.size(), std::size_t{4});
+    QCOMPARE(QString::fromStdString(runs[1].name), QString("the \"good\": one"));
+    QCOMPARE(runs[3].rejected_windows, kRejected);
+    QCOMPARE(runs[0].made_s, std::int64_t{1000});
+    QVERIFY(differingFrom(runs[0], runs[1]).empty());
+    const std::vector<std::string> differing = differingFrom(runs[1], runs[2]);
+    QCOMPARE(differing.size(), std::size_t{1});
+    QVERIFY2(differing[0].find("least_circles 9 (was ") != std::string::npos, differing[0].c_str());
+
+    writeForSavedRun(place / "2" / "run.yaml", "evical_run: 7\n");
+    QCOMPARE(listRuns(place).size(), std::size_t{3});
+    removeOldRuns(listRuns(place), 2, 1'000'000'000);  // the one with a name stays before the older one
+    runs = listRuns(place);
+    QCOMPARE(runs.size(), std::size_t{2});
+    QVERIFY(runs[0].folder.filename() == "1" && runs[1].folder.filename() == "3");
+    removeOldRuns(runs, 20, 1);  // the newest stays, however large it is
+    QCOMPARE(listRuns(place).size(), std::size_t{1});
+  }
+};
+
+EVICAL_TEST(TestSavedRun)
+#include "tst_saved_run.moc"

@@ -1,0 +1,381 @@
+#include "core/base/error.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session/import_session.h"
+#include "tests/support/test_program.h"
+
+#include <QTemporaryDir>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+using namespace evical;
+
+namespace {
+
+const char* const kEkalibr = R"(Configor:
+  DataStream:
+    EventTopics:
+      - key: /davis_left/events
+        value: {Type: DVS_EVENT, Width: 346, Height: 260, Intrinsics: left.yaml}
+      - key: /davis_right/events
+        value: {Type: DVS_EVENT, Width: 346, Height: 260, Intrinsics: ''}
+    IMUTopics:
+      - key: /davis_left/imu
+        value: {Type: SENSOR_IMU_DEG_G_NEG, AcceWhiteNoise: 0.00186, GyroWhiteNoise: 0.000187}
+      - key: /davis_right/imu
+        value: {Type: SENSOR_IMU, AcceWhiteNoise: 0.002, GyroWhiteNoise: 0.0002}
+    RefIMUTopic: /davis_right/imu
+    BagPath: recording.bag
+    BeginTime: 2
+    Duration: 10
+  Prior:
+    CirclePattern: {Type: ASYMMETRIC_GRID, Cols: 4, Rows: 11, SpacingMeters: 0.05, RadiusRate: 2.5}
+    GravityNorm: 9.79
+    TimeOffsetPadding: 0.1
+    SpatTempPrioriPath: ''
+)";
+
+const char* const kEkalibrLens = R"(Intrinsics:
+  polymorphic_id: 2147483649
+  polymorphic_name: pinhole_brown_t2
+  ptr_wrapper:
+    id: 2147483649
+    data:
+      img_width: 346
+      img_height: 260
+      focal_length: [260.5, 261]
+      principal_point: [171, 132]
+      disto_param: [-0.3, 0.1, 0.01, 0.001, 0.002]
+)";
+
+const char* const kTarget =
+    "target_type: circlegrid\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.05\n"
+    "asymmetricGrid: True\n";
+const char* const kImu =
+    "rostopic: /davis/imu\nupdate_rate: 1000.0\naccelerometer_noise_density: 0.002\n"
+    "accelerometer_random_walk: 0.0004\ngyroscope_noise_density: 0.0003\n"
+    "gyroscope_random_walk: 2.0e-05\n";
+const char* const kCamchain = R"(cam0:
+  T_cam_imu: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  camera_model: pinhole
+  intrinsics: [260, 261, 171, 132]
+  distortion_model: equidistant
+  distortion_coeffs: [0.1, 0.01, 0, 0]
+  resolution: [346, 260]
+  rostopic: /davis/image_raw
+  timeshift_cam_imu: 0.002
+)";
+
+bool has(const std::vector<std::string>& notes, const char* text) {
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+}  // namespace
+
+class TestImportSession : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+  std::filesystem::path write(const char* name, const std::string& text) const {
+    const std::filesystem::path path = std::filesystem::path(scratch_.path().toStdString()) / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  // The session as `evical import` writes it and `evical calibrate` reads it.
+  Session written(const ImportRequest& request, std::vector<std::string>& notes) const {
+    const std::filesystem::path output =
+        std::filesystem::path(scratch_.path().toStdString()) / "session.yaml";
+    const ImportedFiles imported = importFiles(request, output);
+    notes = imported.notes;
+    if (imported.files.size() != 1 || imported.files[0].path != output)
+      throw std::runtime_error("no session");
+    writeFilesWhole(imported.files);
+    return readSession(output);
+  }
+  ImportRequest kalibr() const {
+    return {{write("imu.yaml", kImu), write("camchain.yaml", kCamchain), write("target.yaml", kTarget)},
+            "",
+            write("recording.bag", "bag"),
+            std::nullopt};
+  }
+
+ private slots:
+  // MVSEC's and DM-VIO's camchains hold more than cameras.
+  void furtherKeysOfACamchain_areSaid() {
+    ImportRequest request = kalibr();
+    std::string chain = kCamchain;
+    chain += "T_cam0_lidar: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n";
+    chain.insert(chain.find("  rostopic"),
+                 "  T_imu_cam: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
+    request.files[1] = write("camchain.yaml", chain);
+    std::vector<std::string> notes;
+    QCOMPARE(written(request, notes).cameras.size(), std::size_t{1});
+    QVERIFY(has(notes, "T_cam0_lidar is left out"));
+    QVERIFY(has(notes, "cam0: left out: T_imu_cam"));
+  }
+
+  // A chain of the second and third camera alone.
+  void camchainWithoutCam0_isOne() {
+    std::string chain = kCamchain;
+    chain.replace(chain.find("cam0"), 4, "cam2");
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", chain)}, "", {}, std::nullopt}, "lens.yaml");
+    QCOMPARE(imported.files.size(), std::size_t{1});
+    QVERIFY(imported.files[0].content.find("pinhole_equidistant") != std::string::npos);
+  }
+
+  // Before Kalibr has run there is no camchain.
+  void withoutCamchain_camerasAreThoseOfTheRecording() {
+    ImportRequest request = kalibr();
+    request.files.erase(request.files.begin() + 1);
+    std::string events = "t_s x y p\n";
+    for (int i = 0; i < 2000; ++i) events += fmt::format("{:.6f} {} {} 1\n", 0.001 * i, i % 346, i % 260);
+    request.recording = write("events.txt", events);
+    std::vector<std::string> notes;
+    const Session session = written(request, notes);
+    QCOMPARE(session.cameras.size(), std::size_t{1});
+    QCOMPARE(session.cameras[0].stream, std::string("events.txt"));
+    QVERIFY(!session.cameras[0].intrinsics && session.imus.size() == 1);
+    QVERIFY(has(notes, "its lens is calibrated first"));
+    request.recording.clear();
+    try {
+      importSession(request);
+      QFAIL("imported");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(std::string(error.what()).find("or --recording FILE") != std::string::npos, error.what());
+    }
+  }
+
+  // Files as people report them: imported with these numbers, or refused by what they are.
+  void reportedFiles_areImportedOrNamed_data() {
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<double>("focal_length_px");  // of the first camera; 0: refused
+    QTest::addColumn<QString>("text");            // that the lens, or the refusal, has
+    const auto row = [](const char* file, double focal_length_px, const char* text) {
+      QTest::newRow(file) << QString(file) << focal_length_px << QString(text);
+    };
+    row("camchain_12.yaml", 1049.5, "pinhole_equidistant");
+    row("camchain_fov.yaml", 0.0, "is the fov model");
+    row("oak.json", 0.0, "rational lens");
+    row("ost.txt", 580.46715, "[0.134462, -0.311908, 0.002304, 0.003083]");
+    row("rational.yaml", 0.0, "rational lens");
+    row("ros1_skew.yaml", 0.0, "skew of 4.265 px");
+    row("ros2_echo.yaml", 0.0, "skew of 4.265 px");
+    row("ros_flatd.yaml", 579.31292788, "-0.17473019");
+    row("ros_nomodel.yaml", 538.63, "-0.30678");
+    row("ros_oldmodel.yaml", 580.46715, "0.134462");
+  }
+
+  void reportedFiles_areImportedOrNamed() {
+    const QString folder = qEnvironmentVariable("EVICAL_DATA");
+    if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
+    QFETCH(QString, file);
+    QFETCH(double, focal_length_px);
+    QFETCH(QString, text);
+    const std::filesystem::path path = (folder + "/reports/calibration_files/" + file).toStdString();
+    try {
+      const ImportedFiles imported = importFiles({{path}, "", {}, std::nullopt}, "lens.yaml");
+      QVERIFY2(focal_length_px > 0.0, "imported");
+      const std::string& yaml = imported.files[0].content;
+      QVERIFY2(yaml.find(text.toStdString()) != std::string::npos, yaml.c_str());
+      const CameraIntrinsics lens = readIntrinsics(YamlNode::parse(yaml, "lens.yaml"));
+      QCOMPARE(lens.focal_length_px.x(), focal_length_px);
+    } catch (const CalibrationError& error) {
+      QVERIFY2(focal_length_px == 0.0 && QString(error.what()).contains(text), error.what());
+    }
+  }
+
+  void ekalibr_becomesASession() {
+    write("recording.bag", "bag");
+    write("left.yaml", kEkalibrLens);
+    std::vector<std::string> notes;
+    const Session session = written({{write("config.yaml", kEkalibr)}, "", {}, std::nullopt}, notes);
+    QVERIFY(session.board.rows == 11 && session.board.cols == 4 &&
+            session.board.type == BoardType::AsymmetricCircles);
+    QCOMPARE(session.board.radius_m, 0.02);
+    QCOMPARE(session.cameras.size(), 2U);
+    QCOMPARE(session.cameras[0].name, std::string("davis_left"));
+    QCOMPARE(session.cameras[0].stream, std::string("/davis_left/events"));
+    // k1 k2 k3 t1 t2 there, k1 k2 p1 p2 k3 here.
+    const std::array<double, 5> distortion{-0.3, 0.1, 0.001, 0.002, 0.01};
+    QVERIFY(session.cameras[0].intrinsics->distortion == distortion);
+    QVERIFY(!session.cameras[1].intrinsics && session.cameras[1].resolution_px == (Resolution{346, 260}));
+    QVERIFY(session.imus[0].acceleration_unit == AccelerationUnit::MinusGravity);
+    QVERIFY(session.imus[0].angular_rate_unit == AngularRateUnit::DegreesPerSecond);
+    QVERIFY(session.imus[1].acceleration_unit == AccelerationUnit::MetresPerSecond2);
+    QCOMPARE(session.imus[1].noise.accelerometer_density, 0.002);
+    QCOMPARE(session.reference, std::string("davis_right_imu"));
+    QVERIFY((*session.time_range_s == std::array<double, 2>{2.0, 12.0}));
+    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.1);
+    QCOMPARE(session.options.initialisation.gravity_m_s2, 9.79);
+  }
+
+  void kalibrsOtherTargets_becomeBoards() {
+    const ImportRequest request = kalibr();
+    std::vector<std::string> notes;
+    write("target.yaml",
+          "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\ntagSpacing: 0.3\n");
+    const Board tags = written(request, notes).board;
+    QVERIFY(tags.type == BoardType::AprilGrid && tags.rows == 5 && tags.cols == 6);
+    QVERIFY(std::abs(tags.spacing_m - 0.1144) < 1e-9 && tags.tag_size_m == 0.088);
+    QCOMPARE(tags.pointCount(), 120);
+    QVERIFY((tags.point_m(0) - Eigen::Vector2d(0.0, 4 * 0.1144 + 0.088)).norm() < 1e-9);
+    write("target.yaml",
+          "target_type: 'checkerboard'\ntargetCols: 7\ntargetRows: 6\nrowSpacingMeters: 0.06\n"
+          "colSpacingMeters: 0.06\n");
+    const Board squares = written(request, notes).board;
+    QVERIFY(squares.type == BoardType::Checkerboard && squares.rows == 6 && squares.cols == 7);
+    QCOMPARE(squares.spacing_m, 0.06);
+  }
+
+  void ekalibr_recordingThatIsElsewhere_isSaid() {
+    const ImportedSession imported = importSession(
+        {{write("config.yaml", QString(kEkalibr).replace("recording.bag", "/else/where.bag").toStdString())},
+         "ekalibr",
+         {},
+         std::nullopt});
+    QVERIFY(has(imported.notes, "/else/where.bag does not exist here"));
+  }
+
+  void kalibr_inAnyOrder_becomesASession() {
+    ImportRequest request = kalibr();
+    std::vector<std::string> texts;
+    std::sort(request.files.begin(), request.files.end());
+    do {
+      std::vector<std::string> notes;
+      const Session session = written(request, notes);
+      QCOMPARE(session.cameras[0].name, std::string("cam0"));
+      QVERIFY(session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
+      QCOMPARE(session.imus[0].stream, std::string("/davis/imu"));
+      QCOMPARE(session.imus[0].noise.gyroscope_random_walk, 2e-5);
+      QCOMPARE(session.board.radius_m, 0.02);
+      QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "under prior"));
+      texts.push_back(sessionYaml(session, scratch_.path().toStdString()));
+      QCOMPARE(texts.back(), texts.front());
+    } while (std::next_permutation(request.files.begin(), request.files.end()));
+    QCOMPARE(texts.size(), 6U);
+    request.radius_m = 0.015;
+    QCOMPARE(importSession(request).session.board.radius_m, 0.015);
+  }
+
+  void camchain_alone_becomesIntrinsics() {
+    const std::string two = std::string(kCamchain) + QString(kCamchain).replace("cam0", "cam1").toStdString();
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", two)}, "kalibr", {}, std::nullopt}, "lens.yaml");
+    QCOMPARE(imported.files.size(), 2U);
+    QCOMPARE(imported.files[1].path.string(), std::string("lens-cam1.yaml"));
+    const CameraIntrinsics read = readIntrinsics(YamlNode::parse(imported.files[0].content, "lens"));
+    QCOMPARE(read.focal_length_px.y(), 261.0);
+    QVERIFY(has(imported.notes, "cam0: its pose and time offset are left out"));
+  }
+
+  void camchain_ofADoubleSphere_becomesIntrinsics() {
+    const QString ds = QString(kCamchain)
+                           .replace("camera_model: pinhole", "camera_model: ds")
+                           .replace("[260, 261, 171, 132]", "[-0.2, 0.6, 260, 261, 171, 132]")
+                           .replace("equidistant", "none")
+                           .replace("[0.1, 0.01, 0, 0]", "[]");
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", ds.toStdString())}, "kalibr", {}, std::nullopt}, "lens.yaml");
+    const CameraIntrinsics read = readIntrinsics(YamlNode::parse(imported.files[0].content, "lens"));
+    QCOMPARE(read.model, CameraModel::DoubleSphere);
+    QCOMPARE(read.focal_length_px.y(), 261.0);
+    QCOMPARE(read.distortion, (std::array<double, 5>{-0.2, 0.6, 0.0, 0.0, 0.0}));
+  }
+
+  void badInput_isNamed_data() {
+    QTest::addColumn<QString>("file");  // replaces the one of its name
+    QTest::addColumn<QString>("from");
+    QTest::addColumn<QString>("to");
+    QTest::addColumn<QString>("said");
+    QTest::newRow("model") << "camchain.yaml"
+                           << "camera_model: pinhole"
+                           << "camera_model: scaramuzza"
+                           << "scaramuzza";
+    QTest::newRow("numbers of another model") << "camchain.yaml"
+                                              << "camera_model: pinhole"
+                                              << "camera_model: ds"
+                                              << "distortion_model";
+    QTest::newRow("distortion") << "camchain.yaml"
+                                << "equidistant"
+                                << "fov"
+                                << "fov";
+    QTest::newRow("target") << "target.yaml"
+                            << "circlegrid"
+                            << "dots"
+                            << "'dots' is no target that Evical knows";
+    QTest::newRow("aprilgrid without tags") << "target.yaml"
+                                            << "circlegrid"
+                                            << "aprilgrid"
+                                            << "tagRows";
+    QTest::newRow("symmetric with IMU") << "target.yaml"
+                                        << "True"
+                                        << "False"
+                                        << "turned by 180 degrees";
+    QTest::newRow("noise") << "imu.yaml"
+                           << "gyroscope_noise_density: 0.0003"
+                           << "gyroscope_noise_density: -1"
+                           << "gyroscope_noise_density";
+    QTest::newRow("no target") << "target.yaml" << kTarget << kImu << "Give Kalibr's target file too";
+    QTest::newRow("two camchains") << "target.yaml" << kTarget << kCamchain << "is the second camchain file";
+    QTest::newRow("something else") << "target.yaml" << kTarget << "a: b\n"
+                                    << "no layout that can be imported";
+  }
+  void badInput_isNamed() {
+    QFETCH(QString, file);
+    QFETCH(QString, from);
+    QFETCH(QString, to);
+    QFETCH(QString, said);
+    const ImportRequest request = kalibr();
+    const QString before = file == "imu.yaml" ? kImu : (file == "target.yaml" ? kTarget : kCamchain);
+    QVERIFY(before.contains(from));
+    write(file.toUtf8().constData(), QString(before).replace(from, to).toStdString());
+    try {
+      importFiles(request, "session.yaml");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(QString(error.what()).contains(said), error.what());
+    }
+  }
+
+  void recording_thatNobodyNames_isAskedFor() {
+    ImportRequest request = kalibr();
+    request.recording.clear();
+    try {
+      importFiles(request, "session.yaml");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("--recording FILE"), error.what());
+    }
+  }
+
+  void imuType_thatIsUnknown_isNamed() {
+    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "ANOTHER_IMU").toStdString();
+    try {
+      importSession({{write("config.yaml", text)}, "", {}, std::nullopt});
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("ANOTHER_IMU"), error.what());
+    }
+  }
+
+  // eKalibr's own template names one; the other IMU and the cameras are imported.
+  void imuOfSbg_isLeftOut() {
+    write("recording.bag", "bag");
+    write("left.yaml", kEkalibrLens);
+    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "SBG_IMU").toStdString();
+    std::vector<std::string> notes;
+    const Session session = written({{write("config.yaml", text)}, "", {}, std::nullopt}, notes);
+    QVERIFY(session.imus.size() == 1 && session.imus[0].stream == "/davis_right/imu");
+    QVERIFY(has(notes, "/davis_left/imu is left out"));
+  }
+};
+
+EVICAL_TEST(TestImportSession)
+#include "tst_import_session.moc"
