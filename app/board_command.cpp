@@ -3,8 +3,8 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/report/blink_page.h"
-#include "core/report/board_drawing.h"
+#include "core/printing/blink_page.h"
+#include "core/printing/board_drawing.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "core/base/error.h"
-#include "core/report/export/export_target.h"
-#include "core/report/export/read_back.h"
+#include "core/export/export_target.h"
+#include "core/export/read_back.h"
 
 #include <fmt/format.h>
 

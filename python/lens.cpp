@@ -1,6 +1,6 @@
 // evical.Camera: a lens, from its numbers to points, rays and undistorted events.
 #include "core/base/error.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/undistortion_table.h"

@@ -1,7 +1,7 @@
 #include "core/frames/gray_image.h"
 
 #include "core/base/error.h"
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 #include "core/frames/picture_view.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "core/report/check_report.h"
 
 #include "core/base/yaml_node.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/report/html/html_text.h"
 
 #include <fmt/format.h>

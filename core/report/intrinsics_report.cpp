@@ -1,11 +1,8 @@
 #include "core/report/intrinsics_report.h"
 
 #include "core/base/yaml_node.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/intrinsics_numbers.h"
-#include "core/geometry/lens_fit.h"
-#include "core/geometry/sphere_lens.h"
-#include "core/report/export/kalibr_text.h"
 #include "core/report/result_yaml.h"
 #include "core/report/table_row.h"
 
@@ -33,13 +30,6 @@ std::string list(const double* values, std::size_t count) {
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : ".inf";
-}
-
-std::string coefficients(const CameraIntrinsics& camera, std::size_t count) {
-  std::string text;
-  for (std::size_t k = 0; k < count; ++k)
-    text += fmt::format("{}{}", k == 0 ? "" : ", ", camera.distortion[k]);
-  return "[" + text + "]";
 }
 
 }  // namespace
@@ -126,51 +116,6 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
   for (const std::string& advice : r.advice) text += fmt::format("  - {}\n", yamlText(advice));
   return text + fmt::format("timing_s: {{total: {:.3f}}}\nprogram: {{version: {}}}\n", r.elapsed_s,
                             yamlText(named.version));
-}
-
-namespace {
-
-// What ROS knows of a lens that is no pinhole, and a comment that says so.
-struct RosLens {
-  CameraIntrinsics camera;
-  std::string comment;
-};
-RosLens rosLens(const CameraIntrinsics& camera) {
-  if (!isSphereModel(camera.model)) return {camera, {}};
-  const LensFit fit = fitLens(camera, CameraModel::PinholeEquidistant, 4);
-  return {fit.camera,
-          fmt::format("# ROS has no place for the model {}: refitted as equidistant{}, off by {:.2g} px "
-                      "RMS, {:.2g} px at most\n",
-                      cameraModelName(camera.model), fit.whole_image ? "" : " up to 85 deg off the axis",
-                      fit.rms_px, fit.worst_px)};
-}
-
-}  // namespace
-
-std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& own) {
-  const auto [c, comment] = rosLens(own);
-  const bool radtan = c.model == CameraModel::PinholeRadtan;
-  const std::size_t count = radtan ? 5 : 4;
-  const double fx = c.focal_length_px.x(), fy = c.focal_length_px.y();
-  const double cx = c.principal_point_px.x(), cy = c.principal_point_px.y();
-  return comment +
-         fmt::format(
-             "image_width: {}\nimage_height: {}\ncamera_name: {}\n"
-             "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n"
-             "distortion_model: {}\ndistortion_coefficients:\n  rows: 1\n  cols: {}\n  data: {}\n"
-             "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
-             "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [{}, 0, {}, 0, 0, {}, {}, 0, 0, 0, 1, 0]\n",
-             c.resolution_px.width_px, c.resolution_px.height_px, yamlText(camera), fx, cx, fy, cy,
-             radtan ? "plumb_bob" : "equidistant", count, coefficients(c, count), fx, cx, fy, cy);
-}
-
-std::string camchainYaml(const std::string& stream, const CameraIntrinsics& c) {
-  std::string text;
-  if (c.model == CameraModel::PinholeRadtan && distortionCount(c) == 5)
-    text += fmt::format("# k3 = {} is left out: Kalibr's radtan has no such coefficient\n", c.distortion[4]);
-  return text + fmt::format("cam0:\n{}  resolution: [{}, {}]\n  rostopic: {}\n  cam_overlaps: []\n",
-                            kalibrLensText(c), c.resolution_px.width_px, c.resolution_px.height_px,
-                            yamlText(stream));
 }
 
 std::string intrinsicsTable(const NamedIntrinsics& named) {

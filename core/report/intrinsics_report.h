@@ -1,4 +1,4 @@
-// Calibrated intrinsics as files and as text: our map with sigmas, ROS camera_info, Kalibr camchain, a table.
+// Calibrated intrinsics as text: our YAML map with sigmas, and a table.
 #pragma once
 
 #include "core/data/intrinsics_result.h"
@@ -16,11 +16,8 @@ struct NamedIntrinsics {
   IntrinsicsStory story = {};
 };
 
-// Reads back as intrinsics of a session (core/data/intrinsics_yaml.h).
+// Reads back as intrinsics of a session (core/format/intrinsics_yaml.h).
 std::string intrinsicsResultYaml(const NamedIntrinsics& named);
-// ROS knows pinholes only: others are refitted, and a comment says how well that goes.
-std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& intrinsics);
-std::string camchainYaml(const std::string& stream, const CameraIntrinsics& intrinsics);
 
 // Sigmas fx fy cx cy d0..d4 by the keys of intrinsicsYaml; and intrinsics with them as rows of a table.
 std::string intrinsicsStdYaml(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas,

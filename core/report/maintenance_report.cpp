@@ -1,7 +1,7 @@
 #include "core/report/maintenance_report.h"
 
 #include "core/base/yaml_node.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/report/csv_text.h"
 #include "core/report/html/html_text.h"
 

@@ -1,6 +1,6 @@
 #include "core/synthetic/drive_scenario.h"
 
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/synthetic/scenario_fields.h"

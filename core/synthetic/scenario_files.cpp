@@ -1,6 +1,6 @@
 #include "core/base/yaml_node.h"
-#include "core/data/intrinsics_yaml.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/intrinsics_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/synthetic/board_surface.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"

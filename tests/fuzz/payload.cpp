@@ -1,6 +1,6 @@
 // What stands packed or nested in recordings, without the file around it, which bytes at random seldom get
 // past: event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages, headers of pictures.
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/hdf5/ecf_decoder.h"
 #include "core/recording/ros/event_packet_decoder.h"

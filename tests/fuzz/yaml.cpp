@@ -1,7 +1,7 @@
 // The readers of YAML files, all with the same bytes: sessions, intrinsics,
 // results, scenarios with their boards.
 #include "core/base/error.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 #include "core/synthetic/scenario_yaml.h"

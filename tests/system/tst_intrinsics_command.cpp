@@ -1,6 +1,6 @@
 // `evical intrinsics`, and `evical calibrate` on a session without intrinsics, on a recording with a truth.
 #include "core/base/yaml_node.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What comes before a recording: a board that is printed and measured, and how to move before it.
 #include "core/pipeline/session/session.h"
-#include "core/report/blink_page.h"
-#include "core/report/board_drawing.h"
+#include "core/printing/blink_page.h"
+#include "core/printing/board_drawing.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"

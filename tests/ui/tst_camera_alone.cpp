@@ -3,7 +3,7 @@
 // what is said where that does not go.
 #include "ui/window/main_window.h"
 
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"

@@ -2,7 +2,7 @@
 // What the export dialog proposes, keeps in mind and refuses; what is said afterwards.
 #include "ui/window/export_dialog.h"
 
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "tests/ui/window_fixture.h"

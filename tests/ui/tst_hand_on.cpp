@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person takes out of the window: rows, poses, drawings, charts and tables.
 #include "core/numerics/angles.h"
-#include "core/report/pose_text.h"
+#include "core/export/pose_text.h"
 #include "tests/support/file_content.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording_screen.h"
 
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
 #include "core/pipeline/session/session_guess.h"
 #include "tests/support/test_program.h"

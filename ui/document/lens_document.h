@@ -3,7 +3,7 @@
 // compared with. GUI thread only; knows no widgets. The session is the other document's.
 #pragma once
 
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "ui/document/calibration_aim.h"
 #include "ui/document/calibration_document.h"

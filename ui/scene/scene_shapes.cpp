@@ -2,7 +2,7 @@
 #include "ui/scene/scene_shapes.h"
 
 #include "core/base/error.h"
-#include "core/report/board_squares.h"
+#include "core/printing/board_squares.h"
 
 #include <vtkPointData.h>
 #include <vtkPolyData.h>

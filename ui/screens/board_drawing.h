@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/board.h"
-#include "core/report/board_squares.h"
+#include "core/printing/board_squares.h"
 
 #include <QString>
 #include <QWidget>

@@ -2,7 +2,7 @@
 #include "ui/screens/camera_form.h"
 
 #include "core/base/error.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
 #include "ui/screens/clock_offset_field.h"

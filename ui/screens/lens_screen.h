@@ -3,7 +3,7 @@
 // were, and how far it is from another lens of this camera.
 #pragma once
 
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/lens/lens_comparison.h"
 #include "core/report/intrinsics_report.h"
 

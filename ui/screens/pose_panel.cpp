@@ -3,7 +3,7 @@
 
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/report/pose_text.h"
+#include "core/export/pose_text.h"
 #include "core/report/result_table.h"
 #include "ui/screens/rig_drawing.h"
 #include "ui/theme/theme.h"

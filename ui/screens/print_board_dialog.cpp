@@ -4,7 +4,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/geometry/marker_bits.h"
-#include "core/report/blink_page.h"
+#include "core/printing/blink_page.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board_form.h"
 #include "ui/screens/measured_form.h"

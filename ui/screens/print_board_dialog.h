@@ -5,7 +5,7 @@
 
 #include "core/geometry/board.h"
 #include "core/geometry/measured_length.h"
-#include "core/report/board_sheet.h"
+#include "core/printing/board_sheet.h"
 
 #include <QDialog>
 

@@ -2,7 +2,7 @@
 // A printed sheet as core lays it out, on the screen and on a printer.
 #pragma once
 
-#include "core/report/board_sheet.h"
+#include "core/printing/board_sheet.h"
 
 #include <QWidget>
 

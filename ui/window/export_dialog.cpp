@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/export_dialog.h"
 
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/atomic_file.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "core/report/intrinsics_report.h"
 #include "ui/window/workbench.h"
 

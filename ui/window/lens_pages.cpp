@@ -2,7 +2,7 @@
 #include "ui/window/lens_pages.h"
 
 #include "core/geometry/camera_intrinsics.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/screens/aim_chooser.h"
 #include "ui/screens/lens_screen.h"

@@ -7,7 +7,7 @@
 #include "core/pipeline/runs/saved_run.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/pipeline/simulate/simulation.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/printed_board.h"
 #include "ui/window/page_work.h"

@@ -3,7 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/report/csv_text.h"
 #include "core/report/shown_quantity.h"
 

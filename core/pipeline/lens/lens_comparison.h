@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/intrinsics_result.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 
 #include <array>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "core/pipeline/maintain/maintain_files.h"
 
 #include "core/base/atomic_file.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "core/report/html/maintenance_page.h"
 #include "core/report/maintenance_report.h"
 

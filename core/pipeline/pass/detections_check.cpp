@@ -1,7 +1,7 @@
 #include "core/pipeline/pass/detections_check.h"
 
 #include "core/base/time.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
 #include "core/pipeline/session/given_points.h"
 

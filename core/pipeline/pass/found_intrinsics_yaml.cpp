@@ -1,6 +1,6 @@
 #include "core/pipeline/pass/found_intrinsics_yaml.h"
 
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
 
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 
 #include "core/base/element.h"
 #include "core/base/yaml_node.h"
-#include "core/data/intrinsics_yaml.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/intrinsics_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/pipeline/pass/detections_check.h"
 #include "core/pipeline/pass/found_intrinsics_yaml.h"
 #include "core/pipeline/session/given_points.h"

@@ -8,7 +8,7 @@
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "core/report/html/html_report.h"
 #include "core/report/residuals_csv.h"
 

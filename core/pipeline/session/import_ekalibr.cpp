@@ -1,4 +1,4 @@
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_sources.h"
 
 #include <fmt/format.h>

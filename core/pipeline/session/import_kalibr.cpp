@@ -1,5 +1,5 @@
 #include "core/base/nearest_name.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_sources.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/recording/inspection.h"

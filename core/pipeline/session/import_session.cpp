@@ -1,7 +1,7 @@
 #include "core/pipeline/session/import_session.h"
 
 #include "core/base/nearest_name.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
 #include "core/pipeline/session/import_sources.h"
 

@@ -1,6 +1,6 @@
 #include "core/pipeline/session/import_sources.h"
 
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/pipeline/session/import_session.h"
-#include "core/report/export/read_back/lens_files.h"
+#include "core/foreign/lens_files.h"
 
 #include <optional>
 #include <string>

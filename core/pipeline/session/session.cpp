@@ -2,7 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/nearest_name.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_priors.h"
 #include "core/recording/separate_imu.h"

@@ -1,7 +1,7 @@
 #include "core/pipeline/session/session_priors.h"
 
 #include "core/base/nearest_name.h"
-#include "core/data/quantity_yaml.h"
+#include "core/format/quantity_yaml.h"
 #include "core/data/unit_quaternion.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "core/base/new_folder.h"
 #include "core/numerics/angles.h"
 #include "core/recording/recording_writer.h"
-#include "core/report/export/export_target.h"
+#include "core/export/export_target.h"
 #include "core/synthetic/drive_simulator.h"
 
 #include <algorithm>

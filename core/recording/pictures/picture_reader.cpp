@@ -1,6 +1,6 @@
 #include "core/recording/pictures/picture_reader.h"
 
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 
 #include <fmt/format.h>
 

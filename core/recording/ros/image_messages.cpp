@@ -1,6 +1,6 @@
 #include "core/recording/ros/image_messages.h"
 
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 #include "core/data/recording.h"
 #include "core/recording/ros/message_bytes.h"
 

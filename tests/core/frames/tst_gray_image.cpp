@@ -1,6 +1,6 @@
 // Frames of all formats become brightness, and what is damaged is refused.
 #include "core/base/error.h"
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 #include "core/frames/gray_image.h"
 #include "tests/support/test_program.h"
 

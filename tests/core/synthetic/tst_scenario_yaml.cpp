@@ -1,6 +1,6 @@
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/geometry/so3.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_folders.h"

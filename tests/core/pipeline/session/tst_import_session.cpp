@@ -1,5 +1,5 @@
 #include "core/base/error.h"
-#include "core/data/intrinsics_yaml.h"
+#include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_session.h"
 #include "tests/support/test_program.h"
 

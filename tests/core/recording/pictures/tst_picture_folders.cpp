@@ -1,6 +1,6 @@
 // Folders of pictures in the layouts of data sets and without one: which streams they give, with which times.
 #include "core/base/error.h"
-#include "core/data/picture_header.h"
+#include "core/format/picture_header.h"
 #include "core/recording/conversion.h"
 #include "core/recording/pictures/picture_names.h"
 #include "tests/core/recording/picture_samples.h"

@@ -1,0 +1,60 @@
+#include "core/base/error.h"
+#include "core/export/basalt_text.h"
+#include "core/export/data_set_cameras.h"
+#include "core/export/distortion_fit.h"
+#include "core/export/export_text.h"
+#include "core/export/exporters.h"
+
+#include <fmt/format.h>
+
+namespace evical {
+namespace {
+
+constexpr const char* kTumVieProgram = "TUM-VIE";
+constexpr KnownModels kTumVieModels{kTumVieProgram, false, false,
+                                    true};  // its tools take k1 to k4 of all cameras
+
+// Frame cameras left and right, then event cameras: its tools go by the number. Where a frame camera is missing, the
+// event camera of its side stands there.
+std::vector<RigCamera> inTheirOrder(const DataSetCameras& placed, ExportNotes& notes) {
+  if (!placed.right_event)
+    throw badInput("result", fmt::format("has one event camera, and {} is for stereo", kTumVieProgram),
+                   "Take basalt, whose layout is the same");
+  if (!placed.left_frame || !placed.right_frame)
+    notes.push_back(fmt::format(
+        "{} expects four cameras, of frames first: where the rig has none the event camera of that "
+        "side stands in its place",
+        kTumVieProgram));
+  return {placed.left_frame.value_or(*placed.left_event), placed.right_frame.value_or(*placed.right_event),
+          *placed.left_event, *placed.right_event};
+}
+
+}  // namespace
+
+ExportedFiles exportTumVie(const NamedResult& result) {
+  ExportedFiles exported;
+  Rig rig = rigOf(result);
+  neededImu(rig, kTumVieProgram);
+  DataSetCameras placed = dataSetCameras(rig, kTumVieProgram, exported.notes);
+  for (auto* const camera :
+       {&placed.left_frame, &placed.right_frame, &placed.left_event, &placed.right_event})
+    if (*camera) (*camera)->intrinsics = cameraFor(**camera, kTumVieModels, exported.notes);
+  rig.cameras = inTheirOrder(placed, exported.notes);
+  std::string names;
+  for (const RigCamera& camera : rig.cameras) names += (names.empty() ? "" : ", ") + jsonText(camera.name);
+  exported.files.push_back(
+      {"camera-calibrationA.json", basaltCalibration(rig, kTumVieProgram, exported.notes,
+                                                     fmt::format(",\n    \"camera_names\": [{}]", names))});
+  std::vector<std::string> lines{
+      "Cameras: 0 and 1 are frame cameras, left and right, 2 and 3 event cameras.",
+      "There is no mocap-imu-calibrationA.json: Evical sees no markers of a motion capture system.",
+      "calib_accel_bias and calib_gyro_bias are for raw samples; those of TUM-VIE's imu_data.txt are "
+      "corrected."};
+  const std::vector<std::string> meanings = basaltMeanings(rig.imus.front());
+  lines.insert(lines.end(), meanings.begin(), meanings.end());
+  lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
+  exported.files.push_back({"README.txt", readMe(rig, lines)});
+  return exported;
+}
+
+}  // namespace evical

@@ -1,0 +1,116 @@
+// After JakobEngel/dso, src/util/Undistort.cpp (at 927edc6: getUndistorterForFile, readFromFile), which lukasvst/dm-vio
+// has unchanged; and lukasvst/dm-vio, src/IMU/IMUSettings.cpp (at 432b7af: IMUCalibration::loadFromFile) and
+// src/util/SettingsUtil.cpp (at fcc306b: tryReadFromYaml).
+#include "core/base/error.h"
+#include "core/foreign/read_numbers.h"
+#include "core/foreign/readers.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <sstream>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+struct CameraLines {
+  std::array<std::string, 4> lines;
+  std::string file;
+
+  std::string place(std::size_t line) const { return fmt::format("{} (line {})", file, line + 1); }
+
+  // As many numbers as sscanf takes from the line's beginning.
+  std::vector<double> numbers(std::size_t line, std::size_t count) const {
+    std::istringstream words(lines[line]);
+    std::vector<double> values;
+    for (double value = 0.0; values.size() < count && words >> value;) values.push_back(value);
+    if (values.size() != count) throw badInput(place(line), fmt::format("must have {} numbers", count));
+    return values;
+  }
+
+  Resolution resolution(std::size_t line) const {
+    std::istringstream words(lines[line]);
+    Resolution size;
+    if (!(words >> size.width_px >> size.height_px) || !size.known())
+      throw badInput(place(line), "must have a width and a height");
+    return size;
+  }
+};
+
+CameraLines dmVioLinesOf(const std::filesystem::path& path) {
+  CameraLines read{{}, path.string()};
+  std::istringstream text(textOf(path));
+  for (std::string& line : read.lines)
+    if (!std::getline(text, line)) throw badInput(read.file, "has fewer than four lines");
+  return read;
+}
+
+CameraIntrinsics dsoLensOf(CameraLines read) {
+  const std::size_t name_end = read.lines[0].find(' ');
+  const std::string name = read.lines[0].substr(0, name_end);
+  if (name != "RadTan" && name != "EquiDistant" && name != "KannalaBrandt")
+    throw badInput(read.place(0), fmt::format("lens model '{}' is not supported", name));
+  read.lines[0].erase(0, name_end);
+  const std::vector<double> p = read.numbers(0, 8);
+  if (p[2] < 1.0 && p[3] < 1.0)
+    throw badInput(read.place(0), "has values relative to the image's size",
+                   "Multiply them by width and height, and subtract 0.5 px from the principal point");
+  return lensFrom(name == "RadTan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
+                  {p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, read.resolution(1));
+}
+
+ReadFile readDmVioCamera(const std::filesystem::path& path) {
+  const CameraLines read = dmVioLinesOf(path);
+  const CameraIntrinsics lens = dsoLensOf(read);
+  const std::vector<double> rectified = read.numbers(2, 5);
+  if (rectified[2] > 1.0 || rectified[3] > 1.0)
+    throw badInput(read.place(2), "needs to be relative to the image's size");
+  const Resolution size = read.resolution(3);
+  constexpr int kPyramid_px = 8;  // three levels
+  if (size.width_px % kPyramid_px != 0 || size.height_px % kPyramid_px != 0)
+    throw badInput(read.place(3), "has no three levels of a pyramid");
+  ReadCamera camera;
+  camera.lens = lens;
+  return {path, {camera}};
+}
+
+ReadFile readCamchain(const std::filesystem::path& path) {
+  const YamlNode pose = YamlNode::load(path)["cam0"]["T_cam_imu"];
+  ReadCamera camera;
+  camera.frame_from_camera = inverse(rigidFrom(rowsOf(pose, 4, 4), pose.place()));
+  return {path, {camera}};
+}
+
+ReadFile readNoise(const std::filesystem::path& path) {
+  const YamlNode root = YamlNode::load(path);
+  const auto number = [&](const char* key) { return root[key].real(); };
+  ReadImu imu;
+  imu.noise = {number("gyroscope_noise_density"), number("accelerometer_noise_density"),
+               number("gyroscope_random_walk"), number("accelerometer_random_walk")};
+  ReadFile file{path};
+  file.imus.push_back(imu);
+  return file;
+}
+
+}  // namespace
+
+ReadFile readDsoCameraFile(const std::filesystem::path& path) {
+  ReadFile file{path, {ReadCamera{}}};
+  file.cameras.front().lens = dsoLensOf(dmVioLinesOf(path));
+  return file;
+}
+
+ReadBack readDmVio(const std::filesystem::path& folder) {
+  ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};
+  std::error_code ignored;
+  // DSO alone takes no more than the camera.
+  if (!std::filesystem::exists(folder / "camchain.yaml", ignored) &&
+      !std::filesystem::exists(folder / "noise.yaml", ignored))
+    return read;
+  read.files.push_back(readCamchain(folder / "camchain.yaml"));
+  read.files.push_back(readNoise(folder / "noise.yaml"));
+  return read;
+}
+
+}  // namespace evical

@@ -1,0 +1,46 @@
+// The SDK's own loader is closed; its metavision_mono_calibration writes these keys with OpenCV's FileStorage, and OpenCV
+// reads them here.
+#include "core/base/error.h"
+#include "core/foreign/opencv_file.h"
+#include "core/foreign/read_numbers.h"
+#include "core/foreign/readers.h"
+
+#include <opencv2/core.hpp>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+ReadFile readMetavisionCamera(const std::filesystem::path& path, const std::string& name) {
+  const OpencvFile file(path);
+  const std::vector<double> size = file["image_size"].numbers(2);
+  const Eigen::Matrix3d k = file["camera_matrix"].matrix(3, 3, CV_64F);
+  const Eigen::RowVectorXd distortion = file["distortion_coefficients"].matrix(1, 5, CV_64F);
+  file["overall_rms_reprojection_error"].number();
+  file["n_kept_views"].integer();
+  ReadCamera camera;
+  camera.name = name;
+  camera.lens = lensFrom(CameraModel::PinholeRadtan, {k(0, 0), k(1, 1), k(0, 2), k(1, 2)},
+                         {distortion.begin(), distortion.end()},
+                         {static_cast<int>(size[0]), static_cast<int>(size[1])});
+  return {path, {camera}};
+}
+
+}  // namespace
+
+ReadBack readMetavision(const std::filesystem::path& folder) {
+  const std::string kFile = "intrinsics.json";
+  ReadBack read;
+  read.most_imus = 0;
+  std::error_code ignored;
+  if (std::filesystem::exists(folder / kFile, ignored))
+    read.files.push_back(readMetavisionCamera(folder / kFile, ""));
+  for (const std::filesystem::path& below : filesLike(folder, "", ""))
+    if (std::filesystem::exists(below / kFile, ignored))
+      read.files.push_back(readMetavisionCamera(below / kFile, below.filename().string()));
+  if (read.files.empty()) throw badInput(folder.string(), "has no " + kFile);
+  return read;
+}
+
+}  // namespace evical

@@ -1,0 +1,470 @@
+#include "core/format/intrinsics_yaml.h"
+
+#include "core/base/nearest_name.h"
+#include "core/base/trimmed.h"
+#include "core/data/intrinsics_result.h"
+#include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/sphere_lens.h"
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// Enough for the largest sensors to come, and small enough that width * height fits an int.
+constexpr int kMostPixels = 30000;
+
+Eigen::Vector2d pair(const YamlNode& node) {
+  const std::vector<double> values = node.reals(2);
+  return {values[0], values[1]};
+}
+
+Resolution resolution(const YamlNode& node) {
+  const std::vector<YamlNode> items = node.items();
+  if (items.size() != 2) throw node.error("must be [width, height]");
+  return {items[0].integer(1, kMostPixels), items[1].integer(1, kMostPixels)};
+}
+
+void setDistortion(const YamlNode& node, CameraIntrinsics& camera) {
+  const std::vector<double> values = node.reals();
+  const bool radtan = camera.model == CameraModel::PinholeRadtan;
+  const auto count = static_cast<std::size_t>(coefficientCount(camera.model));
+  if (values.size() != count && !(radtan && values.size() == 4)) {
+    const auto names = distortionNames(camera.model);
+    throw node.error(
+        fmt::format("has {} coefficients", values.size()),
+        radtan ? "Give k1, k2, p1, p2 and if you like k3"
+               : fmt::format("Give {}",
+                             fmt::join(names.begin(), names.begin() + static_cast<int>(count), ", ")));
+  }
+  camera.distortion = {};
+  std::copy(values.begin(), values.end(), camera.distortion.begin());
+}
+
+CameraIntrinsics readOwn(const YamlNode& map) {
+  map.allowOnly({"model", "resolution_px", "focal_length_px", "principal_point_px", "distortion"});
+  CameraIntrinsics camera;
+  camera.model = static_cast<CameraModel>(map["model"].choice(kCameraModelNames));
+  if (const auto node = map.find("resolution_px")) camera.resolution_px = resolution(*node);
+  camera.focal_length_px = pair(map["focal_length_px"]);
+  camera.principal_point_px = pair(map["principal_point_px"]);
+  setDistortion(map["distortion"], camera);
+  return camera;
+}
+
+// The numbers before the focal lengths are the model's own: [xi alpha], [alpha beta], [xi], and none.
+CameraIntrinsics kalibrLens(const YamlNode& node, CameraModel model, std::size_t own) {
+  const std::vector<double> values = node.reals(own + 4);
+  CameraIntrinsics camera;
+  camera.model = model;
+  std::copy_n(values.begin(), own, camera.distortion.begin());
+  camera.focal_length_px = {values[own], values[own + 1]};
+  camera.principal_point_px = {values[own + 2], values[own + 3]};
+  return camera;
+}
+
+CameraIntrinsics readKalibrOmni(const YamlNode& map) {
+  CameraIntrinsics camera = kalibrLens(map["intrinsics"], CameraModel::OmniRadtan, 1);
+  if (map["distortion_model"].choice({"radtan", "none"}) == 1) return camera;
+  const std::vector<double> values = map["distortion_coeffs"].reals(4);
+  std::copy(values.begin(), values.end(), camera.distortion.begin() + 1);
+  return camera;
+}
+
+// The first of these keys that the map has. Without any, the error names the first one.
+YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
+  for (const char* const key : keys)
+    if (const auto node = map.find(key)) return *node;
+  return map[*keys.begin()];
+}
+
+CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
+  if (const YamlNode model = map["distortion_model"]; model.text() == "fov")
+    throw model.error("is the fov model, which Evical does not have",
+                      "Calibrate this camera again with radtan or equidistant");
+  const std::size_t distortion =
+      map["distortion_model"].choice({"radtan", "equidistant", "none", "radial-tangential"});
+  const CameraModel model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
+  CameraIntrinsics camera = kalibrLens(map["intrinsics"], model, 0);
+  if (distortion != 2) setDistortion(anyOf(map, {"distortion_coeffs", "distortion_coefficients"}), camera);
+  return camera;
+}
+
+CameraIntrinsics readKalibrSphere(const YamlNode& map, CameraModel model) {
+  if (const auto distortion = map.find("distortion_model")) distortion->choice({"none"});
+  return kalibrLens(map["intrinsics"], model, 2);
+}
+
+// Also reads cameras of EuRoC and Kimera, whose keys differ from Kalibr's in two names. Other keys (T_cam_imu, rostopic, ...)
+// are ignored.
+CameraIntrinsics readKalibr(const YamlNode& map) {
+  const std::size_t kind = map["camera_model"].choice({"pinhole", "ds", "eucm", "omni"});
+  CameraIntrinsics camera =
+      kind == 0   ? readKalibrPinhole(map)
+      : kind == 3 ? readKalibrOmni(map)
+                  : readKalibrSphere(map, kind == 1 ? CameraModel::DoubleSphere : CameraModel::Eucm);
+  if (const auto node = map.find("resolution")) camera.resolution_px = resolution(*node);
+  return camera;
+}
+
+// OpenCV's matrix {rows, cols, data}, or the numbers alone.
+YamlNode numbersOf(const YamlNode& node) {
+  return node.isMap() ? node["data"] : node;
+}
+
+// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero here.
+void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
+  constexpr std::size_t kRadtan = 5;
+  const std::vector<double> all = node.reals();
+  if (camera.model != CameraModel::PinholeRadtan || all.size() <= kRadtan) return setDistortion(node, camera);
+  if (std::any_of(all.begin() + kRadtan, all.end(), [](double each) { return each != 0.0; }))
+    throw node.error("are those of a rational lens, and Evical has three radial coefficients at most",
+                     "Calibrate this camera again, or export it with k4, k5 and k6 fixed at zero");
+  std::copy_n(all.begin(), kRadtan, camera.distortion.begin());
+}
+
+void setMatrix(const YamlNode& node, CameraIntrinsics& camera) {
+  constexpr double kNoSkew_px = 1e-3;
+  const std::vector<double> k = node.reals(9);
+  if (std::abs(k[1]) > kNoSkew_px)
+    throw node.error(fmt::format("has a skew of {:.4g} px, which no lens of Evical has", k[1]),
+                     "Calibrate this camera again without skew");
+  camera.focal_length_px = {k[0], k[4]};
+  camera.principal_point_px = {k[2], k[5]};
+}
+
+// ROS names it distortion_model, older files camera_model; files without a name have OpenCV's five coefficients.
+CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
+  const auto name = map.has("distortion_model") ? map.find("distortion_model") : map.find("camera_model");
+  if (!name) {
+    if (distortion.reals().size() >= 5) return CameraModel::PinholeRadtan;
+    throw distortion.error("may be of either model, and distortion_model is missing",
+                           "Add distortion_model: plumb_bob, or equidistant");
+  }
+  const std::size_t model = name->choice({"plumb_bob", "rational_polynomial", "equidistant", "fisheye"});
+  return model < 2 ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant;
+}
+
+// sensor_msgs/CameraInfo as camera_calibration_parsers writes it, or as `rostopic echo` or `ros2 topic echo` prints it.
+CameraIntrinsics readCameraInfo(const YamlNode& map) {
+  const bool parsers = map.has("camera_matrix");
+  const YamlNode distortion = numbersOf(anyOf(map, {"distortion_coefficients", "D", "d"}));
+  CameraIntrinsics camera;
+  camera.model = rosModel(map, distortion);
+  setMatrix(numbersOf(anyOf(map, {"camera_matrix", "K", "k"})), camera);
+  setOpenCvDistortion(distortion, camera);
+  const char* prefix = parsers ? "image_" : "";
+  camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
+                          map[fmt::format("{}height", prefix)].integer(1, kMostPixels)};
+  return camera;
+}
+
+// The first camera of a Luxonis OAK's calibration.
+CameraIntrinsics readOak(const YamlNode& root) {
+  const std::vector<YamlNode> cameras = root["cameraData"].items();
+  if (cameras.empty()) throw root["cameraData"].error("is empty", "Give a calibration with a camera");
+  const std::vector<YamlNode> entry = cameras.front().items();
+  if (entry.size() != 2)
+    throw cameras.front().error("must be a pair of a socket and its camera", "Give an OAK's own file");
+  const YamlNode& map = entry[1];
+  constexpr const char* kPerspective[] = {"0", "1"};
+  CameraIntrinsics camera;
+  if (const auto model = map.find("cameraType");
+      model && model->text() != kPerspective[0] && model->text() != kPerspective[1])
+    camera.model = CameraModel::PinholeEquidistant;
+  const std::vector<YamlNode> rows = map["intrinsicMatrix"].items();
+  if (rows.size() != 3) throw map["intrinsicMatrix"].error("must have three rows");
+  const std::vector<double> x = rows[0].reals(3), y = rows[1].reals(3);
+  camera.focal_length_px = {x[0], y[1]};
+  camera.principal_point_px = {x[2], y[2]};
+  setOpenCvDistortion(map["distortionCoeff"], camera);
+  camera.resolution_px = {map["width"].integer(1, kMostPixels), map["height"].integer(1, kMostPixels)};
+  return camera;
+}
+
+// eKalibr's: k1 k2 k3 t1 t2, where we and OpenCV have k3 last.
+CameraIntrinsics readEkalibr(const YamlNode& map) {
+  CameraIntrinsics camera;
+  camera.model =
+      static_cast<CameraModel>(map["polymorphic_name"].choice({"pinhole_brown_t2", "pinhole_fisheye"}));
+  const YamlNode data = map["ptr_wrapper"]["data"];
+  camera.resolution_px = {data["img_width"].integer(1, kMostPixels),
+                          data["img_height"].integer(1, kMostPixels)};
+  camera.focal_length_px = pair(data["focal_length"]);
+  camera.principal_point_px = pair(data["principal_point"]);
+  if (camera.model == CameraModel::PinholeEquidistant) {
+    setDistortion(data["disto_param"], camera);
+  } else {
+    const std::vector<double> d = data["disto_param"].reals(5);
+    camera.distortion = {d[0], d[1], d[3], d[4], d[2]};
+  }
+  return camera;
+}
+
+bool namesStream(const YamlNode& camera, const std::string& stream) {
+  const auto topic = camera.isMap() ? camera.find("rostopic") : std::nullopt;
+  return topic && topic->isScalar() && topic->text() == stream;
+}
+
+// A file's cameras by name: a Kalibr camchain's cam0, cam1, ..., or the cameras of a result.
+YamlNode pickCamera(const YamlNode& cameras, const std::string& name, const std::string& stream) {
+  std::vector<std::string> names = camchainCameras(cameras);
+  if (names.empty()) names = cameras.keys();
+  for (const std::string& key : names)
+    if (key == name) return cameras[key];
+  for (const std::string& key : names)
+    if (namesStream(cameras[key], stream)) return cameras[key];
+  if (names.size() == 1) return cameras[names[0]];
+  throw cameras.error(
+      fmt::format("has several cameras, none called '{}' or with rostopic '{}'", name, stream),
+      fmt::format("There are: {}", joined(names)));
+}
+
+// Of `count` numbers from the first on; the other ones that a lens could have correlate with nothing. Files round: what
+// is no matrix of correlations but for that is one.
+IntrinsicsMatrix readCorrelation(const YamlNode& node, Eigen::Index first, Eigen::Index count) {
+  const std::vector<YamlNode> rows = node.items();
+  if (static_cast<Eigen::Index>(rows.size()) < first + count)
+    throw node.error(fmt::format("has {} rows", rows.size()),
+                     fmt::format("Give {}: fx, fy, cx, cy and the coefficients", count));
+  IntrinsicsMatrix matrix = IntrinsicsMatrix::Identity();
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::vector<double> values = rows[static_cast<std::size_t>(first + row)].reals(rows.size());
+    for (Eigen::Index column = 0; column < count; ++column)
+      matrix(row, column) = values[static_cast<std::size_t>(first + column)];
+  }
+  constexpr double kRounded = 1e-3;
+  const IntrinsicsMatrix lifted = matrix + kRounded * IntrinsicsMatrix::Identity();
+  if (!matrix.isApprox(matrix.transpose(), kRounded) ||
+      (matrix.diagonal().array() - 1.0).abs().maxCoeff() > kRounded || lifted.llt().info() != Eigen::Success)
+    throw node.error("is no matrix of correlations",
+                     "It is symmetric, with 1 on its diagonal and nothing beyond 1");
+  return matrix;
+}
+
+// Of a result's, which are between all quantities.
+std::optional<IntrinsicsMatrix> correlationInResult(const YamlNode& root, const std::string& camera,
+                                                    int count) {
+  const auto uncertainty = root.find("uncertainty");
+  if (!uncertainty) return std::nullopt;
+  const std::vector<YamlNode> names = (*uncertainty)["names"].items();
+  const std::string first_name = camera + ".focal_length.x ";
+  const auto first = std::find_if(names.begin(), names.end(),
+                                  [&](const YamlNode& name) { return name.text().starts_with(first_name); });
+  if (first == names.end()) return std::nullopt;
+  return readCorrelation((*uncertainty)["correlation"], first - names.begin(), count);
+}
+
+// `beside`: the map that has intrinsics, and sigmas where they are known.
+KnownIntrinsics withSigmas(const YamlNode& beside) {
+  KnownIntrinsics known{readIntrinsics(beside["intrinsics"]), {}};
+  if (const auto sigmas = beside.find("intrinsics_std"))
+    known.uncertainty = readLensUncertainty(*sigmas, beside.find("correlation"), known.camera);
+  return known;
+}
+
+// Keys of a lens that are read, or that hold nothing worth a note.
+constexpr std::string_view kLensKeys[] = {
+    "camera_model", "intrinsics", "distortion_model", "distortion_coeffs", "resolution", "rostopic",
+    "cam_overlaps", "image_width", "image_height", "width", "height", "camera_name", "camera_matrix",
+    "distortion_coefficients", "K", "k", "D", "d", "projection_matrix", "P", "p", "rectification_matrix", "R",
+    "r", "header", "binning_x", "binning_y", "roi",
+    // said by who imports them
+    "T_cam_imu", "T_cn_cnm1", "timeshift_cam_imu",
+    // ours, eKalibr's and an OAK's
+    "model", "resolution_px", "focal_length_px", "principal_point_px", "distortion", "Intrinsics",
+    "intrinsics_std", "correlation", "cameraData"};
+
+// ost.txt in the keys of camera_info: headings, each with rows of numbers below.
+std::string cameraInfoOf(const std::string& text) {
+  std::map<std::string, std::string> numbers;
+  std::istringstream lines(text);
+  std::string line, heading;
+  while (std::getline(lines, line)) {
+    const std::string_view plain = trimmed(line);
+    if (plain.empty() || plain.front() == '#' || plain.front() == '[') continue;
+    if (std::isalpha(static_cast<unsigned char>(plain.front())) != 0) {
+      heading = plain;
+      continue;
+    }
+    std::istringstream words{std::string(plain)};
+    for (std::string word; words >> word;) numbers[heading] += (numbers[heading].empty() ? "" : ", ") + word;
+  }
+  const std::string distortion = numbers["distortion"];
+  return fmt::format(
+      "image_width: {}\nimage_height: {}\ncamera_matrix: [{}]\ndistortion_model: "
+      "{}\ndistortion_coefficients: [{}]\n"
+      "projection_matrix: [{}]\n",
+      numbers["width"], numbers["height"], numbers["camera matrix"],
+      std::count(distortion.begin(), distortion.end(), ',') >= 4 ? "plumb_bob" : "", distortion,
+      numbers["projection"]);
+}
+
+}  // namespace
+
+std::vector<std::string> camchainCameras(const YamlNode& root) {
+  std::vector<std::string> cameras;
+  if (!root.isMap() || root.has("camera_model")) return cameras;
+  for (const std::string& key : root.keys()) {
+    const bool numbered = key.starts_with("cam") && key.size() > 3 &&
+                          key.find_first_not_of("0123456789", 3) == std::string::npos;
+    if (numbered && root[key].isMap()) cameras.push_back(key);
+  }
+  return cameras;
+}
+
+bool isLens(const YamlNode& root) {
+  for (const char* const key :
+       {"Intrinsics", "camera_matrix", "camera_model", "K", "k", "focal_length_px", "cameraData"})
+    if (root.has(key)) return true;
+  return false;
+}
+
+CameraIntrinsics readIntrinsics(const YamlNode& map) {
+  if (!map.isMap()) throw map.error("must be a map of intrinsics", "Give model, focal_length_px, ...");
+  const CameraIntrinsics camera = map.has("polymorphic_name") ? readEkalibr(map)
+                                  : map.has("cameraData")     ? readOak(map)
+                                  : map.has("camera_matrix") || map.has("K") || map.has("k")
+                                      ? readCameraInfo(map)
+                                  : map.has("camera_model") ? readKalibr(map)
+                                                            : readOwn(map);
+  if (camera.resolution_px.known()) {
+    validate(camera, map.place());
+  } else {
+    CameraIntrinsics checked = camera;  // all but the resolution, which the recording will give
+    checked.resolution_px = {kMostPixels, kMostPixels};
+    validate(checked, map.place());
+  }
+  return camera;
+}
+
+CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std::string& camera_name,
+                                    const std::string& stream) {
+  return readKnownIntrinsics(file, camera_name, stream).camera;
+}
+
+YamlNode loadIntrinsics(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest_bytes = 1 << 16;
+  std::error_code ignored;
+  const bool small = std::filesystem::is_regular_file(file, ignored) &&
+                     std::filesystem::file_size(file, ignored) < kLargest_bytes;
+  std::ifstream stream(file);
+  std::string text;
+  if (small) text.assign(std::istreambuf_iterator<char>(stream), {});
+  const bool ost =
+      text.find("[image]") != std::string::npos && text.find("camera matrix") != std::string::npos;
+  return ost ? YamlNode::parse(cameraInfoOf(text), file.string()) : YamlNode::load(file);
+}
+
+std::vector<std::string> leftOutOf(const YamlNode& lens) {
+  std::vector<std::string> notes;
+  if (!lens.isMap()) return notes;
+  std::vector<std::string> others;
+  for (const std::string& key : lens.keys())
+    if (std::find(std::begin(kLensKeys), std::end(kLensKeys), key) == std::end(kLensKeys))
+      others.push_back(key);
+  if (!others.empty()) notes.push_back(fmt::format("left out: {}", joined(others)));
+  const auto projection = lens.has("projection_matrix") ? lens.find("projection_matrix") : lens.find("P");
+  const bool has_matrix = lens.has("camera_matrix") || lens.has("K");
+  if (!projection || !has_matrix) return notes;
+  const std::vector<double> p = numbersOf(*projection).reals(),
+                            k = numbersOf(anyOf(lens, {"camera_matrix", "K"})).reals(9);
+  constexpr double kSame_px = 1e-3;
+  if (p.size() == 12 && p[0] != 0.0 &&
+      (std::abs(p[0] - k[0]) > kSame_px || std::abs(p[5] - k[4]) > kSame_px ||
+       std::abs(p[2] - k[2]) > kSame_px || std::abs(p[6] - k[5]) > kSame_px || std::abs(p[3]) > kSame_px))
+    notes.emplace_back("its projection matrix is of rectified images and is left out");
+  return notes;
+}
+
+KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std::string& camera_name,
+                                    const std::string& stream) {
+  const YamlNode root = loadIntrinsics(file);
+  if (!root.isMap())
+    throw root.error("holds no camera intrinsics", "Give intrinsics as Evical, Kalibr or ROS write them");
+  if (root.has("evical_result")) {
+    const YamlNode camera = pickCamera(root["cameras"], camera_name, stream);
+    KnownIntrinsics known = withSigmas(camera);
+    const std::string name = camera.key().substr(camera.key().rfind('.') + 1);
+    if (known.uncertainty)
+      known.uncertainty->correlation = correlationInResult(root, name, 4 + distortionCount(known.camera));
+    return known;
+  }
+  if (!camchainCameras(root).empty()) return {readIntrinsics(pickCamera(root, camera_name, stream)), {}};
+  if (root.has("Intrinsics")) return {readIntrinsics(root["Intrinsics"]), {}};
+  if (root.has("intrinsics") && root["intrinsics"].isMap()) return withSigmas(root);
+  return {readIntrinsics(root), {}};
+}
+
+LensUncertainty readLensUncertainty(const YamlNode& sigmas, const std::optional<YamlNode>& correlation,
+                                    const CameraIntrinsics& camera) {
+  sigmas.allowOnly({"focal_length_px", "principal_point_px", "distortion"});
+  LensUncertainty uncertainty;
+  const auto count = static_cast<std::size_t>(distortionCount(camera));
+  const auto take = [&](const char* key, std::size_t numbers, Eigen::Index at) {
+    const YamlNode node = sigmas[key];
+    const std::vector<double> values = node.reals(numbers);
+    if (*std::min_element(values.begin(), values.end()) < 0.0)
+      throw node.error("has a sigma below 0", "0 stands for what is not known any better than usual");
+    std::copy(values.begin(), values.end(), uncertainty.std.begin() + at);
+  };
+  take("focal_length_px", 2, 0);
+  take("principal_point_px", 2, 2);
+  take("distortion", count, 4);
+  if (correlation)
+    uncertainty.correlation = readCorrelation(*correlation, 0, static_cast<Eigen::Index>(4 + count));
+  return uncertainty;
+}
+
+std::string lensUncertaintyYaml(const LensUncertainty& uncertainty, const CameraIntrinsics& camera,
+                                int indent) {
+  const std::string blanks(static_cast<std::size_t>(indent), ' ');
+  const IntrinsicsVector& s = uncertainty.std;
+  const Eigen::Index count = 4 + distortionCount(camera);
+  const auto list = [](const auto& numbers) {
+    std::string text;
+    for (const double number : numbers) text += fmt::format("{}{}", text.empty() ? "" : ", ", number);
+    return "[" + text + "]";
+  };
+  std::string text = fmt::format(
+      "{0}intrinsics_std:\n{0}  focal_length_px: {1}\n{0}  principal_point_px: {2}\n{0}  distortion: {3}\n",
+      blanks, list(s.segment<2>(0)), list(s.segment<2>(2)), list(s.segment(4, count - 4)));
+  if (!uncertainty.correlation) return text;
+  text += blanks + "intrinsics_correlation:\n";
+  for (Eigen::Index row = 0; row < count; ++row)
+    text += fmt::format("{}  - {}\n", blanks, list(uncertainty.correlation->row(row).head(count)));
+  return text;
+}
+
+std::string intrinsicsYaml(const CameraIntrinsics& camera, int indent) {
+  const std::string blanks(static_cast<std::size_t>(indent), ' ');
+  std::string text = fmt::format("{}model: {}\n", blanks, cameraModelName(camera.model));
+  if (camera.resolution_px.known())
+    text += fmt::format("{}resolution_px: [{}, {}]\n", blanks, camera.resolution_px.width_px,
+                        camera.resolution_px.height_px);
+  text += fmt::format("{}focal_length_px: [{}, {}]\n", blanks, camera.focal_length_px.x(),
+                      camera.focal_length_px.y());
+  text += fmt::format("{}principal_point_px: [{}, {}]\n", blanks, camera.principal_point_px.x(),
+                      camera.principal_point_px.y());
+  const auto names = distortionNames(camera.model);
+  const int count = distortionCount(camera);
+  const std::string legend = fmt::format("{}", fmt::join(names.begin(), names.begin() + count, ", "));
+  const auto& d = camera.distortion;
+  const bool pinhole = !isSphereModel(camera.model);
+  return text + fmt::format("{}distortion: [{}]{}\n", blanks, fmt::join(d.begin(), d.begin() + count, ", "),
+                            pinhole ? "" : "  # " + legend);
+}
+
+}  // namespace evical

@@ -1,0 +1,160 @@
+#include "core/printing/board_sheet.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr double kFooterHeight_mm = 18.0;  // ruler and caption below the board
+constexpr double kRulerLength_mm = 100.0, kRulerWidth_mm = 0.25;
+constexpr double kFooterIndent_mm = 10.0, kRulerBelow_mm = 4.0, kCaptionBelow_mm = 10.0;
+constexpr double kLargestText_mm = 3.0, kLetterWidth = 0.6;  // of its size, at most
+constexpr double kLargestSheet_mm = 5080.0;                  // 14400 units, PDF 1.7 annex C
+
+// What is printed, from its own top left corner.
+struct Pattern {
+  Eigen::Vector2d size_mm = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> centres_mm;
+  std::vector<SheetBox> boxes;
+};
+
+Pattern circlesOf(const Board& board) {
+  Pattern pattern;
+  const double radius_mm = 1e3 * board.radius_m;
+  for (const Eigen::Vector2d& centre_m : boardPoints_m(board))
+    pattern.centres_mm.emplace_back(1e3 * centre_m + Eigen::Vector2d::Constant(radius_mm));
+  pattern.size_mm = 1e3 * board.extent_m() + Eigen::Vector2d::Constant(2.0 * radius_mm);
+  return pattern;
+}
+
+Pattern squaresOf(const Board& board, const TagPrint& print) {
+  Pattern pattern;
+  const Eigen::Vector2d first_m = Eigen::Vector2d::Constant(-board.printBeyond_m());
+  for (const PaintedBox& box : boardSquares(board, print)) {
+    const Eigen::Vector2d at_mm = 1e3 * (box.corner_m - first_m);
+    pattern.boxes.push_back({at_mm.x(), at_mm.y(), 1e3 * box.size_m.x(), 1e3 * box.size_m.y(), box.bright});
+  }
+  pattern.size_mm = 1e3 * (board.extent_m() - 2.0 * first_m);
+  return pattern;
+}
+
+std::string describe(const Board& board, const TagPrint& print) {
+  const std::string spacing = shortNumber(1e3 * board.spacing_m), tag = shortNumber(1e3 * board.tag_size_m);
+  switch (board.type) {
+    case BoardType::Checkerboard:
+      return fmt::format("checkerboard, {} rows x {} cols of inner corners, squares {} mm", board.rows,
+                         board.cols, spacing);
+    case BoardType::AprilGrid:
+      return fmt::format(
+          "aprilgrid, {} rows x {} cols of tags (36h11), border {} bits, tag {} mm, from tag to tag {} mm",
+          board.rows, board.cols, print.border_bits, tag, spacing);
+    case BoardType::Charuco:
+      return fmt::format("charuco, {} rows x {} cols of squares, {} mm, markers {} mm, {}", board.rows,
+                         board.cols, spacing, tag, print.markers);
+    default:
+      return fmt::format("{}, {} rows x {} cols, spacing {} mm, radius {} mm, {} circles",
+                         board.type == BoardType::AsymmetricCircles ? "asymmetric" : "symmetric", board.rows,
+                         board.cols, spacing, shortNumber(1e3 * board.radius_m),
+                         board.circles == CircleShade::Bright ? "bright" : "dark");
+  }
+}
+
+// As large as the board needs, but no narrower than the ruler.
+Eigen::Vector2d ownSize_mm(const Board& board, const Eigen::Vector2d& needed_mm) {
+  const Eigen::Vector2d size_mm =
+      needed_mm.cwiseMax(Eigen::Vector2d(kRulerLength_mm + 2.0 * kFooterIndent_mm, 0.0));
+  if (size_mm.maxCoeff() > kLargestSheet_mm)
+    throw badInput("board",
+                   fmt::format("needs a sheet of {:.1f} m x {:.1f} m, and 5 m is the most",
+                               1e-3 * size_mm.x(), 1e-3 * size_mm.y()),
+                   board.hasCircles() ? "Check that spacing and radius are in metres"
+                                      : "Check that spacing and size are in metres");
+  return size_mm;
+}
+
+// Upright or lying, whichever it fits on. `beside_mm` of what is needed is not the board's.
+Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const Eigen::Vector2d& needed_mm,
+                             const Eigen::Vector2d& beside_mm) {
+  const Eigen::Vector2d upright(paper.short_mm, paper.long_mm), lying(paper.long_mm, paper.short_mm);
+  constexpr double kRounding_mm = 1e-6;
+  double largest = 0.0;  // of what the board may be, by what it is
+  for (const Eigen::Vector2d& size_mm : {upright, lying}) {
+    if ((needed_mm.array() <= size_mm.array() + kRounding_mm).all()) return size_mm;
+    largest = std::max(largest, ((size_mm - beside_mm).array() / (needed_mm - beside_mm).array()).minCoeff());
+  }
+  const double spacing_mm = std::floor(1e4 * largest * board.spacing_m) / 10.0;
+  throw badInput(
+      "board",
+      fmt::format(
+          "needs {:.0f} mm x {:.0f} mm with its margins and the ruler, and {} has {:.0f} mm x {:.0f} mm",
+          needed_mm.x(), needed_mm.y(), paper.name, paper.short_mm, paper.long_mm),
+      "Take larger paper, fewer rows or columns, or a smaller margin" +
+          (spacing_mm > 0.0
+               ? fmt::format("; all sizes in proportion, a spacing of {} mm fits", shortNumber(spacing_mm))
+               : std::string()));
+}
+
+}  // namespace
+
+std::string shortNumber(double value) {
+  std::string text = fmt::format("{:.3f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+const std::vector<Paper>& papers() {
+  static const std::vector<Paper> all = {{"A0", 841.0, 1189.0},
+                                         {"A1", 594.0, 841.0},
+                                         {"A2", 420.0, 594.0},
+                                         {"A3", 297.0, 420.0},
+                                         {"A4", 210.0, 297.0}};
+  return all;
+}
+
+BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrint& print) {
+  validate(board);
+  if (!(options.margin_m >= 0.0)) throw badInput("margin", "is below 0", "Give a margin in metres");
+  const Pattern pattern = board.hasCircles() ? circlesOf(board) : squaresOf(board, print);
+  const double margin_mm = 1e3 * options.margin_m;
+  const Eigen::Vector2d field_mm = pattern.size_mm + Eigen::Vector2d::Constant(2.0 * margin_mm);
+  const Eigen::Vector2d needed_mm = field_mm + Eigen::Vector2d(0.0, kFooterHeight_mm);
+  const Eigen::Vector2d size_mm =
+      options.paper ? paperSize_mm(*options.paper, board, needed_mm, needed_mm - pattern.size_mm)
+                    : ownSize_mm(board, needed_mm);
+  BoardSheet sheet;
+  sheet.width_mm = size_mm.x();
+  sheet.height_mm = size_mm.y();
+  sheet.radius_mm = 1e3 * board.radius_m;
+  // In the middle of what the footer leaves.
+  const Eigen::Vector2d field_at_mm = 0.5 * (size_mm - needed_mm);
+  const Eigen::Vector2d first_mm = field_at_mm + Eigen::Vector2d::Constant(margin_mm);
+  sheet.field = {field_at_mm.x(), field_at_mm.y(), field_mm.x(), field_mm.y(), false};
+  sheet.bright_circles = board.hasCircles() && board.circles == CircleShade::Bright;
+  if (sheet.bright_circles) sheet.boxes.push_back(sheet.field);
+  for (const Eigen::Vector2d& centre_mm : pattern.centres_mm)
+    sheet.centres_mm.push_back(first_mm + centre_mm);
+  for (SheetBox box : pattern.boxes) {
+    box.x_mm += first_mm.x();
+    box.y_mm += first_mm.y();
+    sheet.boxes.push_back(box);
+  }
+  const double footer_mm = sheet.height_mm - kFooterHeight_mm;
+  sheet.ruler = {kFooterIndent_mm, footer_mm + kRulerBelow_mm - 0.5 * kRulerWidth_mm, kRulerLength_mm,
+                 kRulerWidth_mm, false};
+  sheet.caption = fmt::format("Evical board: {}. Print at 100 %; the line is {} mm.", describe(board, print),
+                              shortNumber(kRulerLength_mm));
+  sheet.caption_x_mm = kFooterIndent_mm;
+  sheet.caption_y_mm = footer_mm + kCaptionBelow_mm;
+  sheet.text_size_mm =
+      std::min(kLargestText_mm, (sheet.width_mm - 2.0 * kFooterIndent_mm) /
+                                    (kLetterWidth * static_cast<double>(sheet.caption.size())));
+  return sheet;
+}
+
+}  // namespace evical
