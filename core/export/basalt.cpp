@@ -1,10 +1,10 @@
 #include "core/export/basalt_text.h"
 
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
 #include "core/export/imu_frames.h"
+#include "core/geometry/intrinsics_numbers.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

@@ -1,7 +1,7 @@
-#include "core/geometry/camera_model.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
+#include "core/geometry/camera_model.h"
 
 #include <fmt/format.h>
 

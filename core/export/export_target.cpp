@@ -4,8 +4,8 @@
 #include "core/base/files_together.h"
 #include "core/base/nearest_name.h"
 #include "core/export/exporters.h"
-#include "core/foreign/readers.h"
 #include "core/export/rig.h"
+#include "core/foreign/readers.h"
 
 #include <fmt/format.h>
 

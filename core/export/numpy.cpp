@@ -1,10 +1,10 @@
 #include "core/base/element.h"
 #include "core/data/quantity.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/exporters.h"
 #include "core/export/ros_camera.h"
 #include "core/format/npy.h"
+#include "core/geometry/intrinsics_numbers.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #include "core/base/error.h"
-#include "core/geometry/projection_difference.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
+#include "core/geometry/projection_difference.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "core/export/pose_text.h"
 
 #include "core/base/yaml_node.h"
-#include "core/geometry/so3.h"
-#include "core/numerics/angles.h"
 #include "core/export/export_text.h"
 #include "core/export/rig.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 #include "core/export/read_back.h"
 
 #include "core/base/error.h"
+#include "core/export/imu_frames.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
 #include "core/geometry/sphere_lens.h"
 #include "core/numerics/angles.h"
-#include "core/export/imu_frames.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

@@ -184,7 +184,7 @@ ImuNoise statedNoise(const RigImu& imu, ExportNotes& notes) {
         imu.name));
   const ImuNoise noise = known ? imu.noise : ImuNoise{};
   ImuNoise stated{noise.gyroscope_density, noise.accelerometer_density, imu.noise.gyroscope_random_walk,
-                     imu.noise.accelerometer_random_walk};
+                  imu.noise.accelerometer_random_walk};
   if (stated.gyroscope_random_walk > 0.0 && stated.accelerometer_random_walk > 0.0) return stated;
   // Programs refuse 0.
   notes.push_back(fmt::format(

@@ -1,9 +1,9 @@
 #include "core/export/stereo.h"
 
 #include "core/base/error.h"
+#include "core/export/ros_camera.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
-#include "core/export/ros_camera.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

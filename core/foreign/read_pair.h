@@ -1,9 +1,9 @@
 // Files of a stereo pair that say left and right, but not which camera of the rig either is.
 #pragma once
 
+#include "core/foreign/read_calibration.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/rigid_transform.h"
-#include "core/foreign/read_calibration.h"
 
 #include <filesystem>
 #include <span>

@@ -1,6 +1,6 @@
 #include "core/base/error.h"
-#include "core/printing/board_sheet.h"
 #include "core/format/gray_png.h"
+#include "core/printing/board_sheet.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>

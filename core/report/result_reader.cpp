@@ -1,8 +1,8 @@
 #include "core/base/yaml_node.h"
 #include "core/data/calibration_stage.h"
+#include "core/data/unit_quaternion.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/format/quantity_yaml.h"
-#include "core/data/unit_quaternion.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_yaml.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/screens/boards_form.h"
+#include "ui/screens/board/boards_form.h"
 
 #include "core/pipeline/session/session_boards.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/document/calibration_document.h"
 #include "ui/forms/number_field.h"
-#include "ui/screens/board_form.h"
-#include "ui/screens/camera_form.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/board/board_form.h"
+#include "ui/screens/recording/camera_form.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>

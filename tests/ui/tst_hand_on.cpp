@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person takes out of the window: rows, poses, drawings, charts and tables.
-#include "core/numerics/angles.h"
 #include "core/export/pose_text.h"
+#include "core/numerics/angles.h"
 #include "tests/support/file_content.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
@@ -9,12 +9,12 @@
 #include "tests/ui/screenshots.h"
 #include "ui/plots/chart_saving.h"
 #include "ui/scene/trajectory_track.h"
-#include "ui/screens/correlation_view.h"
-#include "ui/screens/observability_view.h"
-#include "ui/screens/pose_panel.h"
-#include "ui/screens/quantity_table.h"
-#include "ui/screens/result_screen.h"
-#include "ui/screens/rig_drawing.h"
+#include "ui/screens/result/correlation_view.h"
+#include "ui/screens/result/observability_view.h"
+#include "ui/screens/result/pose_panel.h"
+#include "ui/screens/result/quantity_table.h"
+#include "ui/screens/result/result_screen.h"
+#include "ui/screens/result/rig_drawing.h"
 #include "ui/theme/theme.h"
 
 #include <QClipboard>

@@ -11,8 +11,8 @@
 #include "ui/jobs/run_history.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/residuals_screen.h"
-#include "ui/screens/result_screen.h"
-#include "ui/screens/runs_panel.h"
+#include "ui/screens/result/result_screen.h"
+#include "ui/screens/result/runs_panel.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/session_files.h"
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A camera's result page: its numbers are the lens's, with their sigmas; another lens beside it; the maps and the views.
-#include "ui/screens/lens_screen.h"
+#include "ui/screens/lens/lens_screen.h"
 
 #include "core/base/error.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
-#include "ui/screens/image_map_view.h"
-#include "ui/screens/lens_parameters.h"
-#include "ui/screens/views_chart.h"
+#include "ui/screens/lens/image_map_view.h"
+#include "ui/screens/lens/lens_parameters.h"
+#include "ui/screens/lens/views_chart.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>

@@ -18,7 +18,7 @@
 #include "ui/forms/repair_button.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/scene/view3d.h"
-#include "ui/screens/stream_table.h"
+#include "ui/screens/recording/stream_table.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"

@@ -7,7 +7,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
-#include "ui/screens/shown_motion.h"
+#include "ui/screens/recording/shown_motion.h"
 #include "ui/window/guide_pictures.h"
 #include "ui/window/session_files.h"
 

@@ -4,9 +4,9 @@
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
-#include "ui/screens/check_card.h"
-#include "ui/screens/light_mark.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/recording/check_card.h"
+#include "ui/screens/recording/light_mark.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/window/session_files.h"
 
 #include <QLabel>

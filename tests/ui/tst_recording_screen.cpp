@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/recording/recording_screen.h"
 
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
@@ -7,12 +7,12 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/forms/number_field.h"
-#include "ui/screens/board_drawing.h"
-#include "ui/screens/board_form.h"
-#include "ui/screens/camera_form.h"
-#include "ui/screens/imu_form.h"
-#include "ui/screens/stream_table.h"
-#include "ui/screens/time_range_form.h"
+#include "ui/screens/board/board_drawing.h"
+#include "ui/screens/board/board_form.h"
+#include "ui/screens/recording/camera_form.h"
+#include "ui/screens/recording/imu_form.h"
+#include "ui/screens/recording/stream_table.h"
+#include "ui/screens/recording/time_range_form.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>

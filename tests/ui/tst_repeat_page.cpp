@@ -8,9 +8,9 @@
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
-#include "ui/screens/file_list.h"
-#include "ui/screens/repeat_screen.h"
-#include "ui/screens/repeat_table.h"
+#include "ui/screens/assessment/file_list.h"
+#include "ui/screens/assessment/repeat_screen.h"
+#include "ui/screens/assessment/repeat_table.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/session_files.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/screens/result_screen.h"
+#include "ui/screens/result/result_screen.h"
 
 #include "core/base/error.h"
 #include "core/pipeline/runs/result_files.h"
@@ -7,9 +7,9 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/forms/repair_button.h"
-#include "ui/screens/correlation_view.h"
-#include "ui/screens/observability_view.h"
-#include "ui/screens/result_parameters.h"
+#include "ui/screens/result/correlation_view.h"
+#include "ui/screens/result/observability_view.h"
+#include "ui/screens/result/result_parameters.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>

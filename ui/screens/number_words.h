@@ -2,7 +2,7 @@
 // Numbers and words as tables show them.
 #pragma once
 
-#include "ui/screens/result_parameters.h"
+#include "ui/screens/result/result_parameters.h"
 
 namespace evical::ui {
 

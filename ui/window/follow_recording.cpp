@@ -2,8 +2,8 @@
 #include "ui/window/follow_recording.h"
 
 #include "ui/detection/detection_screen.h"
-#include "ui/screens/check_card.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/recording/check_card.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/window/workbench.h"
 
 #include <algorithm>

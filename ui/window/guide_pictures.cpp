@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/guide_pictures.h"
 
-#include "ui/screens/motion_picture.h"
+#include "ui/screens/recording/motion_picture.h"
 
 #include <QImage>
 #include <QPixmap>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/kept_runs.h"
 
-#include "ui/screens/result_screen.h"
-#include "ui/screens/runs_panel.h"
+#include "ui/screens/result/result_screen.h"
+#include "ui/screens/result/runs_panel.h"
 #include "ui/window/workbench.h"
 
 #include <algorithm>

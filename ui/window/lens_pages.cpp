@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/lens_pages.h"
 
-#include "core/geometry/camera_intrinsics.h"
 #include "core/export/export_target.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "ui/detection/detection_screen.h"
-#include "ui/screens/aim_chooser.h"
-#include "ui/screens/lens_screen.h"
-#include "ui/screens/recording_screen.h"
-#include "ui/screens/start_screen.h"
+#include "ui/screens/lens/lens_screen.h"
+#include "ui/screens/recording/aim_chooser.h"
+#include "ui/screens/recording/recording_screen.h"
+#include "ui/screens/recording/start_screen.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/lens_files.h"
 #include "ui/window/pages.h"

@@ -8,7 +8,7 @@
 #include "ui/plots/residuals_screen.h"
 #include "ui/plots/signals_screen.h"
 #include "ui/scene/trajectory_screen.h"
-#include "ui/screens/result_screen.h"
+#include "ui/screens/result/result_screen.h"
 #include "ui/window/pages.h"
 #include "ui/window/workbench.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/screens/result_screen.h"
+#include "ui/screens/result/result_screen.h"
 #include "ui/theme/theme.h"
 #include "ui/window/about.h"
 #include "ui/window/main_window.h"

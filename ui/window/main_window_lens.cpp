@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the window does while a camera alone is calibrated.
-#include "ui/screens/lens_screen.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/lens/lens_screen.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/window/lens_files.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/main_window.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/old_result.h"
 
-#include "ui/screens/old_result_row.h"
-#include "ui/screens/runs_panel.h"
+#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/result/runs_panel.h"
 #include "ui/window/page_work.h"
 #include "ui/window/workbench.h"
 

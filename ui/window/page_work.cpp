@@ -4,7 +4,7 @@
 #include "core/base/new_folder.h"
 #include "core/data/calibration_stage.h"
 #include "core/pipeline/maintain/maintain_imus.h"
-#include "ui/screens/work_bar.h"
+#include "ui/screens/assessment/work_bar.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
 

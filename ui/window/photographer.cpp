@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/photographer.h"
 
-#include "ui/screens/file_list.h"
-#include "ui/screens/maintain_screen.h"
-#include "ui/screens/old_result_row.h"
-#include "ui/screens/repeat_screen.h"
-#include "ui/screens/result_check_screen.h"
+#include "ui/screens/assessment/file_list.h"
+#include "ui/screens/assessment/maintain_screen.h"
+#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/repeat_screen.h"
+#include "ui/screens/assessment/result_check_screen.h"
 #include "ui/window/main_window.h"
 #include "ui/window/print_board.h"
 #include "ui/window/session_files.h"

@@ -4,8 +4,8 @@
 #include "core/base/error.h"
 #include "ui/document/printed_board.h"
 #include "ui/jobs/latest_job.h"
-#include "ui/screens/how_to_record_dialog.h"
-#include "ui/screens/print_board_dialog.h"
+#include "ui/screens/board/print_board_dialog.h"
+#include "ui/screens/recording/how_to_record_dialog.h"
 #include "ui/window/workbench.h"
 
 #include <functional>

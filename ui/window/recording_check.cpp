@@ -2,8 +2,8 @@
 #include "ui/window/recording_check.h"
 
 #include "core/pipeline/session/session_guess.h"
-#include "ui/screens/check_card.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/screens/recording/check_card.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/window/print_board.h"
 #include "ui/window/workbench.h"
 

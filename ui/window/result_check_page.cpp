@@ -2,9 +2,9 @@
 #include "ui/window/result_check_page.h"
 
 #include "core/pipeline/check/check_files.h"
-#include "ui/screens/old_result_row.h"
-#include "ui/screens/result_check_screen.h"
-#include "ui/screens/work_bar.h"
+#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/result_check_screen.h"
+#include "ui/screens/assessment/work_bar.h"
 #include "ui/window/old_result.h"
 #include "ui/window/page_work.h"
 #include "ui/window/session_files.h"

@@ -3,11 +3,11 @@
 
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/export/export_target.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/pipeline/simulate/simulation.h"
-#include "core/export/export_target.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/printed_board.h"
 #include "ui/window/page_work.h"

@@ -4,11 +4,11 @@
 #include "core/base/error.h"
 #include "core/base/files_together.h"
 #include "core/base/progress.h"
+#include "core/export/export_target.h"
 #include "core/pipeline/pass/saved_detections.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
-#include "core/export/export_target.h"
 #include "core/report/html/html_report.h"
 #include "core/report/residuals_csv.h"
 

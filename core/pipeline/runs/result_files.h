@@ -3,8 +3,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/data/calibration_check.h"
-#include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/export/read_back.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/report/result_yaml.h"
 
 #include <filesystem>

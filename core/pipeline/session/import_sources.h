@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/base/yaml_node.h"
-#include "core/pipeline/session/import_session.h"
 #include "core/foreign/lens_files.h"
+#include "core/pipeline/session/import_session.h"
 
 #include <optional>
 #include <string>

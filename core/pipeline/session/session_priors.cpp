@@ -1,8 +1,8 @@
 #include "core/pipeline/session/session_priors.h"
 
 #include "core/base/nearest_name.h"
-#include "core/format/quantity_yaml.h"
 #include "core/data/unit_quaternion.h"
+#include "core/format/quantity_yaml.h"
 
 #include <fmt/format.h>
 

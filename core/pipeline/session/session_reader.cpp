@@ -1,11 +1,11 @@
 #include "core/base/nearest_name.h"
+#include "core/export/export_target.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/numerics/normal_gravity.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_boards_reader.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/pipeline/session/session_priors.h"
-#include "core/export/export_target.h"
 
 #include <fmt/format.h>
 

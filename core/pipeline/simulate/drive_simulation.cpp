@@ -2,9 +2,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/new_folder.h"
+#include "core/export/export_target.h"
 #include "core/numerics/angles.h"
 #include "core/recording/recording_writer.h"
-#include "core/export/export_target.h"
 #include "core/synthetic/drive_simulator.h"
 
 #include <algorithm>

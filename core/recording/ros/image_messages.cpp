@@ -1,7 +1,7 @@
 #include "core/recording/ros/image_messages.h"
 
-#include "core/format/picture_header.h"
 #include "core/data/recording.h"
+#include "core/format/picture_header.h"
 #include "core/recording/ros/message_bytes.h"
 
 #include <algorithm>

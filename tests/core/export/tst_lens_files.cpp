@@ -1,7 +1,7 @@
 // Cameras in single files of other programs: every layout that is exported, and files as their own programs write them.
 #include "core/base/error.h"
-#include "core/format/intrinsics_yaml.h"
 #include "core/foreign/lens_files.h"
+#include "core/format/intrinsics_yaml.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/test_program.h"
 

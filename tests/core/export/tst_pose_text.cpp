@@ -1,8 +1,8 @@
 // Poses as text: what other programs would read out of it is the result, to the last digit.
 #include "core/export/pose_text.h"
 
-#include "core/numerics/angles.h"
 #include "core/export/rig.h"
+#include "core/numerics/angles.h"
 #include "core/report/quantity_words.h"
 #include "core/report/result_table.h"
 #include "tests/core/export/exported_rig.h"

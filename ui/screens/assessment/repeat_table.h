@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What several recordings say of each number: mean, spread beside what the sigmas promise, the solution of all together;
+// and two of them beside each other.
+#pragma once
+
+#include "core/report/repeat_comparison.h"
+#include "ui/screens/assessment/copy_table.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace evical::ui {
+
+class RepeatTable : public CopyTable {
+  Q_OBJECT
+
+ public:
+  enum Column {
+    kNumber,
+    kMean,
+    kDeviation,
+    kMeanSigma,
+    kRatio,
+    kTogether,
+    kFirst,
+    kSecond,
+    kDifference,
+    kSigmas,
+    kColumns
+  };
+
+  explicit RepeatTable(QWidget* parent = nullptr);
+
+  void setRepeat(const Repeatability& repeat);
+  // Columns of the repeat, or kAllTogether; nothing hides the comparison.
+  struct Pair {
+    std::size_t first = 0, second = kAllTogether;
+    QString first_name = {}, second_name = {};
+  };
+  void comparePair(const std::optional<Pair>& pair);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void fill();
+  QTreeWidgetItem* itemOf(const RepeatedNumber& number) const;
+  void fillPair(const RepeatedNumber& number, QTreeWidgetItem& item) const;
+
+  Repeatability repeat_;
+  std::optional<Pair> pair_;
+};
+
+// The recordings of a repeat: which fit, how far each is from the others, what is said of it.
+class RepeatedList : public CopyTable {
+  Q_OBJECT
+
+ public:
+  enum Column { kName, kOutcome, kDistance, kWhat, kFile, kColumns };
+
+  explicit RepeatedList(QWidget* parent = nullptr);
+
+  void setRecordings(std::vector<RepeatedRecording> recordings);
+  std::optional<std::size_t> chosen() const;  // one alone
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void fill();
+
+  std::vector<RepeatedRecording> recordings_;
+};
+
+}  // namespace evical::ui

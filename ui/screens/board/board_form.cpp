@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/board/board_form.h"
+
+#include "ui/forms/number_field.h"
+#include "ui/screens/board/board_drawing.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QStandardItemModel>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kMmPerM = 1e3;
+
+QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
+  constexpr int kMost = 100;
+  auto* const box = new QSpinBox(parent);
+  box->setRange(least, kMost);
+  box->setToolTip(tip);
+  box->setFocusPolicy(Qt::StrongFocus);
+  return box;
+}
+
+QLabel* problemLabel(QWidget* parent) {
+  auto* const label = new QLabel(parent);
+  label->setProperty("role", "problem");
+  label->setWordWrap(true);
+  return label;
+}
+
+// As wide as its fields; where there is no height for all of them it scrolls.
+class FieldsArea final : public QScrollArea {
+ public:
+  FieldsArea(QFormLayout* form, QWidget* parent) : QScrollArea(parent) {
+    auto* const fields = new QWidget;
+    fields->setLayout(form);
+    setWidget(fields);
+    setWidgetResizable(true);
+    setFrameShape(QFrame::NoFrame);
+    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    setSizePolicy(QSizePolicy::Fixed, QSizePolicy::Expanding);
+    viewport()->setAutoFillBackground(false);
+    fields->setAutoFillBackground(false);
+  }
+  QSize sizeHint() const override { return {width_px(), QScrollArea::sizeHint().height()}; }
+  QSize minimumSizeHint() const override { return {width_px(), QScrollArea::minimumSizeHint().height()}; }
+
+ private:
+  int width_px() const {
+    return widget()->minimumSizeHint().width() + verticalScrollBar()->sizeHint().width();
+  }
+};
+
+// To start from: as long as the board is said to be.
+MeasuredLength overWholeBoard(const Board& board) {
+  MeasuredLength length;
+  length.spacings = mostSpacings(board);
+  length.length_m = length.spacings * board.spacing_m;
+  return length;
+}
+
+// What a board of another type has, where it has none yet: as boards usually have it.
+void setSizes(Board& board) {
+  constexpr double kRadius = 0.4, kTag = 0.75;  // of the spacing
+  if (!board.hasCircles()) board.radius_m = 0.0;
+  if (board.hasCircles() && board.radius_m == 0.0) board.radius_m = kRadius * board.spacing_m;
+  if (!board.hasTags()) board.tag_size_m = 0.0;
+  if (board.hasTags() && board.tag_size_m == 0.0) board.tag_size_m = kTag * board.spacing_m;
+}
+
+}  // namespace
+
+BoardForm::BoardForm(QWidget* parent)
+    : QWidget(parent),
+      form_(new QFormLayout),
+      name_(new QLineEdit(this)),
+      type_(new QComboBox(this)),
+      rows_(countBox(1,
+                     tr("Staggered lines of circles (odd, so that the board has an up and a down); a "
+                        "checkerboard's inner corners, tags, or a ChArUco board's squares"),
+                     this)),
+      cols_(countBox(1, tr("The same in one line"), this)),
+      spacing_mm_(new NumberField(0.1, 10'000.0, this)),
+      radius_mm_(new NumberField(0.01, 10'000.0, this)),
+      is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
+      length_mm_(new NumberField(0.1, 100'000.0, this)),
+      spacings_(
+          countBox(1,
+                   tr("From the first circle to the last there is one less than there are rows; in a line of "
+                      "a staggered board two from circle to circle"),
+                   this)),
+      length_std_mm_(new NumberField(0.0, 1'000.0, this)),
+      tag_mm_(new NumberField(0.1, 10'000.0, this)),
+      circles_(new QComboBox(this)),
+      seen_by_(new QLabel(this)),
+      name_problem_(problemLabel(this)),
+      problem_(problemLabel(this)),
+      drawing_(new BoardDrawing(this)) {
+  type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"),
+                   tr("ChArUco"), tr("Points of a table")});
+  circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
+  type_->setToolTip(
+      tr("Circles, every other line shifted by half a step or none; the others are for frame "
+         "cameras only"));
+  spacing_mm_->setToolTip(
+      tr("Asymmetric: between two staggered lines, half of what lies between neighbours in a "
+         "line. Symmetric: between neighbours. A square's edge; from one tag to the next"));
+  tag_mm_->setToolTip(tr("Edge of a tag's black square"));
+  radius_mm_->setToolTip(tr("Of a circle, as printed"));
+  circles_->setToolTip(tr("Which way the printed circles differ from their background"));
+  addName();
+  form_->addRow(tr("Type"), type_);
+  form_->addRow(tr("Rows"), rows_);
+  form_->addRow(tr("Columns"), cols_);
+  form_->addRow(tr("Spacing [mm]"), spacing_mm_);
+  addMeasure(*form_);
+  form_->addRow(tr("Radius [mm]"), radius_mm_);
+  form_->addRow(tr("Tag [mm]"), tag_mm_);
+  form_->addRow(tr("Circles"), circles_);
+  form_->setContentsMargins(0, 0, 4, 0);
+  auto* const row = new QHBoxLayout;
+  row->addWidget(new FieldsArea(form_, this));
+  row->addWidget(drawing_, 1);
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(problem_);
+  layout->addLayout(row, 1);
+
+  connect(type_, &QComboBox::activated, this, [this] { say("type"); });
+  connect(circles_, &QComboBox::activated, this, [this] { say("circles"); });
+  connect(rows_, &QSpinBox::valueChanged, this, [this] { say("rows"); });
+  connect(cols_, &QSpinBox::valueChanged, this, [this] { say("cols"); });
+  connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
+  connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
+  connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
+  setBoard({}, {});
+  setName({}, {});
+  setProblem({});
+}
+
+void BoardForm::addName() {
+  name_->setObjectName("board_name");
+  seen_by_->setObjectName("seen_by");
+  name_problem_->setObjectName("name_problem");
+  seen_by_->setWordWrap(true);
+  name_->setToolTip(tr("What the board is called in the session and in the cameras' forms"));
+  seen_by_->setToolTip(tr("Each camera's form says which board it sees"));
+  form_->addRow(tr("Name"), name_);
+  form_->addRow(name_problem_);
+  form_->addRow(tr("Seen by"), seen_by_);
+  connect(name_, &QLineEdit::editingFinished, this, [this] {
+    const QString typed = name_->text().trimmed();
+    setNameProblem({});
+    if (typed != named_) emit renamed(typed);
+  });
+}
+
+void BoardForm::setName(const QString& name, const QString& seen_by) {
+  named_ = name;
+  name_->setText(name);
+  seen_by_->setText(seen_by);
+  setNameProblem({});
+  form_->setRowVisible(name_, !name.isEmpty());
+  form_->setRowVisible(seen_by_, !name.isEmpty());
+}
+
+// The field keeps what was typed, so that it can be mended.
+void BoardForm::setNameProblem(const QString& text) {
+  name_problem_->setText(text);
+  form_->setRowVisible(name_problem_, !text.isEmpty());
+}
+
+void BoardForm::addMeasure(QFormLayout& form) {
+  is_measured_->setToolTip(
+      tr("A ruler tells a length over the whole board ten times as well as one spacing"));
+  length_mm_->setToolTip(tr("Between the centres of two circles in one line, as far apart as there are"));
+  length_std_mm_->setToolTip(tr("How well ruler and eye tell the length, one sigma; 0: exactly"));
+  form.addRow(is_measured_);
+  form.addRow(tr("Length [mm]"), length_mm_);
+  form.addRow(tr("Spacings in it"), spacings_);
+  form.addRow(tr("Its sigma [mm]"), length_std_mm_);
+  connect(is_measured_, &QCheckBox::clicked, this, [this] { sayMeasured("measured"); });
+  connect(length_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.length_m"); });
+  connect(spacings_, &QSpinBox::valueChanged, this, [this] { sayMeasured("measured.spacings"); });
+  connect(length_std_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.std_m"); });
+}
+
+void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>& measured) {
+  board_ = board;
+  measured_ = measured;
+  const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_), quiet_spacings(spacings_);
+  is_measured_->setChecked(measured.has_value());
+  const MeasuredLength length = measured.value_or(overWholeBoard(board));
+  length_mm_->setValue(kMmPerM * length.length_m);
+  spacings_->setValue(length.spacings);
+  length_std_mm_->setValue(kMmPerM * length.std_m);
+  spacing_mm_->setEnabled(!measured);
+  showType();
+  rows_->setValue(board.rows);
+  cols_->setValue(board.cols);
+  spacing_mm_->setValue(kMmPerM * board.spacing_m);
+  radius_mm_->setValue(kMmPerM * board.radius_m);
+  tag_mm_->setValue(kMmPerM * board.tag_size_m);
+  circles_->setCurrentIndex(static_cast<int>(board.circles));
+  showRows();
+  drawing_->setBoard(board);
+}
+
+// Points come from a session's file: they are shown, and may give way to another type, but cannot be chosen.
+void BoardForm::showType() {
+  const int index = static_cast<int>(board_.type);
+  const int points = static_cast<int>(BoardType::Points);
+  qobject_cast<QStandardItemModel*>(type_->model())->item(points)->setEnabled(index == points);
+  type_->setCurrentIndex(index);
+}
+
+// What such a board does not have needs no room.
+void BoardForm::showRows() {
+  for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
+                               static_cast<QWidget*>(length_std_mm_)})
+    form_->setRowVisible(field, measured_.has_value());
+  for (QWidget* const field : {static_cast<QWidget*>(rows_), static_cast<QWidget*>(cols_),
+                               static_cast<QWidget*>(spacing_mm_), static_cast<QWidget*>(is_measured_)})
+    form_->setRowVisible(field, board_.hasPattern() && !(numbers_only_ && field == is_measured_));
+  form_->setRowVisible(radius_mm_, board_.hasCircles());
+  form_->setRowVisible(circles_, board_.hasCircles());
+  form_->setRowVisible(tag_mm_, board_.hasTags());
+}
+
+void BoardForm::say(const QString& field) {
+  const auto type = static_cast<BoardType>(type_->currentIndex());
+  if (type == BoardType::Points) return;
+  Board board = board_.hasPattern() ? board_ : Board();
+  board.type = type;
+  if (type != board_.type) setSizes(board);
+  if (!board_.hasPattern()) return emit edited(board, field);
+  board.rows = rows_->value();
+  board.cols = cols_->value();
+  if (field == "spacing_m") board.spacing_m = spacing_mm_->value() / kMmPerM;
+  if (field == "radius_m") board.radius_m = radius_mm_->value() / kMmPerM;
+  if (field == "tag_size_m") board.tag_size_m = tag_mm_->value() / kMmPerM;
+  board.circles = static_cast<CircleShade>(circles_->currentIndex());
+  if (board == board_) return;
+  emit edited(board, field);
+}
+
+void BoardForm::sayMeasured(const QString& field) {
+  std::optional<MeasuredLength> changed;
+  if (is_measured_->isChecked()) {
+    changed = measured_.value_or(overWholeBoard(board_));
+    if (field == "measured.length_m") changed->length_m = length_mm_->value() / kMmPerM;
+    if (field == "measured.std_m") changed->std_m = length_std_mm_->value() / kMmPerM;
+    changed->spacings = spacings_->value();
+  }
+  if (changed == measured_) return;
+  emit measured(changed, field);
+}
+
+void BoardForm::showNumbersOnly() {
+  numbers_only_ = true;
+  showRows();
+  drawing_->hide();
+  // All rows at once: who holds the form scrolls.
+  if (auto* const fields = findChild<QScrollArea*>())
+    fields->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+}
+
+void BoardForm::setProblem(const QString& text) {
+  problem_->setText(text);
+  problem_->setVisible(!text.isEmpty());
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/board/boards_form.h"
+
+#include "core/base/error.h"
+#include "core/pipeline/session/session_boards.h"
+#include "ui/screens/board/board_chooser.h"
+#include "ui/screens/board/board_form.h"
+
+#include <QCheckBox>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <set>
+
+namespace evical::ui {
+namespace {
+
+bool isOf(const QString& field, const QString& key) {
+  return field == key || field.startsWith(key + ".");
+}
+
+// The one that is new, or that was chosen before, wherever they are now.
+std::size_t chosenAfter(const std::vector<std::string>& before, const std::vector<std::string>& after,
+                        std::size_t chosen) {
+  const auto among = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name);
+  };
+  const auto isNew = [&](const std::string& name) { return among(before, name) == before.end(); };
+  const auto added = std::find_if(after.begin(), after.end(), isNew);
+  if (after.size() == before.size() + 1 && added != after.end())
+    return static_cast<std::size_t>(added - after.begin());
+  const auto kept = among(after, before.at(chosen));
+  if (kept != after.end()) return static_cast<std::size_t>(kept - after.begin());
+  return std::min(chosen, after.size() - 1);
+}
+
+}  // namespace
+
+BoardsForm::BoardsForm(QWidget* parent)
+    : QWidget(parent),
+      chooser_(new BoardChooser(this)),
+      form_(new BoardForm(this)),
+      blinks_(new QCheckBox(tr("It flashes, on a screen or with lamps"), this)) {
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(form_, 1);
+  layout->addWidget(blinks_);
+  blinks_->setObjectName("blinks");
+  blinks_->setToolTip(
+      tr("Before an event camera that stands still, any kind of board will do if it flashes: for the lens of "
+         "one "
+         "camera alone"));
+  connect(blinks_, &QCheckBox::clicked, this, &BoardsForm::setBlinking);
+  connect(chooser_, &BoardChooser::chosen, this, &BoardsForm::choose);
+  connect(chooser_, &BoardChooser::addRequested, this, &BoardsForm::add);
+  connect(chooser_, &BoardChooser::removeRequested, this, &BoardsForm::remove);
+  connect(form_, &BoardForm::renamed, this, &BoardsForm::rename);
+  connect(form_, &BoardForm::edited, this, [this](const Board& board, const QString& field) {
+    Session changed = session_;
+    setBoardAt(chosen_, board, changed);
+    emit sessionEdited(changed, what(tr("Change the board"), tr("Change board %1")), mergeKey(field));
+  });
+  connect(form_, &BoardForm::measured, this,
+          [this](const std::optional<MeasuredLength>& measured, const QString& field) {
+            Session changed = session_;
+            setMeasuredAt(chosen_, measured, changed);
+            emit sessionEdited(changed, what(tr("Measure the board"), tr("Measure board %1")),
+                               mergeKey(field));
+          });
+  showChosen();
+}
+
+QWidget* BoardsForm::chooser() const {
+  return chooser_;
+}
+
+void BoardsForm::setSession(const Session& session) {
+  const bool other = session.recording != session_.recording;
+  chosen_ = other ? 0 : chosenAfter(boardNames(session_), boardNames(session), chosen_);
+  session_ = session;
+  showChosen();
+}
+
+void BoardsForm::showChosen() {
+  QStringList names;
+  for (const std::string& name : boardNames(session_)) names << QString::fromStdString(name);
+  const auto chosen = static_cast<qsizetype>(chosen_);
+  chooser_->setBoards(names, chosen_);
+  chooser_->setFull(session_.board_blinks ? tr("A board that blinks stands alone")
+                    : static_cast<std::size_t>(names.size()) >= session_.cameras.size()
+                        ? tr("A camera sees one board, so there cannot be more boards than cameras")
+                        : QString());
+  blinks_->setVisible(session_.further_boards.empty() && session_.board.hasPattern());
+  blinks_->setChecked(session_.board_blinks);
+  form_->setBoard(boardAt(session_, chosen_), measuredAt(session_, chosen_));
+  form_->setName(names.size() > 1 ? names[chosen] : QString(), seenBy());
+}
+
+QString BoardsForm::seenBy() const {
+  QStringList cameras;
+  for (std::size_t k = 0; k < session_.cameras.size(); ++k)
+    if (session_.boardIndexOf(k) == chosen_) cameras << QString::fromStdString(session_.cameras[k].name);
+  return cameras.isEmpty() ? tr("no camera yet") : cameras.join(", ");
+}
+
+void BoardsForm::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
+  const std::vector<std::string> names = boardNames(session_);
+  QStringList texts;
+  std::set<std::size_t> wrong;
+  for (const auto& [field, text] : field_and_text) {
+    if (!isOfBoards(field)) continue;
+    QString said = text;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!isOf(field, QString::fromStdString(boardKey(session_, i)))) continue;
+      wrong.insert(i);
+      if (names.size() > 1) said = QString::fromStdString(names[i]) + ": " + text;
+    }
+    texts << said;
+  }
+  chooser_->setWrong(wrong);
+  form_->setProblem(texts.join('\n'));
+}
+
+// Only of a board that blinks there may be several recordings, one for each of its places.
+void BoardsForm::setBlinking(bool blinking) {
+  Session changed = session_;
+  changed.board_blinks = blinking;
+  if (!blinking) changed.more_recordings.clear();
+  emit sessionEdited(changed, blinking ? tr("Let the board flash") : tr("Let the board stand still"), {});
+}
+
+void BoardsForm::choose(std::size_t index) {
+  chosen_ = std::min(index, session_.further_boards.size());
+  showChosen();
+}
+
+void BoardsForm::add() {
+  Session changed = session_;
+  addBoard(chosen_, changed);
+  emit sessionEdited(changed, tr("Add a board"), {});
+}
+
+void BoardsForm::remove() {
+  Session changed = session_;
+  removeBoard(chosen_, changed);
+  emit sessionEdited(changed, what({}, tr("Remove board %1")), {});
+}
+
+void BoardsForm::rename(const QString& name) {
+  Session changed = session_;
+  try {
+    renameBoard(chosen_, name.toStdString(), changed);
+  } catch (const CalibrationError& error) {
+    return form_->setNameProblem(QString::fromStdString(error.problem() + ". " + error.advice()));
+  }
+  emit sessionEdited(changed, what({}, tr("Rename board %1")), {});
+}
+
+QString BoardsForm::what(const QString& of_one, const QString& of_several) const {
+  if (session_.further_boards.empty()) return of_one;
+  return of_several.arg(QString::fromStdString(boardNames(session_).at(chosen_)));
+}
+
+QString BoardsForm::mergeKey(const QString& field) const {
+  return QString::fromStdString(boardKey(session_, chosen_)) + "." + field;
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/board/print_board_dialog.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/geometry/marker_bits.h"
+#include "core/printing/blink_page.h"
+#include "ui/forms/number_field.h"
+#include "ui/screens/board/board_form.h"
+#include "ui/screens/board/measured_form.h"
+#include "ui/screens/board/sheet_preview.h"
+#include "ui/screens/wrapped_label.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QDesktopServices>
+#include <QDialogButtonBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QGroupBox>
+#include <QLabel>
+#include <QMarginsF>
+#include <QPageLayout>
+#include <QPageSize>
+#include <QPainter>
+#include <QPrintDialog>
+#include <QPrinter>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSettings>
+#include <QSpinBox>
+#include <QUrl>
+#include <QVBoxLayout>
+
+#include <string>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kSheetMmPerM = 1e3, kMmPerInch = 25.4;
+const char* const kBoardFolderKey = "board_folder";
+
+// In the window's words: keys of files and commands are not there.
+QString textOf(const CalibrationError& error) {
+  QString text = QObject::tr("The board %1. %2.")
+                     .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.advice()));
+  return text;
+}
+
+QPushButton* sheetButton(const QString& icon_name, const QString& text, const QString& tip, QWidget* parent) {
+  auto* const made = new QPushButton(icon(icon_name), text, parent);
+  made->setToolTip(tip);
+  made->setAutoDefault(false);  // Enter ends an edit
+  return made;
+}
+
+}  // namespace
+
+void writeBoardFile(const BoardFile& file) {
+  const QString ending = QFileInfo(file.path).suffix().toLower();
+  const std::string content = ending == "html"  ? blinkPage(file.board, file.options.margin_m, file.print)
+                              : ending == "svg" ? boardSvg(file.board, file.options, file.print)
+                              : ending == "png"
+                                  ? boardPng(file.board, file.resolution_dpi, file.options, file.print)
+                                  : boardPdf(file.board, file.options, file.print);
+  writeFileWhole(file.path.toStdString(), content);
+}
+
+PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
+    : QDialog(parent),
+      board_(board),
+      form_(new BoardForm(this)),
+      paper_form_(new QFormLayout),
+      paper_(new QComboBox(this)),
+      markers_(new QComboBox(this)),
+      border_bits_(new QComboBox(this)),
+      margin_mm_(new NumberField(0.0, 500.0, this)),
+      resolution_dpi_(new QSpinBox(this)),
+      preview_(new SheetPreview(this)),
+      message_(wrappedLabel({}, "hint", this)),
+      half_turn_(
+          wrappedLabel(tr("This board looks the same when it is turned upside down: it does for a camera's "
+                          "lens alone, not with an IMU. Take an odd number of rows."),
+                       "problem", this)),
+      measured_(new MeasuredForm(this)) {
+  setWindowTitle(tr("Print a board"));
+  setObjectName("print_board");
+  makeButtons();
+  auto* const columns = new QHBoxLayout;
+  columns->setSpacing(14);
+  columns->addWidget(makeFields());
+  auto* const right = new QVBoxLayout;
+  right->addWidget(preview_, 1);
+  right->addWidget(half_turn_);
+  right->addWidget(message_);
+  auto* const outputs = new QHBoxLayout;
+  for (QPushButton* const each : {print_, save_, blink_, open_}) outputs->addWidget(each);
+  outputs->addStretch();
+  right->addLayout(outputs);
+  columns->addLayout(right, 1);
+  auto* const close = new QDialogButtonBox(QDialogButtonBox::Close, this);
+  connect(close, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  auto* const layout = new QVBoxLayout(this);
+  layout->addLayout(columns, 1);
+  layout->addWidget(close);
+  connect(form_, &BoardForm::edited, this, [this](const Board& changed) {
+    board_ = changed;
+    measured_->setBoard(board_);
+    showBoard();
+  });
+  measured_->setBoard(board_);
+  showBoard();
+}
+
+QWidget* PrintBoardDialog::makeFields() {
+  constexpr int kWidth_px = 330;
+  auto* const fields = new QWidget(this);
+  auto* const column = new QVBoxLayout(fields);
+  column->setContentsMargins(0, 0, 6, 0);
+  form_->showNumbersOnly();
+  auto* const board = new QGroupBox(tr("1. The board"), fields);
+  (new QVBoxLayout(board))->addWidget(form_);
+  column->addWidget(board);
+  column->addWidget(makePaper());
+  column->addWidget(makeMeasure());
+  column->addStretch();
+  auto* const area = new QScrollArea(this);
+  area->setWidget(fields);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setFixedWidth(kWidth_px);
+  return area;
+}
+
+QWidget* PrintBoardDialog::makePaper() {
+  auto* const group = new QGroupBox(tr("2. The paper"), this);
+  group->setLayout(paper_form_);
+  paper_->setObjectName("paper");
+  paper_->addItem(tr("As large as the board needs"));
+  for (const Paper& paper : papers()) paper_->addItem(QString::fromStdString(paper.name));
+  paper_->setToolTip(tr("The board is in the middle of the sheet, upright or lying"));
+  margin_mm_->setValue(kSheetMmPerM * SheetOptions{}.margin_m);
+  margin_mm_->setToolTip(tr("White around the board, at least"));
+  border_bits_->addItems({tr("1 bit"), tr("2 bits, as Kalibr's")});
+  border_bits_->setCurrentIndex(TagPrint{}.border_bits - 1);
+  border_bits_->setToolTip(tr("Width of the tags' black border"));
+  for (const std::string& name : markerNames()) markers_->addItem(QString::fromStdString(name));
+  markers_->setCurrentText(QString::fromUtf8(kUsualMarkers));
+  markers_->setToolTip(tr("ArUco's dictionary of the markers, by their bits"));
+  constexpr int kLeast_dpi = 50, kMost_dpi = 1200, kUsual_dpi = 300;
+  resolution_dpi_->setRange(kLeast_dpi, kMost_dpi);
+  resolution_dpi_->setValue(kUsual_dpi);
+  resolution_dpi_->setToolTip(tr("Pixels an inch of a PNG; PDF and SVG are exact"));
+  resolution_dpi_->setFocusPolicy(Qt::StrongFocus);
+  const std::initializer_list<std::pair<QString, QWidget*>> rows = {{tr("Paper"), paper_},
+                                                                    {tr("Margin [mm]"), margin_mm_},
+                                                                    {tr("Tags' border"), border_bits_},
+                                                                    {tr("Markers"), markers_},
+                                                                    {tr("PNG [dpi]"), resolution_dpi_}};
+  for (const auto& [text, field] : rows) {
+    field->setAccessibleName(text);
+    paper_form_->addRow(text, field);
+  }
+  for (QComboBox* const box : {paper_, border_bits_, markers_})
+    connect(box, &QComboBox::currentIndexChanged, this, &PrintBoardDialog::showBoard);
+  connect(margin_mm_, &NumberField::valueEdited, this, &PrintBoardDialog::showBoard);
+  return group;
+}
+
+QWidget* PrintBoardDialog::makeMeasure() {
+  auto* const group = new QGroupBox(tr("3. After printing"), this);
+  auto* const layout = new QVBoxLayout(group);
+  layout->addWidget(
+      wrappedLabel(tr("The line below the board must be 100 mm long. Glue the print to something flat, "
+                      "and measure it. Any error in the board's size becomes the same error in translation."),
+                   "hint", group));
+  layout->addWidget(measured_);
+  layout->addWidget(take_);
+  return group;
+}
+
+void PrintBoardDialog::makeButtons() {
+  print_ = sheetButton("board", tr("&Print..."), tr("Straight to a printer, at 100 %"), this);
+  save_ = sheetButton("save", tr("&Save..."), tr("To a PDF, SVG or PNG file, true to scale"), this);
+  blink_ =
+      sheetButton("demo", tr("Page that &blinks..."),
+                  tr("For the browser: flashes the board on a screen, for the lens of an event camera that "
+                     "stands still"),
+                  this);
+  open_ = sheetButton("open", tr("&Open"), tr("Shows the file that was written"), this);
+  take_ = sheetButton(
+      "done", tr("&Use this board"),
+      tr("The session's board from now on, with what was measured; without a session, that of the "
+         "next recording that is opened"),
+      this);
+  save_->setObjectName("save_board");
+  take_->setObjectName("take_board");
+  open_->setObjectName("open_board");
+  save_->setProperty("primary", true);
+  open_->hide();
+  connect(print_, &QPushButton::clicked, this, &PrintBoardDialog::print);
+  connect(save_, &QPushButton::clicked, this, &PrintBoardDialog::chooseFile);
+  connect(blink_, &QPushButton::clicked, this, &PrintBoardDialog::chooseBlinkFile);
+  connect(open_, &QPushButton::clicked, this, [this] {
+    if (!QDesktopServices::openUrl(QUrl::fromLocalFile(written_file_)))
+      say(tr("No program of this desktop opens %1").arg(written_file_), true);
+  });
+  connect(take_, &QPushButton::clicked, this, [this] {
+    const std::optional<MeasuredLength> measured = measured_->measured();
+    emit boardTaken(board_, measured);
+    say(measured ? tr("Taken, with what was measured.") : tr("Taken as it was to be printed."), false);
+  });
+}
+
+SheetOptions PrintBoardDialog::sheetOptions() const {
+  SheetOptions options;
+  options.margin_m = margin_mm_->value() / kSheetMmPerM;
+  if (const int index = paper_->currentIndex(); index > 0)
+    options.paper = papers()[static_cast<std::size_t>(index - 1)];
+  return options;
+}
+
+TagPrint PrintBoardDialog::tagPrint() const {
+  return {border_bits_->currentIndex() + 1, markers_->currentText().toStdString()};
+}
+
+void PrintBoardDialog::showBoard() {
+  form_->setBoard(board_, {});
+  paper_form_->setRowVisible(border_bits_, board_.type == BoardType::AprilGrid);
+  paper_form_->setRowVisible(markers_, board_.type == BoardType::Charuco);
+  try {
+    sheet_ = layOut(board_, sheetOptions(), tagPrint());
+    say(tr("A sheet of %1 mm x %2 mm. Print it at 100 %.")
+            .arg(sheet_->width_mm, 0, 'f', 0)
+            .arg(sheet_->height_mm, 0, 'f', 0),
+        false);
+  } catch (const CalibrationError& error) {
+    sheet_.reset();
+    say(textOf(error), true);
+  }
+  half_turn_->setVisible(sheet_ && board_.hasHalfTurnAmbiguity());
+  preview_->setSheet(sheet_);
+  open_->hide();
+  for (QPushButton* const output : {print_, save_, blink_, take_}) output->setEnabled(sheet_.has_value());
+}
+
+void PrintBoardDialog::chooseFile() {
+  const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
+  const QString file =
+      QFileDialog::getSaveFileName(this, tr("Save the board"), QDir(folder).filePath("board.pdf"),
+                                   tr("PDF (*.pdf);;SVG (*.svg);;PNG (*.png)"));
+  if (!file.isEmpty()) saveTo(file);
+}
+
+void PrintBoardDialog::chooseBlinkFile() {
+  const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
+  const QString file = QFileDialog::getSaveFileName(
+      this, tr("Save the page that blinks"), QDir(folder).filePath("board.html"), tr("Pages (*.html)"));
+  if (!file.isEmpty()) saveTo(file);
+}
+
+void PrintBoardDialog::saveTo(const QString& file) {
+  const QString ending = QFileInfo(file).suffix().toLower();
+  if (!QStringList{"pdf", "svg", "png", "html"}.contains(ending))
+    return say(tr("%1 is not written: name it .pdf, .svg or .png").arg(QFileInfo(file).fileName()), true);
+  say(tr("Writing %1...").arg(QFileInfo(file).fileName()), false);
+  QSettings().setValue(kBoardFolderKey, QFileInfo(file).path());
+  emit fileRequested(
+      {file, board_, sheetOptions(), tagPrint(), static_cast<double>(resolution_dpi_->value())});
+}
+
+void PrintBoardDialog::setWritten(const QString& file) {
+  written_file_ = file;
+  say(file.endsWith(".html", Qt::CaseInsensitive)
+          ? tr("%1 is written. Open it on the screen that is to flash; it asks for a length, and says what "
+               "the "
+               "board's numbers are.")
+                .arg(file)
+          : tr("%1 is written. Print it at 100 %, and check the line below the board: 100 mm.").arg(file),
+      false);
+  open_->show();
+}
+
+void PrintBoardDialog::setNotWritten(const QString& why) {
+  say(why, true);
+}
+
+void PrintBoardDialog::print() {
+  QPrinter printer(QPrinter::HighResolution);
+  const bool lying = sheet_->width_mm > sheet_->height_mm;
+  const QSizeF upright_mm(std::min(sheet_->width_mm, sheet_->height_mm),
+                          std::max(sheet_->width_mm, sheet_->height_mm));
+  printer.setFullPage(true);  // true to scale, whatever the printer's margins are
+  printer.setPageLayout({QPageSize(upright_mm, QPageSize::Millimeter),
+                         lying ? QPageLayout::Landscape : QPageLayout::Portrait, QMarginsF()});
+  QPrintDialog dialog(&printer, this);
+  if (dialog.exec() != QDialog::Accepted) return;
+  QPainter painter(&printer);
+  const double dots_per_mm = printer.resolution() / kMmPerInch;
+  painter.scale(dots_per_mm, dots_per_mm);
+  paintSheet(painter, *sheet_);
+  say(painter.end() ? tr("Sent to the printer. Check the line below the board: 100 mm.")
+                    : tr("The printer took nothing. Save a PDF, and print that."),
+      false);
+}
+
+void PrintBoardDialog::say(const QString& text, bool problem) {
+  message_->setText(text);
+  message_->setProperty("role", problem ? "problem" : "hint");
+  message_->setStyleSheet(problem ? QString("color: %1").arg(theme().bad.name()) : QString());
+}
+
+}  // namespace evical::ui

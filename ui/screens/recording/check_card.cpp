@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording/check_card.h"
+
+#include "ui/screens/check_words.h"
+#include "ui/screens/recording/light_mark.h"
+#include "ui/screens/wrapped_label.h"
+#include "ui/theme/theme.h"
+
+#include <QCheckBox>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+// Of a rig with one camera and one IMU nobody needs the names.
+bool hasSeveralSensors(const RecordingAssessment& assessment) {
+  const auto count = [&](AssessedThing thing) {
+    return std::count_if(assessment.all.begin(), assessment.all.end(),
+                         [&](const Assessed& one) { return one.thing == thing; });
+  };
+  return count(AssessedThing::Board) > 1 || count(AssessedThing::Turns) > 1;
+}
+
+}  // namespace
+
+CheckCard::CheckCard(QWidget* parent)
+    : QFrame(parent),
+      mark_(new LightMark(this)),
+      summary_(wrappedLabel({}, "heading", this)),
+      advice_(wrappedLabel({}, "hint", this)),
+      board_(wrappedLabel({}, "hint", this)),
+      progress_(new QProgressBar(this)),
+      more_(new QToolButton(this)),
+      details_(new QScrollArea(this)),
+      grid_(new QGridLayout) {
+  setProperty("card", "true");
+  setObjectName("check_card");
+  summary_->setObjectName("check_summary");
+  advice_->setObjectName("check_advice");
+  board_line_ = makeBoardLine();
+  follow_line_ = makeFollowLine();
+  more_->setCheckable(true);
+  more_->setObjectName("check_details");
+  connect(more_, &QToolButton::toggled, this, &CheckCard::showDetails);
+  auto* const how = new QToolButton(this);
+  how->setText(tr("How to record..."));
+  how->setObjectName("how_to_record");
+  how->setToolTip(tr("Shows the motions that a calibration needs"));
+  connect(how, &QToolButton::clicked, this, &CheckCard::howToRecordRequested);
+  progress_->setRange(0, 1000);
+  progress_->setTextVisible(false);
+  progress_->setFixedWidth(160);
+  progress_->setAccessibleName(tr("How far the recording has been looked through"));
+  auto* const line = new QHBoxLayout;
+  line->addWidget(mark_);
+  line->addWidget(summary_, 1);
+  for (QWidget* const widget :
+       {static_cast<QWidget*>(progress_), static_cast<QWidget*>(how), static_cast<QWidget*>(more_)})
+    line->addWidget(widget);
+  grid_->setHorizontalSpacing(12);
+  grid_->setVerticalSpacing(5);
+  grid_->setColumnStretch(3, 1);
+  auto* const rows = new QWidget(details_);
+  rows->setLayout(grid_);
+  details_->setWidget(rows);
+  details_->setWidgetResizable(true);
+  details_->setFrameShape(QFrame::NoFrame);
+  details_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  details_->viewport()->setAutoFillBackground(false);
+  rows->setAutoFillBackground(false);
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(14, 6, 10, 8);
+  layout->setSpacing(4);
+  layout->addLayout(line);
+  layout->addWidget(advice_);
+  layout->addWidget(board_line_);
+  layout->addWidget(follow_line_);
+  layout->addWidget(details_, 1);
+  grid_->setContentsMargins(0, 4, 0, 2);
+  setUnconfirmedBoard({});
+  showDetails(false);
+  clear();
+}
+
+QWidget* CheckCard::makeBoardLine() {
+  auto* const line = new QWidget(this);
+  auto* const confirm = new QPushButton(icon("check"), tr("It is this one"), line);
+  confirm->setObjectName("confirm_board");
+  confirm->setToolTip(tr("Confirms that the board's numbers are those of the print before the camera"));
+  connect(confirm, &QPushButton::clicked, this, &CheckCard::boardConfirmed);
+  auto* const layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(board_, 1);
+  layout->addWidget(confirm);
+  return line;
+}
+
+QWidget* CheckCard::makeFollowLine() {
+  auto* const line = new QWidget(this);
+  follow_ = new QCheckBox(tr("&Follow while it is being written"), line);
+  follow_->setObjectName("follow_recording");
+  follow_->setToolTip(tr(
+      "Another program is writing this recording: it is looked through again and again, and what is still\n"
+      "missing is said here, until nothing more comes for five seconds"));
+  connect(follow_, &QCheckBox::toggled, this, &CheckCard::followingWanted);
+  auto* const layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(wrappedLabel(tr("The recording is growing."), "hint", line));
+  layout->addWidget(follow_);
+  layout->addStretch(1);
+  line->hide();
+  return line;
+}
+
+void CheckCard::offerFollowing(bool offered) {
+  follow_line_->setVisible(offered);
+  if (offered) setVisible(true);
+}
+
+void CheckCard::setFollowing(bool following) {
+  following_ = following;
+  const QSignalBlocker quiet(follow_);
+  follow_->setChecked(following);
+}
+
+void CheckCard::showState(const QString& summary, std::optional<Light> light) {
+  idle_ = false;
+  assessed_ = false;
+  summary_->setText(summary);
+  mark_->setVisible(light.has_value());
+  if (light) mark_->setLight(*light);
+  setAccessibleName(summary);
+  progress_->hide();
+  advice_->hide();
+  more_->setVisible(false);
+  showDetails(more_->isChecked());
+}
+
+void CheckCard::clear() {
+  showState(tr("Before you calibrate"), std::nullopt);
+  idle_ = true;
+  // Those are to be said whatever else is known.
+  setVisible(board_line_->isVisibleTo(this) || follow_line_->isVisibleTo(this));
+}
+
+void CheckCard::setChecking(double fraction) {
+  const bool keep = following_ && assessed_;
+  if (!progress_->isVisibleTo(this) && !keep) showState(tr("Checking the recording..."), {});
+  progress_->show();
+  progress_->setValue(static_cast<int>(1000.0 * fraction));
+  setVisible(true);
+}
+
+void CheckCard::setWaiting() {
+  showState(tr("Whether the recording is good enough is looked at afterwards"), {});
+  setVisible(true);
+}
+
+void CheckCard::setFailed(const QString& why) {
+  if (following_) {
+    showState(tr("Nothing can be said yet"), {});
+    advice_->setText(tr("It is looked through again when there is more of it."));
+    advice_->setToolTip(why);
+    advice_->show();
+    return setVisible(true);
+  }
+  showState(tr("This recording cannot be calibrated"), Light::Poor);
+  advice_->setText(sentence(why));
+  advice_->show();
+  setVisible(true);
+}
+
+void CheckCard::setAssessment(const RecordingAssessment& assessment) {
+  showState(following_ ? summaryWhileWritten(assessment) : summaryOf(assessment), assessment.light);
+  assessed_ = true;
+  showAdvice(assessment);
+  showLights(assessment);
+  more_->setVisible(true);
+  showDetails(more_->isChecked());
+  setVisible(true);
+}
+
+void CheckCard::showAdvice(const RecordingAssessment& assessment) {
+  advice_->setToolTip({});
+  if (following_) {
+    const QString missing = stillMissing(assessment);
+    advice_->setText(missing);
+    return advice_->setVisible(!missing.isEmpty());
+  }
+  const std::vector<const Assessed*> sorted = worstFirst(assessment);
+  const auto first =
+      std::find_if(sorted.begin(), sorted.end(), [](const Assessed* one) { return !one->advice.empty(); });
+  if (first == sorted.end()) return;
+  const QString advice = sentence(QString::fromStdString((*first)->advice));
+  advice_->setText((*first)->thing == AssessedThing::Obstacle
+                       ? sentence(QString::fromStdString((*first)->measured)) + ' ' + advice
+                       : advice);
+  advice_->show();
+}
+
+void CheckCard::showLights(const RecordingAssessment& assessment) {
+  while (QLayoutItem* const item = grid_->takeAt(0)) {
+    delete item->widget();
+    delete item;
+  }
+  const bool named = hasSeveralSensors(assessment);
+  int row = 0;
+  for (const Assessed& one : assessment.all) {
+    auto* const mark = new LightMark(details_->widget());
+    mark->setLight(one.light);
+    const QString sensor = QString::fromStdString(one.sensor);
+    const QString title = titleOf(one.thing);
+    auto* const name = wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "",
+                                    details_->widget());
+    auto* const measured = wrappedLabel(QString::fromStdString(one.measured), "", details_->widget());
+    auto* const advice =
+        wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
+    name->setWordWrap(false);
+    measured->setWordWrap(one.thing == AssessedThing::Obstacle);
+    measured->setAccessibleName(tr("%1: %2, %3").arg(title, measured->text(), lightWord(one.light)));
+    grid_->addWidget(mark, row, 0, Qt::AlignTop);
+    grid_->addWidget(name, row, 1, Qt::AlignTop);
+    grid_->addWidget(measured, row, 2, Qt::AlignTop);
+    grid_->addWidget(advice, row, 3, Qt::AlignTop);
+    ++row;
+  }
+  for (int i = 0; i < row; ++i) grid_->setRowStretch(i, 0);
+  grid_->setRowStretch(row, 1);  // what is left is below
+}
+
+void CheckCard::showDetails(bool shown) {
+  more_->setText(shown ? tr("Less") : tr("More"));
+  more_->setIcon(icon(shown ? "up" : "down"));
+  more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  more_->setToolTip(shown ? tr("Hides what was looked at")
+                          : tr("Shows all that was looked at, with its lights"));
+  const bool visible = shown && more_->isVisibleTo(this);
+  if (visible == details_->isVisibleTo(this)) return;
+  details_->setVisible(visible);
+  setSizePolicy(QSizePolicy::Preferred, visible ? QSizePolicy::Expanding : QSizePolicy::Maximum);
+  emit detailsShown(visible);
+}
+
+void CheckCard::setUnconfirmedBoard(const QString& board) {
+  board_->setText(tr("Board: %1: not confirmed. Compare its numbers with the print.").arg(board));
+  board_line_->setVisible(!board.isEmpty());
+  if (idle_) setVisible(!board.isEmpty());
+}
+
+QString CheckCard::text() const {
+  QStringList lines;
+  for (const QLabel* const each : findChildren<QLabel*>())
+    if (each->isVisibleTo(this) && !each->text().isEmpty()) lines << each->text();
+  return lines.join('\n');
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording/how_to_record_dialog.h"
+
+#include "ui/screens/recording/motion_picture.h"
+#include "ui/theme/theme.h"
+
+#include <QDialogButtonBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+
+Motion motionOfDesktop() {
+  return desktopAnimates() ? Motion::Moving : Motion::Reduced;
+}
+
+HowToRecordDialog::HowToRecordDialog(Motion motion, QWidget* parent)
+    : QDialog(parent),
+      list_(new QListWidget(this)),
+      picture_(new MotionPicture(this)),
+      words_(new QLabel(this)),
+      play_(new QToolButton(this)) {
+  constexpr int kList_px = 210, kWords_px = 92;
+  setWindowTitle(tr("How to record"));
+  setObjectName("how_to_record_dialog");
+  list_->setAccessibleName(tr("Motions"));
+  list_->setToolTip(tr("The motions that a recording needs"));
+  list_->setFixedWidth(kList_px);
+  for (const ShownMotion& each : shownMotions()) list_->addItem(each.title);
+  words_->setWordWrap(true);
+  words_->setMinimumHeight(kWords_px);
+  words_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  play_->setObjectName("play_motion");
+  play_->setCheckable(true);
+  play_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  connect(play_, &QToolButton::toggled, this, &HowToRecordDialog::setPlaying);
+  connect(list_, &QListWidget::currentRowChanged, this, &HowToRecordDialog::choose);
+  auto* const close = new QDialogButtonBox(QDialogButtonBox::Close, this);
+  connect(close, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  auto* const column = new QVBoxLayout;
+  column->addWidget(picture_, 1);
+  column->addWidget(words_);
+  auto* const row = new QHBoxLayout;
+  row->addWidget(list_);
+  row->addLayout(column, 1);
+  auto* const below = new QHBoxLayout;
+  below->addWidget(play_);
+  below->addWidget(close, 1);
+  auto* const layout = new QVBoxLayout(this);
+  layout->addLayout(row, 1);
+  layout->addLayout(below);
+  list_->setCurrentRow(0);
+  play_->setChecked(motion == Motion::Moving);
+  setPlaying(play_->isChecked());
+}
+
+void HowToRecordDialog::showMotion(const QString& name) {
+  const std::vector<ShownMotion>& all = shownMotions();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].name == name) list_->setCurrentRow(static_cast<int>(i));
+}
+
+void HowToRecordDialog::choose(int row) {
+  if (row < 0) return;
+  const ShownMotion& motion = shownMotions()[static_cast<std::size_t>(row)];
+  picture_->setMotion(motion);
+  words_->setText(motion.words);
+}
+
+void HowToRecordDialog::setPlaying(bool playing) {
+  picture_->setPlaying(playing);
+  play_->setText(playing ? tr("Pause") : tr("Play"));
+  play_->setShortcut(Qt::Key_Space);  // which a new text takes away
+  play_->setIcon(icon(playing ? "pause" : "play"));
+  play_->setToolTip(playing ? tr("Holds the picture (Space)") : tr("Lets the picture move (Space)"));
+}
+
+}  // namespace evical::ui

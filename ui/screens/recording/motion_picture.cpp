@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording/motion_picture.h"
+
+#include "core/geometry/board.h"
+#include "ui/theme/theme.h"
+
+#include <QPainter>
+#include <QPolygonF>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kFrame_ms = 40;
+constexpr double kFocal_px = 262.0, kWidth_px = 346.0, kHeight_px = 260.0;  // of the camera that is drawn
+
+Board shownBoard() {
+  Board board;
+  board.spacing_m = 0.035;
+  board.radius_m = 0.013;
+  return board;
+}
+
+// Its long side lies along the image's.
+Eigen::Vector3d onBoard(const Board& board, const Eigen::Vector2d& point_m) {
+  const Eigen::Vector2d from_middle_m = point_m - 0.5 * board.extent_m();
+  return {from_middle_m.y(), -from_middle_m.x(), kShownDistance_m};
+}
+
+// A place to look from, as wide as needed.
+struct Looker {
+  RigidTransform looker_from_world;
+  double focal_px = 1.0;
+  QPointF middle;
+
+  QPointF project(const Eigen::Vector3d& point_m) const {
+    const Eigen::Vector3d seen = looker_from_world * point_m;
+    return middle + focal_px / std::max(seen.z(), 0.05) * QPointF(seen.x(), seen.y());
+  }
+};
+
+// From behind and above, to the left of who holds the camera.
+Looker looksOver(const QRectF& box) {
+  const Eigen::Vector3d eye(-0.75, -0.5, -0.45), at(0.02, 0.0, 0.32);
+  const Eigen::Vector3d ahead = (at - eye).normalized();
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitY().cross(ahead).normalized();
+  Eigen::Matrix3d rows;
+  rows << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
+  const Eigen::Quaterniond rotation(rows);
+  return {{rotation, -(rotation * eye)}, 1.8 * std::min(box.width(), 1.3 * box.height()), box.center()};
+}
+
+void paintArrowHead(QPainter& painter, QPointF tip, QPointF from) {
+  constexpr double kHead_px = 9.0, kHalfWidth = 0.5;
+  const QPointF way = tip - from;
+  const double length = std::hypot(way.x(), way.y());
+  if (length < 1e-6) return;
+  const QPointF along = kHead_px / length * way, across(-along.y(), along.x());
+  painter.drawPolygon(QPolygonF{tip, tip - along + kHalfWidth * across, tip - along - kHalfWidth * across});
+}
+
+// Where the followed point goes, with a head at either end.
+void paintWay(QPainter& painter, const Looker& looker, const ShownMotion& motion) {
+  constexpr int kSteps = 240;
+  QPolygonF way;
+  for (int i = 0; i <= kSteps; ++i)
+    way << looker.project(motion.world_from_camera(static_cast<double>(i) / kSteps) * motion.followed);
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(theme().accent, 2.5));
+  painter.drawPolyline(way);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(theme().accent);
+  // At its two ends: the two points that are furthest apart.
+  qsizetype first = 0, last = 0;
+  const auto far = [&](qsizetype a, qsizetype b) {
+    return std::hypot(way[a].x() - way[b].x(), way[a].y() - way[b].y());
+  };
+  for (qsizetype i = 0; i < way.size(); ++i)
+    if (far(i, way.size() / 4) > far(last, way.size() / 4)) last = i;
+  for (qsizetype i = 0; i < way.size(); ++i)
+    if (far(i, last) > far(first, last)) first = i;
+  const auto before = [&](qsizetype end) {
+    constexpr qsizetype kBack = 12;
+    return way[end >= kBack ? end - kBack : end + kBack];
+  };
+  paintArrowHead(painter, way[first], before(first));
+  paintArrowHead(painter, way[last], before(last));
+}
+
+void paintBoard(QPainter& painter, const Looker& looker) {
+  constexpr double kAround_m = 0.03;
+  const Board board = shownBoard();
+  const Eigen::Vector2d low = Eigen::Vector2d::Constant(-kAround_m), high = board.extent_m() - low;
+  painter.setPen(QPen(theme().grid_line, 1.0));
+  painter.setBrush(Qt::white);
+  painter.drawPolygon(
+      QPolygonF{looker.project(onBoard(board, low)), looker.project(onBoard(board, {high.x(), low.y()})),
+                looker.project(onBoard(board, high)), looker.project(onBoard(board, {low.x(), high.y()}))});
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(Qt::black);
+  constexpr int kCorners = 16;
+  for (const Eigen::Vector2d& centre_m : boardPoints_m(board)) {
+    QPolygonF circle;
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = 2.0 * M_PI * i / kCorners;
+      circle << looker.project(
+          onBoard(board, centre_m + board.radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
+    }
+    painter.drawPolygon(circle);
+  }
+}
+
+// A body, and the corners of what it sees.
+void paintCamera(QPainter& painter, const Looker& looker, const RigidTransform& world_from_camera,
+                 double opacity) {
+  constexpr double kAhead_m = 0.1;
+  const double x = 0.5 * kWidth_px / kFocal_px * kAhead_m, y = 0.5 * kHeight_px / kFocal_px * kAhead_m;
+  const auto at = [&](double px, double py, double pz) {
+    return looker.project(world_from_camera * Eigen::Vector3d(px, py, pz));
+  };
+  const QPolygonF front{at(-x, -y, kAhead_m), at(x, -y, kAhead_m), at(x, y, kAhead_m), at(-x, y, kAhead_m)};
+  constexpr double kBody_m = 0.03;
+  const QPolygonF back{at(-kBody_m, -kBody_m, -0.04), at(kBody_m, -kBody_m, -0.04),
+                       at(kBody_m, kBody_m, -0.04), at(-kBody_m, kBody_m, -0.04)};
+  const QPolygonF face{at(-kBody_m, -kBody_m, 0.0), at(kBody_m, -kBody_m, 0.0), at(kBody_m, kBody_m, 0.0),
+                       at(-kBody_m, kBody_m, 0.0)};
+  painter.save();
+  painter.setOpacity(opacity);
+  painter.setPen(QPen(theme().text, 1.5));
+  painter.setBrush(theme().panel);
+  painter.drawPolygon(face);
+  for (int i = 0; i < 4; ++i)
+    painter.drawPolygon(QPolygonF{back[i], back[(i + 1) % 4], face[(i + 1) % 4], face[i]});
+  painter.drawPolygon(back);
+  QColor sight = theme().accent;
+  sight.setAlphaF(0.18F);
+  painter.setBrush(sight);
+  painter.setPen(QPen(theme().accent, 1.5));
+  const QPointF centre = at(0.0, 0.0, 0.0);
+  for (int i = 0; i < 4; ++i) painter.drawPolygon(QPolygonF{centre, front[i], front[(i + 1) % 4]});
+  // Its up, so that turns about the lens are seen.
+  painter.setPen(QPen(theme().warning, 3.0));
+  painter.drawLine(front[0], front[1]);
+  painter.restore();
+}
+
+Looker cameraAt(const RigidTransform& world_from_camera, const QRectF& image) {
+  return {inverse(world_from_camera), kFocal_px * image.width() / kWidth_px, image.center()};
+}
+
+// Median of the circles', of a sensor of 346 x 260 pixels.
+double speed_px_s(const ShownMotion& motion, double share) {
+  constexpr double kStep_s = 0.02;
+  const QRectF sensor(0.0, 0.0, kWidth_px, kHeight_px);
+  const Looker now = cameraAt(motion.world_from_camera(share), sensor),
+               soon = cameraAt(motion.world_from_camera(share + kStep_s / kShownMotion_s), sensor);
+  const Board board = shownBoard();
+  std::vector<double> speeds;
+  for (const Eigen::Vector2d& centre_m : boardPoints_m(board)) {
+    const QPointF way = soon.project(onBoard(board, centre_m)) - now.project(onBoard(board, centre_m));
+    speeds.push_back(std::hypot(way.x(), way.y()) / kStep_s);
+  }
+  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
+                   speeds.end());
+  return speeds[speeds.size() / 2];
+}
+
+}  // namespace
+
+MotionPicture::MotionPicture(QWidget* parent) : QWidget(parent), motion_(shownMotions().front()) {
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+  timer_.setInterval(kFrame_ms);
+  connect(&timer_, &QTimer::timeout, this, &MotionPicture::tick);
+}
+
+void MotionPicture::setMotion(const ShownMotion& motion) {
+  motion_ = motion;
+  setAccessibleName(motion.title);
+  setAccessibleDescription(motion.words);
+  setShare(0.0);
+}
+
+void MotionPicture::setShare(double share) {
+  share_ = share - std::floor(share);
+  update();
+}
+
+void MotionPicture::setPlaying(bool playing) {
+  wanted_ = playing;
+  since_tick_.start();
+  playing&& isVisible() ? timer_.start() : timer_.stop();
+}
+
+void MotionPicture::showEvent(QShowEvent*) {
+  setPlaying(wanted_);
+}
+
+void MotionPicture::hideEvent(QHideEvent*) {
+  timer_.stop();
+}
+
+void MotionPicture::tick() {
+  setShare(share_ + 1e-3 * static_cast<double>(since_tick_.restart()) / kShownMotion_s);
+}
+
+void MotionPicture::paintEvent(QPaintEvent*) {
+  constexpr double kGap_px = 10.0, kCaption_px = 24.0;
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const double column = 0.5 * (width() - kGap_px);
+  const QRectF left(0.0, 0.0, column, height()), right(column + kGap_px, 0.0, column, height());
+  for (const QRectF& box : {left, right}) {
+    painter.setPen(QPen(theme().grid_line, 1.0));
+    painter.setBrush(theme().panel);
+    painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0);
+  }
+  paintScene(painter, left.adjusted(6.0, 6.0, -6.0, -kCaption_px));
+  paintCaption(painter, left, tr("What to do"));
+  paintView(painter, right.adjusted(8.0, 8.0, -8.0, -kCaption_px - 2.0));
+  // By tens: nobody reads more of what changes all the time.
+  const int speed = 10 * static_cast<int>(std::lround(0.1 * speed_px_s(motion_, share_)));
+  paintCaption(painter, right,
+               playing() ? tr("What the camera sees: %1 px/s").arg(speed) : tr("What the camera sees"));
+}
+
+void MotionPicture::paintCaption(QPainter& painter, const QRectF& box, const QString& text) const {
+  painter.setPen(theme().faint_text);
+  painter.drawText(box.adjusted(8.0, 0.0, -8.0, -5.0), Qt::AlignHCenter | Qt::AlignBottom, text);
+}
+
+void MotionPicture::paintScene(QPainter& painter, const QRectF& box) const {
+  painter.save();
+  painter.setClipRect(box);
+  const Looker looker = looksOver(box);
+  paintBoard(painter, looker);
+  paintCamera(painter, looker, motion_.world_from_camera(share_), 1.0);
+  paintWay(painter, looker, motion_);
+  painter.restore();
+}
+
+void MotionPicture::paintView(QPainter& painter, const QRectF& box) const {
+  const double scale = std::min(box.width() / kWidth_px, box.height() / kHeight_px);
+  QRectF image(0.0, 0.0, scale * kWidth_px, scale * kHeight_px);
+  image.moveCenter(box.center());
+  painter.save();
+  painter.setClipRect(image);
+  painter.fillRect(image, theme().window);
+  paintBoard(painter, cameraAt(motion_.world_from_camera(share_), image));
+  painter.restore();
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(theme().accent, 1.5));
+  painter.drawRect(image);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A motion, drawn: who holds the camera before the board, and what the camera sees.
+#pragma once
+
+#include "ui/screens/recording/shown_motion.h"
+
+#include <QElapsedTimer>
+#include <QTimer>
+#include <QWidget>
+
+class QPainter;
+
+namespace evical::ui {
+
+class MotionPicture : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit MotionPicture(QWidget* parent = nullptr);
+
+  void setMotion(const ShownMotion& motion);  // from its begin
+  void setPlaying(bool playing);              // else it stands where it is
+  bool playing() const { return timer_.isActive(); }
+  double share() const { return share_; }  // of the ten seconds
+  void setShare(double share);
+  QSize sizeHint() const override { return {560, 300}; }
+  QSize minimumSizeHint() const override { return {360, 190}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
+
+ private:
+  void tick();
+  void paintScene(QPainter& painter, const QRectF& box) const;
+  void paintView(QPainter& painter, const QRectF& box) const;
+  void paintCaption(QPainter& painter, const QRectF& box, const QString& text) const;
+
+  ShownMotion motion_;
+  QTimer timer_;
+  QElapsedTimer since_tick_;
+  double share_ = 0.0;
+  bool wanted_ = false;  // it plays whenever it is seen
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording/recording_screen.h"
+
+#include "core/pipeline/session/session_boards.h"
+#include "core/pipeline/session/session_guess.h"
+#include "ui/screens/board/boards_form.h"
+#include "ui/screens/recording/aim_chooser.h"
+#include "ui/screens/recording/camera_form.h"
+#include "ui/screens/recording/check_card.h"
+#include "ui/screens/recording/imu_form.h"
+#include "ui/screens/recording/stream_table.h"
+#include "ui/screens/recording/time_range_form.h"
+#include "ui/screens/wrapped_label.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QFormLayout>
+#include <QFrame>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QStackedWidget>
+#include <QTabWidget>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace evical::ui {
+namespace {
+
+bool isOfUnfinishedFile(FaultKind kind) {
+  return kind == FaultKind::Truncated || kind == FaultKind::NoIndex;
+}
+
+// `beside`: on the heading's line.
+QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget* beside = nullptr) {
+  auto* const frame = new QFrame(parent);
+  frame->setProperty("card", "true");
+  auto* const layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(14, 10, 14, 12);
+  auto* const line = new QHBoxLayout;
+  line->addWidget(wrappedLabel(heading, "heading", frame), beside == nullptr ? 1 : 0);
+  if (beside != nullptr) line->addWidget(beside, 1);
+  layout->addLayout(line);
+  layout->addWidget(content, 1);
+  return frame;
+}
+
+QScrollArea* scrolling(QWidget* content) {
+  auto* const area = new QScrollArea;
+  area->setWidget(content);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->viewport()->setAutoFillBackground(false);
+  content->setAutoFillBackground(false);
+  return area;
+}
+
+// From the first event or sample to the last, of whatever stream.
+std::optional<double> duration_s(const Inspection& inspection) {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  for (const StreamSummary& stream : inspection.streams) {
+    const bool is_read = stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
+    if (stream.count == 0 || !is_read) continue;
+    first_ns = std::min(first_ns, stream.first_ns);
+    last_ns = std::max(last_ns, stream.last_ns);
+  }
+  if (last_ns <= first_ns) return std::nullopt;
+  return 1e-9 * static_cast<double>(last_ns - first_ns);
+}
+
+void showOrHide(QLabel* shown, const QString& text) {
+  shown->setText(text);
+  shown->setVisible(!text.isEmpty());
+}
+
+}  // namespace
+
+RecordingScreen::RecordingScreen(QWidget* parent)
+    : QWidget(parent),
+      stack_(new QStackedWidget(this)),
+      title_(wrappedLabel({}, "title", this)),
+      path_(wrappedLabel({}, "hint", this)),
+      verdict_(wrappedLabel({}, "heading", this)),
+      looking_text_(wrappedLabel({}, "hint", this)),
+      stream_problem_(wrappedLabel({}, "problem", this)),
+      file_faults_(wrappedLabel({}, "problem", this)),
+      looking_(new QProgressBar(this)),
+      streams_(new StreamTable(this)),
+      time_range_(new TimeRangeForm(this)),
+      boards_(new BoardsForm(this)),
+      check_(new CheckCard(this)),
+      sensors_(new QTabWidget(this)),
+      reference_(new QComboBox(this)),
+      aim_(new AimChooser(this)),
+      camera_only_(new QPushButton(icon("calibrate"), tr("Calibrate the camera"), this)) {
+  stack_->addWidget(makeEmpty());
+  stack_->addWidget(makeContent());
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(stack_);
+  connect(boards_, &BoardsForm::sessionEdited, this, &RecordingScreen::sessionEdited);
+  connect(time_range_, &TimeRangeForm::edited, this, [this](const TimeRangeForm::Range& range_s) {
+    Session changed = session_;
+    changed.time_range_s = range_s;
+    emit sessionEdited(changed, tr("Change the time range"), "time_range");
+  });
+  connect(streams_, &StreamTable::roleChosen, this,
+          [this](int row, StreamRole role) { chooseRole(row, static_cast<int>(role)); });
+  connect(reference_, &QComboBox::textActivated, this, [this](const QString& name) {
+    Session changed = session_;
+    changed.reference = name.toStdString();
+    settleBoards(changed);
+    emit sessionEdited(changed, tr("Change the reference"), {});
+  });
+}
+
+QWidget* RecordingScreen::makeEmpty() {
+  auto* const empty = new QWidget(this);
+  auto* const layout = new QVBoxLayout(empty);
+  auto* const text = wrappedLabel(tr("No recording yet."), "heading", empty);
+  text->setAlignment(Qt::AlignCenter);
+  auto* const open = new QPushButton(icon("recording"), tr("Open a recording..."), empty);
+  connect(open, &QPushButton::clicked, this, &RecordingScreen::openRecordingRequested);
+  layout->addStretch();
+  layout->addWidget(text);
+  layout->addWidget(open, 0, Qt::AlignHCenter);
+  layout->addStretch();
+  return empty;
+}
+
+QWidget* RecordingScreen::makeHeader() {
+  auto* const header = new QWidget(this);
+  auto* const layout = new QVBoxLayout(header);
+  layout->setContentsMargins(4, 0, 4, 0);
+  layout->setSpacing(2);
+  auto* const line = new QHBoxLayout;
+  line->addWidget(title_, 1);
+  verdict_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  line->addWidget(verdict_, 1);
+  camera_only_->setObjectName("camera_only");
+  camera_only_->setToolTip(tr("Its lens alone: that is all that one camera without an IMU can tell"));
+  camera_only_->hide();
+  connect(camera_only_, &QPushButton::clicked, this, &RecordingScreen::cameraOnlyRequested);
+  line->addWidget(camera_only_);
+  layout->addLayout(line);
+  auto* const below = new QHBoxLayout;
+  below->addWidget(path_, 1);
+  below->addWidget(aim_);
+  layout->addLayout(below);
+  return header;
+}
+
+QWidget* RecordingScreen::makeContent() {
+  auto* const content = new QWidget(this);
+  auto* const streams = new QWidget(content);
+  auto* const column = new QVBoxLayout(streams);
+  column->setContentsMargins(0, 0, 0, 0);
+  looking_->setRange(0, 1000);
+  looking_->setTextVisible(false);
+  for (QWidget* const widget : std::initializer_list<QWidget*>{
+           looking_text_, looking_, streams_, makeRangeAndFiles(streams), file_faults_, stream_problem_})
+    column->addWidget(widget);
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(10);
+  layout->addWidget(makeHeader());
+  layout->addWidget(card(tr("Streams"), streams, content));
+  layout->addWidget(check_);
+  QWidget* const forms = makeForms();
+  layout->addWidget(forms, 1);
+  connect(check_, &CheckCard::detailsShown, forms, [this, forms, layout](bool shown) {
+    forms->setVisible(!shown);
+    layout->setStretchFactor(check_, shown ? 1 : 0);
+  });
+  for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
+  looking_->hide();
+  return content;
+}
+
+QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
+  auto* const line = new QWidget(parent);
+  auto* const layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(time_range_, 1);
+  auto* const add = new QPushButton(icon("open"), tr("Sensors from another file..."), line);
+  add->setObjectName("add_recording");
+  add->setToolTip(
+      tr("An IMU or a camera that was recorded into a file of its own, by the same clock or one whose offset "
+         "is known"));
+  connect(add, &QPushButton::clicked, this, &RecordingScreen::addRecordingRequested);
+  layout->addWidget(add);
+  return line;
+}
+
+QWidget* RecordingScreen::makeForms() {
+  auto* const forms = new QWidget(this);
+  auto* const sensors = new QWidget(forms);
+  auto* const column = new QVBoxLayout(sensors);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(sensors_, 1);
+  auto* const form = new QFormLayout;
+  reference_->setToolTip(
+      tr("The IMU in whose frame, and on whose clock, everything is expressed; a camera "
+         "where there is no IMU"));
+  form->addRow(tr("Reference"), reference_);
+  column->addLayout(form);
+  auto* const row = new QHBoxLayout(forms);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(10);
+  row->addWidget(card(tr("Board"), boards_, forms, boards_->chooser()), 1);
+  row->addWidget(card(tr("Sensors"), sensors, forms), 1);
+  return forms;
+}
+
+void RecordingScreen::setSession(const Session& session) {
+  const bool other_recording = session.recording != session_.recording;
+  session_ = session;
+  stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
+  title_->setText(QString::fromStdString(session.recording.filename().string()));
+  path_->setText(QString::fromStdString(session.recording.parent_path().string()));
+  boards_->setSession(session);
+  other_recording ? listStreams() : streams_->setSession(session);
+  time_range_->setRange(session.time_range_s);
+  showSensors();
+}
+
+// Other cameras whose sensor this one's stream may come from, too: none where others have it from this one.
+std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
+    if (session_.cameras[i].same_sensor_as == session_.cameras[camera].name) return {};
+    if (i != camera && session_.cameras[i].same_sensor_as.empty()) names.push_back(session_.cameras[i].name);
+  }
+  return names;
+}
+
+// None where there is but one.
+std::vector<std::string> RecordingScreen::possibleBoards() const {
+  return session_.further_boards.empty() ? std::vector<std::string>() : boardNames(session_);
+}
+
+// Forms stay while the number of sensors does: an edit must not take the focus away.
+void RecordingScreen::showSensors() {
+  if (cameras_.size() != session_.cameras.size() || imus_.size() != session_.imus.size()) {
+    while (sensors_->count() > 0) delete sensors_->widget(0);
+    cameras_.clear();
+    imus_.clear();
+    for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
+      cameras_.push_back(new CameraForm);
+      sensors_->addTab(scrolling(cameras_.back()), icon("camera"), {});
+      connect(cameras_.back(), &CameraForm::edited, this,
+              [this, i](const SessionCamera& camera, const QString& field) { editCamera(i, camera, field); });
+    }
+    for (std::size_t i = 0; i < session_.imus.size(); ++i) {
+      imus_.push_back(new ImuForm);
+      sensors_->addTab(scrolling(imus_.back()), icon("imu"), {});
+      connect(imus_.back(), &ImuForm::edited, this,
+              [this, i](const SessionImu& imu, const QString& field) { editImu(i, imu, field); });
+    }
+  }
+  int tab = 0;
+  reference_->clear();
+  for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
+    cameras_[i]->setFound(foundIntrinsics(i));
+    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i), possibleBoards());
+    sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
+    if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
+  }
+  for (std::size_t i = 0; i < imus_.size(); ++i, ++tab) {
+    imus_[i]->setImu(session_.imus[i]);
+    sensors_->setTabText(tab, QString::fromStdString(session_.imus[i].name));
+    reference_->addItem(sensors_->tabText(tab));
+  }
+  reference_->setCurrentText(QString::fromStdString(session_.reference));
+}
+
+void RecordingScreen::setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found) {
+  found_intrinsics_ = found;
+  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setFound(foundIntrinsics(i));
+}
+
+std::optional<CameraIntrinsics> RecordingScreen::foundIntrinsics(std::size_t camera) const {
+  return camera < found_intrinsics_.size() ? found_intrinsics_[camera] : std::nullopt;
+}
+
+void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
+  QStringList at_streams;
+  std::vector<QString> at_cameras(cameras_.size());
+  for (const auto& [field, text] : field_and_text) {
+    bool placed = false;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if (!field.startsWith(QString::fromStdString("cameras." + session_.cameras[i].name + "."))) continue;
+      at_cameras[i] = text;
+      placed = true;
+    }
+    if (!placed && !BoardsForm::isOfBoards(field)) at_streams << text;
+  }
+  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
+  boards_->setProblems(field_and_text);
+  showOrHide(stream_problem_, at_streams.join('\n'));
+  problems_ = field_and_text.size();
+  showVerdict();
+}
+
+void RecordingScreen::offerCameraOnly(bool offered) {
+  camera_only_->setVisible(offered);
+  showVerdict();
+}
+
+void RecordingScreen::setReservation(const QString& text, Light light) {
+  reservation_ = text;
+  reservation_light_ = light;
+  showVerdict();
+}
+
+void RecordingScreen::showVerdict() {
+  const bool camera_only = !camera_only_->isHidden();
+  const bool reserved = !camera_only && !reservation_.isEmpty();
+  verdict_->setText(problems_ == 1  ? tr("One thing is missing")
+                    : problems_ > 1 ? tr("%1 things are missing").arg(problems_)
+                    : camera_only   ? tr("Nothing to calibrate but the lens:")
+                    : reserved      ? reservation_
+                                    : tr("Ready to calibrate"));
+  const bool bad = problems_ > 0 || (reserved && reservation_light_ == Light::Poor);
+  const bool undecided = reserved && reservation_light_ == Light::Good;
+  const QColor colour = bad         ? theme().bad
+                        : undecided ? theme().faint_text
+                        : reserved  ? theme().warning
+                                    : theme().good;
+  verdict_->setStyleSheet(QString("color: %1").arg(colour.name()));
+}
+
+void RecordingScreen::clearInspections() {
+  inspected_.clear();
+  time_range_->setDuration({});
+  streams_->clearStreams();
+  showOrHide(file_faults_, {});
+}
+
+void RecordingScreen::setInspecting(const QString& recording) {
+  showOrHide(looking_text_, tr("Looking through %1...").arg(recording));
+  looking_->setValue(0);
+  looking_->show();
+}
+
+void RecordingScreen::setInspectionProgress(double fraction) {
+  looking_->setValue(static_cast<int>(1000.0 * fraction));
+}
+
+void RecordingScreen::addInspection(const QString& recording, std::shared_ptr<const Inspection> inspection) {
+  inspected_.push_back({recording.toStdString(), std::move(inspection)});
+  looking_text_->hide();
+  looking_->hide();
+  listStreams();
+  showFileFaults();
+}
+
+std::filesystem::path RecordingScreen::ownRecording(const Inspected& one) const {
+  return one.recording == session_.recording ? std::filesystem::path() : one.recording;
+}
+
+void RecordingScreen::listStreams() {
+  streams_->clearStreams();
+  for (const Inspected& one : inspected_) {
+    streams_->addInspection(*one.inspection, ownRecording(one));
+    if (one.recording == session_.recording) time_range_->setDuration(duration_s(*one.inspection));
+  }
+  streams_->setSession(session_);
+}
+
+void RecordingScreen::setBeingWritten(bool being_written) {
+  if (being_written == being_written_) return;
+  being_written_ = being_written;
+  showFileFaults();
+}
+
+// Faults that belong to no stream: truncated or corrupt files.
+void RecordingScreen::showFileFaults() {
+  QStringList faults;
+  for (const Inspected& one : inspected_)
+    for (const RecordingFault& fault : one.inspection->faults)
+      if (fault.stream.empty() && !(being_written_ && isOfUnfinishedFile(fault.kind)))
+        faults << QString::fromStdString(fault.text);
+  showOrHide(file_faults_, faults.join('\n'));
+}
+
+void RecordingScreen::setInspectionFailed(const QString& why) {
+  looking_->hide();
+  looking_text_->hide();
+  showOrHide(file_faults_, why);
+}
+
+void RecordingScreen::chooseRole(int row, int role) {
+  auto stream = static_cast<std::size_t>(row);
+  auto one = inspected_.begin();
+  for (; one != inspected_.end() && stream >= one->inspection->streams.size(); ++one)
+    stream -= one->inspection->streams.size();
+  if (one == inspected_.end()) return;
+  const StreamSummary& summary = one->inspection->streams[stream];
+  const std::filesystem::path own_recording = ownRecording(*one);
+  Session changed = session_;
+  const auto isThis = [&](const auto& sensor) {
+    return sensor.stream == summary.info.name && sensor.recording == own_recording;
+  };
+  std::erase_if(changed.cameras, isThis);
+  std::erase_if(changed.imus, [&](const SessionImu& imu) {
+    const bool is_accelerometer = imu.accelerometer_stream == summary.info.name;
+    return isThis(imu) || (is_accelerometer && imu.recording == own_recording);
+  });
+  if (static_cast<StreamRole>(role) == StreamRole::Camera)
+    changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
+  if (static_cast<StreamRole>(role) == StreamRole::Imu) {
+    const SessionImu guessed = guessedImu(summary, *one->inspection, changed, own_recording);
+    // If the other of the two streams is already an IMU, it becomes this one.
+    std::erase_if(changed.imus, [&](const SessionImu& imu) {
+      return imu.recording == own_recording &&
+             (imu.stream == guessed.stream || imu.stream == guessed.accelerometer_stream);
+    });
+    changed.imus.push_back(guessed);
+  }
+  keepReference(changed);
+  settleBoards(changed);
+  emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});
+}
+
+void RecordingScreen::renameReference(const std::string& from, const std::string& to,
+                                      Session& session) const {
+  if (session.reference == from) session.reference = to;
+  for (SessionCamera& camera : session.cameras)
+    if (camera.same_sensor_as == from) camera.same_sensor_as = to;
+}
+
+void RecordingScreen::editCamera(std::size_t index, const SessionCamera& camera, const QString& field) {
+  Session changed = session_;
+  renameReference(changed.cameras.at(index).name, camera.name, changed);
+  changed.cameras.at(index) = camera;
+  settleBoards(changed);
+  const QString name = QString::fromStdString(camera.name);
+  emit sessionEdited(changed, tr("Change %1").arg(name), "cameras." + name + "." + field);
+}
+
+void RecordingScreen::editImu(std::size_t index, const SessionImu& imu, const QString& field) {
+  Session changed = session_;
+  renameReference(changed.imus.at(index).name, imu.name, changed);
+  changed.imus.at(index) = imu;
+  const QString name = QString::fromStdString(imu.name);
+  emit sessionEdited(changed, tr("Change %1").arg(name), "imus." + name + "." + field);
+}
+
+}  // namespace evical::ui

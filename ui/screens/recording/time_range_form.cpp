@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording/time_range_form.h"
+
+#include "ui/theme/theme.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QLocale>
+#include <QStyle>
+#include <QToolButton>
+
+#include <limits>
+
+namespace evical::ui {
+namespace {
+
+QString numberText(double value) {
+  constexpr int kDigits = 12;
+  return QLocale::c().toString(value, 'g', kDigits);
+}
+
+// What was typed: a time, nothing, or something else.
+struct Typed {
+  bool is_empty = false, is_time = false;
+  double time_s = 0.0;
+};
+
+Typed typedIn(const QLineEdit& field) {
+  const QString text = field.text().trimmed().replace(',', '.');
+  if (text.isEmpty()) return {true, false, 0.0};
+  bool is_number = false;
+  const double time_s = QLocale::c().toDouble(text, &is_number);
+  return {false, is_number && time_s >= 0.0 && time_s < std::numeric_limits<double>::infinity(), time_s};
+}
+
+QLineEdit* timeField(const QString& help, QWidget* parent) {
+  constexpr int kWidth_px = 84;
+  auto* const field = new QLineEdit(parent);
+  field->setFixedWidth(kWidth_px);
+  field->setAlignment(Qt::AlignRight);
+  field->setToolTip(help);
+  field->setAccessibleName(help);
+  return field;
+}
+
+}  // namespace
+
+TimeRangeForm::TimeRangeForm(QWidget* parent)
+    : QWidget(parent),
+      begin_(timeField(tr("Begin in seconds since the recording's start; empty: from the start"), this)),
+      end_(timeField(tr("End in seconds since the recording's start; empty: to its end"), this)),
+      all_(new QToolButton(this)),
+      words_(new QLabel(this)) {
+  begin_->setObjectName("time_range_begin");
+  end_->setObjectName("time_range_end");
+  words_->setObjectName("time_range_words");
+  words_->setWordWrap(true);
+  all_->setIcon(icon("reset"));
+  all_->setToolTip(tr("Use all of the recording"));
+  all_->setAccessibleName(all_->toolTip());
+  auto* const label = new QLabel(tr("Time range [s]"), this);
+  label->setBuddy(begin_);
+  auto* const row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->addWidget(label);
+  row->addWidget(begin_);
+  row->addWidget(new QLabel(tr("to"), this));
+  row->addWidget(end_);
+  row->addWidget(all_);
+  row->addWidget(words_, 1);
+  connect(begin_, &QLineEdit::editingFinished, this, &TimeRangeForm::take);
+  connect(end_, &QLineEdit::editingFinished, this, &TimeRangeForm::take);
+  connect(all_, &QToolButton::clicked, this, [this] {
+    begin_->clear();
+    end_->clear();
+    take();
+  });
+  setRange({});
+}
+
+void TimeRangeForm::setRange(const Range& range_s) {
+  range_s_ = range_s;
+  begin_->setText(range_s ? numberText((*range_s)[0]) : QString());
+  end_->setText(range_s ? numberText((*range_s)[1]) : QString());
+  showAdvice();
+}
+
+void TimeRangeForm::setDuration(std::optional<double> duration_s) {
+  duration_s_ = duration_s;
+  showAdvice();
+}
+
+void TimeRangeForm::take() {
+  const Typed begin = typedIn(*begin_), end = typedIn(*end_);
+  for (const Typed& typed : {begin, end})
+    if (!typed.is_empty && !typed.is_time) return say(tr("Give seconds since the recording's start."));
+  const bool to_the_end = end.is_empty;
+  if (begin.time_s == 0.0 && to_the_end) {
+    if (range_s_) emit edited({});
+    return showAdvice();
+  }
+  if (to_the_end && !duration_s_) return say(tr("Give an end too: the recording's is not known yet."));
+  const double end_s = to_the_end ? *duration_s_ : end.time_s;
+  if (duration_s_ && begin.time_s >= *duration_s_)
+    return say(tr("The recording ends at %1 s.").arg(*duration_s_, 0, 'f', 2));
+  if (end_s <= begin.time_s) return say(tr("The end must come after the begin."));
+  const std::array<double, 2> typed = {begin.time_s, end_s};
+  if (range_s_ != typed) emit edited(typed);
+  showAdvice();
+}
+
+// Fields keep what was typed, so that it can be mended.
+void TimeRangeForm::say(const QString& problem) {
+  words_->setText(problem);
+  words_->setProperty("role", "problem");
+  words_->style()->polish(words_);
+}
+
+void TimeRangeForm::showAdvice() {
+  begin_->setPlaceholderText("0");
+  end_->setPlaceholderText(duration_s_ ? QString::number(*duration_s_, 'f', 2) : tr("the end"));
+  all_->setEnabled(range_s_.has_value());
+  QString advice = tr("All of the recording is used.");
+  if (range_s_) {
+    const auto [begin_s, end_s] = *range_s_;
+    advice = tr("%1 s of the recording are used.").arg(end_s - begin_s, 0, 'g', 4);
+    if (duration_s_ && end_s > *duration_s_)
+      advice = tr("The recording ends before, at %1 s.").arg(*duration_s_, 0, 'f', 2);
+  }
+  words_->setText(advice);
+  words_->setProperty("role", "hint");
+  words_->style()->polish(words_);
+}
+
+}  // namespace evical::ui

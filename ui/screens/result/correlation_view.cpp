@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result/correlation_view.h"
+
+#include "core/report/quantity_words.h"
+#include "ui/jobs/file_saver.h"
+#include "ui/theme/theme.h"
+
+#include <QContextMenuEvent>
+#include <QHelpEvent>
+#include <QLinearGradient>
+#include <QMenu>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QToolTip>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kColourScale_px = 34;  // the colour scale and its numbers, below
+
+QColor colourOf(double correlation) {
+  const QColor& end = correlation < 0.0 ? theme().axes[2] : theme().axes[0];
+  return mixed(theme().panel, end, std::min(1.0, std::abs(correlation)));
+}
+
+}  // namespace
+
+CorrelationView::CorrelationView(QWidget* parent) : QWidget(parent), saver_(new FileSaver(this)) {
+  setMouseTracking(true);
+  setAccessibleName(tr("Correlation of the quantities"));
+}
+
+void CorrelationView::setCorrelation(const QStringList& names, const Eigen::MatrixXd& correlation) {
+  names_ = names;
+  correlation_ = correlation;
+  words_.clear();
+  groups_.clear();
+  for (qsizetype i = 0; i < names.size(); ++i) {
+    QuantityWords words = quantityWords(names[i].toStdString());
+    words_ << QString::fromStdString(quantitySentence(words));
+    words.part.clear();
+    const QString label = QString::fromStdString(quantitySentence(words));
+    if (groups_.empty() || groups_.back().label != label) groups_.push_back({label, i, 0});
+    ++groups_.back().count;
+  }
+  hovered_.reset();
+  setAccessibleDescription(strongestPairs(3).join("; "));
+  update();
+}
+
+QStringList CorrelationView::axisLabels() const {
+  QStringList labels;
+  for (const Group& group : groups_) labels << group.label;
+  return labels;
+}
+
+QFont CorrelationView::labelFont() const {
+  constexpr double kPoints = 7.5;
+  QFont small = font();
+  small.setPointSizeF(kPoints);
+  return small;
+}
+
+double CorrelationView::longestLabel_px() const {
+  const QFontMetricsF metrics(labelFont());
+  double longest_px = 0.0;
+  for (const Group& group : groups_)
+    longest_px = std::max(longest_px, metrics.horizontalAdvance(group.label));
+  return longest_px + 8.0;
+}
+
+double CorrelationView::cellSize_px() const {
+  const auto count = static_cast<double>(std::max<Eigen::Index>(1, correlation_.rows()));
+  return std::max(1.0,
+                  std::min(width() - origin().x() - 4.0, height() - origin().y() - kColourScale_px) / count);
+}
+
+// Names stand left of the rows and, upright, above the columns.
+QPointF CorrelationView::origin() const {
+  constexpr double kSideShare = 0.36, kTopShare = 0.3;
+  return {std::min(longestLabel_px(), kSideShare * width()),
+          std::min(longestLabel_px(), kTopShare * height())};
+}
+
+QPoint CorrelationView::cellMiddle(Eigen::Index row, Eigen::Index col) const {
+  const QPointF inside(static_cast<double>(col) + 0.5, static_cast<double>(row) + 0.5);
+  return (origin() + cellSize_px() * inside).toPoint();
+}
+
+void CorrelationView::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  if (correlation_.size() == 0) {
+    painter.setPen(theme().faint_text);
+    painter.drawText(rect(), Qt::AlignCenter, tr("No correlations yet."));
+    return;
+  }
+  paintCells(painter);
+  paintLabels(painter);
+  paintScale(painter);
+}
+
+void CorrelationView::paintCells(QPainter& painter) const {
+  const double cell_px = cellSize_px();
+  const auto square = [&](Eigen::Index row, Eigen::Index col) {
+    return QRectF(origin() + cell_px * QPointF(static_cast<double>(col), static_cast<double>(row)),
+                  QSizeF(cell_px, cell_px));
+  };
+  for (Eigen::Index row = 0; row < correlation_.rows(); ++row)
+    for (Eigen::Index col = 0; col < correlation_.cols(); ++col)
+      painter.fillRect(square(row, col), colourOf(correlation_(row, col)));
+  painter.setPen(theme().grid_line);
+  const double side_px = cell_px * static_cast<double>(correlation_.rows());
+  painter.drawRect(QRectF(origin(), QSizeF(side_px, side_px)));
+  for (const Group& group : groups_) {
+    const double at_px = cell_px * static_cast<double>(group.begin);
+    painter.drawLine(origin() + QPointF(0.0, at_px), origin() + QPointF(side_px, at_px));
+    painter.drawLine(origin() + QPointF(at_px, 0.0), origin() + QPointF(at_px, side_px));
+  }
+  if (!hovered_) return;
+  painter.setPen(QPen(theme().text, 1.5));
+  painter.drawRect(square(hovered_->first, hovered_->second));
+}
+
+// Where lines are too narrow for all names some are left out: the tool tips have them all.
+void CorrelationView::paintLabels(QPainter& painter) const {
+  painter.setFont(labelFont());
+  painter.setPen(theme().text);
+  const double line_px = painter.fontMetrics().height();
+  double free_from_px = 0.0;
+  for (const Group& group : groups_) {
+    const double middle_px =
+        cellSize_px() * (static_cast<double>(group.begin) + 0.5 * static_cast<double>(group.count));
+    if (middle_px - 0.5 * line_px < free_from_px - 1.5) continue;
+    free_from_px = middle_px + 0.5 * line_px;
+    const auto draw = [&](double room_px) {
+      const QRectF line(-room_px, -0.5 * line_px, room_px - 4.0, line_px);
+      painter.drawText(
+          line, Qt::AlignRight | Qt::AlignVCenter | Qt::TextDontClip,
+          painter.fontMetrics().elidedText(group.label, Qt::ElideRight, static_cast<int>(room_px) - 4));
+    };
+    painter.save();
+    painter.translate(origin().x(), origin().y() + middle_px);
+    draw(origin().x());
+    painter.restore();
+    painter.save();
+    painter.translate(origin().x() + middle_px, origin().y());
+    painter.rotate(90.0);
+    draw(origin().y());
+    painter.restore();
+  }
+}
+
+void CorrelationView::paintScale(QPainter& painter) const {
+  const double side_px = cellSize_px() * static_cast<double>(correlation_.rows());
+  const QRectF bar(origin().x(), origin().y() + side_px + 8.0, side_px, 8.0);
+  QLinearGradient gradient(bar.topLeft(), bar.topRight());
+  for (const double correlation : {-1.0, -0.5, 0.0, 0.5, 1.0})
+    gradient.setColorAt(0.5 * (correlation + 1.0), colourOf(correlation));
+  painter.fillRect(bar, gradient);
+  painter.setFont(font());
+  painter.setPen(theme().faint_text);
+  const QRectF text = bar.translated(0.0, 10.0).adjusted(0.0, 0.0, 0.0, 8.0);
+  painter.drawText(text, Qt::AlignLeft | Qt::TextDontClip, "-1");
+  painter.drawText(text, Qt::AlignHCenter | Qt::TextDontClip, "0");
+  painter.drawText(text, Qt::AlignRight | Qt::TextDontClip, "+1");
+}
+
+std::optional<CorrelationView::Cell> CorrelationView::cellAt(const QPointF& position) const {
+  const QPointF inside = (position - origin()) / cellSize_px();
+  const auto col = static_cast<Eigen::Index>(std::floor(inside.x()));
+  const auto row = static_cast<Eigen::Index>(std::floor(inside.y()));
+  if (row < 0 || col < 0 || row >= correlation_.rows() || col >= correlation_.cols()) return std::nullopt;
+  return Cell{row, col};
+}
+
+QString CorrelationView::textAt(const QPoint& position) const {
+  const std::optional<Cell> cell = cellAt(position);
+  if (!cell || cell->first >= names_.size() || cell->second >= names_.size()) return {};
+  return tr("%1 and %2: %3")
+      .arg(words_[cell->first], words_[cell->second])
+      .arg(correlation_(cell->first, cell->second), 0, 'f', 3);
+}
+
+QStringList CorrelationView::strongestPairs(int count) const {
+  std::vector<Cell> cells;
+  for (Eigen::Index row = 0; row < correlation_.rows(); ++row)
+    for (Eigen::Index col = row + 1; col < correlation_.cols(); ++col) cells.emplace_back(row, col);
+  const auto stronger = [&](const Cell& a, const Cell& b) {
+    return std::abs(correlation_(a.first, a.second)) > std::abs(correlation_(b.first, b.second));
+  };
+  std::sort(cells.begin(), cells.end(), stronger);
+  QStringList pairs;
+  for (std::size_t i = 0; i < cells.size() && static_cast<int>(i) < count; ++i) {
+    const auto [row, col] = cells[i];
+    pairs << tr("%1 and %2: %3")
+                 .arg(words_.value(row), words_.value(col))
+                 .arg(correlation_(row, col), 0, 'f', 2);
+  }
+  return pairs;
+}
+
+bool CorrelationView::event(QEvent* event) {
+  if (event->type() != QEvent::ToolTip) return QWidget::event(event);
+  const auto* const help = static_cast<QHelpEvent*>(event);
+  QToolTip::showText(help->globalPos(), textAt(help->pos()), this);
+  return true;
+}
+
+void CorrelationView::mouseMoveEvent(QMouseEvent* event) {
+  const std::optional<Cell> cell = cellAt(event->position());
+  if (cell == hovered_) return;
+  hovered_ = cell;
+  update();
+}
+
+void CorrelationView::leaveEvent(QEvent*) {
+  hovered_.reset();
+  update();
+}
+
+QString CorrelationView::csv() const {
+  QString text = "name";
+  for (const QString& name : names_) text += "," + name;
+  text += "\n";
+  for (Eigen::Index row = 0; row < correlation_.rows(); ++row) {
+    text += names_.value(row);
+    for (Eigen::Index col = 0; col < correlation_.cols(); ++col)
+      text += "," + QString::number(correlation_(row, col), 'g', 9);
+    text += "\n";
+  }
+  return text;
+}
+
+void CorrelationView::save(bool table) {
+  if (!table) return saver_->askAndSave(tr("Save the picture"), "correlation", pictureForms(this));
+  const auto prepare = [this] { return [text = csv()] { return text.toUtf8(); }; };
+  saver_->askAndSave(tr("Save the data"), "correlation", {{tr("Table"), "csv", prepare}});
+}
+
+void CorrelationView::contextMenuEvent(QContextMenuEvent* event) {
+  auto* const menu = new QMenu(this);
+  menu->setAttribute(Qt::WA_DeleteOnClose);
+  menu->addAction(icon("save"), tr("Save &picture (PNG, SVG, PDF)..."), this, [this] { save(false); });
+  menu->addAction(tr("Save &data (CSV)..."), this, [this] { save(true); });
+  menu->popup(event->globalPos());
+}
+
+}  // namespace evical::ui
