@@ -1,5 +1,6 @@
-# Fails where a source names a document, or cites a section of one, that isn't there, and where the sections of
-# docs/maths.md are not numbered in order. Run with -DROOT=<source folder>; -P.
+# Fails if a source names a document, or cites a section of one, that does not exist, if the sections of docs/maths.md are not
+# numbered in order, or if it names a file or a function that does not exist: `core/a/b` (`function`, ...), without extension.
+# Run with -DROOT=<source folder>; -P.
 cmake_minimum_required(VERSION 3.25)
 
 set(faults "")
@@ -55,8 +56,32 @@ foreach(source IN LISTS sources)
   endforeach()
 endforeach()
 
+file(READ "${ROOT}/docs/maths.md" text)
+string(REPLACE ";" "," text "${text}")
+string(REGEX MATCHALL "`core/[a-z0-9_/]+`([ \n]\\([^)]*\\))?" places "${text}")
+foreach(place IN LISTS places)
+  string(REGEX MATCH "core/[a-z0-9_/]+" file "${place}")
+  file(GLOB candidates "${ROOT}/${file}.h" "${ROOT}/${file}.cpp")
+  set(code "")
+  foreach(candidate IN LISTS candidates)
+    file(READ "${candidate}" content)
+    string(APPEND code "${content}")
+  endforeach()
+  string(REPLACE "`${file}`" "" place "${place}")
+  string(REGEX MATCHALL "[A-Za-z_0-9]+" functions "${place}")
+  if(NOT candidates)
+    list(APPEND faults "docs/maths.md: there is no ${file}.h or .cpp")
+  endif()
+  foreach(function IN LISTS functions)
+    math(EXPR count "${count} + 1")
+    if(candidates AND NOT code MATCHES "[^A-Za-z_0-9]${function}[^A-Za-z_0-9]")
+      list(APPEND faults "docs/maths.md: ${file} has no ${function}")
+    endif()
+  endforeach()
+endforeach()
+
 if(faults)
   list(JOIN faults "\n  " text)
   message(FATAL_ERROR "Citations that lead nowhere:\n  ${text}")
 endif()
-message(STATUS "Citations: ${count}, all of documents and sections that are there.")
+message(STATUS "Citations: ${count}, all of documents, sections and functions that exist.")
