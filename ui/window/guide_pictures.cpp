@@ -21,16 +21,16 @@ struct GuidePicture {
 constexpr std::array<GuidePicture, 12> kPictures = {{
     {"The shortest way", "start-light", "Start"},
     {"Before you record", "print-board-light", "Print a board"},
-    {"Before you record", "check-light", "Recording: the card says whether the recording will do"},
+    {"Before you record", "check-light", "Recording: the card shows whether the recording is good enough"},
     {"Your own recording", "recording-light", "Recording: streams, board and sensors"},
     {"A camera alone", "lens-light", "Result of a camera alone"},
-    {"While it calibrates", "detection-dark", "Detection: events, the board found in them, and why"},
+    {"While it calibrates", "detection-dark", "Detection: events and the board detected in them"},
     {"Reading the result", "result-light", "Result: every number with its sigma"},
-    {"Windows one by one", "residuals-light", "Residuals: over the image, by window, their distribution"},
+    {"Windows one by one", "residuals-light", "Residuals over the image, by window, and their distribution"},
     {"Trajectory and convergence", "trajectory-light", "Trajectory"},
     {"Trajectory and convergence", "convergence-light", "Convergence"},
-    {"Trajectory and convergence", "signals-light", "Signals: measured and predicted, and what is left"},
-    {"Copying and handing on", "export-light", "Export: which programs, where to, read back"},
+    {"Trajectory and convergence", "signals-light", "Signals: measured, predicted, and their difference"},
+    {"Copying and handing on", "export-light", "Export: programs, folder, and the check of the files"},
 }};
 constexpr const char *kMotionsPart = "Before you record", *kMotion = "motion-";
 constexpr double kMotionShape = 0.5;  // height by width
