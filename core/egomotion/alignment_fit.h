@@ -21,8 +21,9 @@ struct AlignmentState {
   double time_offset_s = 0.0;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
-  // What is left of a lever arm l between camera and what it turns about, by the scene's depth, where v = w x l is not
-  // quite known: it turns what is seen by (l_x w_z - l_z w_x, l_y w_z - l_z w_y, 0). Only of joint_fit.h.
+  // Remaining effect of a lever arm l between the camera and the centre of rotation, divided by the scene's
+  // depth, if v = w x l is uncertain. It adds (l_x w_z - l_z w_x, l_y w_z - l_z w_y, 0) to the seen rotation.
+  // Used in joint_fit.h only.
   Eigen::Vector3d lever_left = Eigen::Vector3d::Zero();
 };
 
@@ -39,7 +40,7 @@ class AlignmentFit {
   // Gauss-Newton from `state`. False where the numbers do not tell it.
   bool solve(AlignmentState& state);
 
-  // What the last solve() left of each window, in units of how much they scatter: squares of three numbers.
+  // Residuals of each window after the last solve(), in units of their scatter: squares of three numbers.
   const std::vector<double>& squares() const { return squares_; }
   double medianError_rad_s() const { return median_error_rad_s_; }
 

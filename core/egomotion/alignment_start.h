@@ -1,5 +1,5 @@
-// Where the alignment may begin: offsets at which camera and gyroscope turn equally fast, each with the rotation that
-// fits then. Not for other folders.
+// Starting points of the alignment: offsets at which camera and gyroscope rotate equally fast, each with the
+// best rotation. Not for other folders.
 #pragma once
 
 #include "core/egomotion/alignment_fit.h"

@@ -1,4 +1,4 @@
-// What a recording tells of how one camera moves: the motion of every window, and edges to ask again.
+// One camera's part of a recording: the motion of every window, and edges for the joint fit.
 #pragma once
 
 #include "core/data/edge_slope.h"

@@ -1,4 +1,5 @@
-// What one edge says of a camera's motion (docs/maths.md, 16.2): g . (A w + B v / Z) = 1. Not for other folders.
+// One edge's equation for a camera's motion (docs/maths.md, 16.2): g . (A w + B v / Z) = 1. Not for other
+// folders.
 #pragma once
 
 #include "core/data/edge_slope.h"
@@ -16,8 +17,8 @@ namespace evical {
 
 using ImageMotion = Eigen::Matrix<double, 2, 3>;  // d(image velocity) / d(angular or linear velocity)
 
-// Of a camera that turns with w and moves with v, both in its own frame: a point that stands still has the velocity
-// -v - w x P in it.
+// Image motion of a point at rest, for a camera with angular velocity w and velocity v in its own frame: the
+// point has the velocity -v - w x P in it.
 ImageMotion rotationalMotion(const Eigen::Vector2d& place);
 ImageMotion translationalMotion(const Eigen::Vector2d& place);  // at depth 1
 
@@ -28,7 +29,7 @@ struct EdgeRow {
   double time_s = 0.0;          // since the window's begin
   double depth_variance = 0.0;  // of g . u, from depths that differ within the patch
   ImageMotion by_rotation, by_translation;
-  Eigen::Vector3d known_rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, beside the one that is fitted
+  Eigen::Vector3d known_rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in addition to the fitted one
 };
 
 // Every second, third ... where a window has more than options.most_slopes. Those that the lens does not see are left out.

@@ -1,4 +1,4 @@
-// How a camera's own rotation is found without a board, and beside an IMU's. docs/maths.md, 16.
+// Options of a camera's rotation without a board, aligned with an IMU's. docs/maths.md, 16.
 #pragma once
 
 #include "core/base/option_struct.h"

@@ -97,7 +97,7 @@ void JointFit::expectVelocities() {
   velocity_information_ = options_.velocity_weight / (squares / windows + kLeast);
 }
 
-// All windows' parts, and what is known before of lever_left: little.
+// All windows' parts, and the weak prior of lever_left.
 JointVector JointFit::sumParts(const AlignmentState& state) {
   constexpr std::size_t kPartsATask = 8;
   inParallel(input_.threads, (windows_.size() + kPartsATask - 1) / kPartsATask, [&](std::size_t task) {
@@ -120,7 +120,7 @@ JointVector JointFit::sumParts(const AlignmentState& state) {
 bool JointFit::solve(AlignmentState& state, double from, double to) {
   constexpr int kIterations = 15;
   constexpr double kLargestTurn_rad = 0.2, kLargestDelay_s = 0.01;
-  // Of sigmas that hold the noise of edges alone: of what is asked for, and of the others.
+  // Limits in sigmas from the noise of edges alone: for the results, and for the others.
   constexpr double kDone = 0.1, kOthersDone = 1.0, kNearlyDone = 1.0;
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterations; ++iteration) {

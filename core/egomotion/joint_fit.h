@@ -44,7 +44,7 @@ class JointFit {
     double middle_s = 0.0;
   };
   const std::vector<Part>& parts() const { return parts_; }
-  const JointMatrix& normal() const { return normal_; }  // their sum, with what is known before
+  const JointMatrix& normal() const { return normal_; }  // their sum, with the priors
 
  private:
   void expectVelocities();

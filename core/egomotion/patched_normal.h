@@ -58,7 +58,7 @@ class PatchedNormal {
   }
   Vector diagonal() const { return normal_.diagonal(); }
 
-  // What the depths change by where the numbers change by `step`; no more than a factor of e.
+  // Changes the depths according to a change of the numbers by `step`, by at most a factor of e.
   void moveDepths(const Vector& step, double damping, std::vector<double>& log_nearness) const {
     for (std::size_t k = 0; k < log_nearness.size(); ++k) {
       const double own = std::max(depth_normal_[k], prior_) * (1.0 + damping);

@@ -58,9 +58,9 @@ std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windo
   return covered;
 }
 
-// The delete-a-block jackknife, to first order: what each block moves the estimate by. With few blocks their scatter is
-// itself uncertain, as Student's distribution says. What the noise of edges makes of numbers that hardly count in any block
-// is beside it.
+// The delete-a-block jackknife, to first order: how much each block moves the estimate. With few blocks their
+// scatter is uncertain itself, which Student's distribution describes. The noise of edges is added for
+// numbers that hardly count in any block.
 std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionOptions& options,
                                            int& blocks) {
   std::map<double, JointFit::Part> sums;
@@ -155,7 +155,7 @@ void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const E
 std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                const Eigen::Matrix3d& matrix, const AlignmentState& before,
                                                const EgomotionOptions& options, RotationAlignment& out) {
-  // Those at the ends are lost to whatever the offset may be; only then the solution asks for all.
+  // Windows at the ends are lost if the offset may be anything; only then the solution asks for all.
   std::vector<WindowMotion> searched = windows;
   std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, before.time_offset_s);
   std::erase_if(inside, [&](const WindowMotion* window) {

@@ -1,8 +1,8 @@
-// How a camera is turned against an IMU, and how their clocks differ, from the rates at which both turn
-// (docs/maths.md, 16.3 and 16.4):
+// Rotation and time offset between a camera and an IMU, from their angular rates (docs/maths.md, 16.3 and
+// 16.4):
 //   scale * camera_from_imu * M^-1 (rate_measured(t + time_offset) - bias) = rate_of_camera(t).
-// First from the windows' own rates, then from all edges at once. The scale is that of the image's motion, which is none of
-// what is asked for, and bears what would shrink all rates alike.
+// First from the windows' rates, then from all edges at once. The scale is that of the image's motion. It is
+// not a result, and absorbs all that would shrink the rates alike.
 #pragma once
 
 #include "core/base/progress.h"
@@ -25,7 +25,7 @@ namespace evical {
 struct GyroscopeRecord {
   std::span<const ImuSample> samples;
   std::int64_t start_ns = 0;  // of the recording
-  const ImuState& imu;        // its matrix is taken as it is, its bias as a start
+  const ImuState& imu;        // its matrix is used unchanged, its bias as a start
 };
 
 struct AlignmentStart {
@@ -41,12 +41,12 @@ struct RotationAlignment {
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
-  // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording, and by
-  // what depths and translation may have left.
+  // Covariance of the rotation about the IMU's axes [rad] and of the time offset [s]: from the scatter of
+  // blocks of the recording, and the remaining effects of depths and translation.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   int blocks = 0;
-  // What the same numbers would be further with half as many depths across and down, and were all that moves taken as turning:
-  // how much hangs on depths and on translation.
+  // Changes of the same numbers with half as many depths across and down, and with all motion taken as
+  // rotation: the dependence on depths and on translation.
   Eigen::Vector4d by_coarser_depths = Eigen::Vector4d::Zero(), by_turning_alone = Eigen::Vector4d::Zero();
   double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's turning, and of what is left of it
   Eigen::Vector3d weakest_in_camera =

@@ -1,4 +1,5 @@
-// What a gyroscope says, summed over time: means over any stretch of it, which change smoothly with where it lies.
+// Gyroscope samples, summed over time: means over any stretch, which change smoothly with its beginning and
+// end.
 #pragma once
 
 #include "core/data/imu_sample.h"

@@ -126,7 +126,7 @@ WindowFit::Vector6d WindowFit::held(double size) const {
   return diagonal;
 }
 
-// How well translation is known of each edge, and how well motion explains them all.
+// Accuracy of the translation for each edge, and the fit of the motion to all of them.
 void WindowFit::rescale() {
   std::vector<double> sizes;
   for (EdgeRow& row : rows_) {

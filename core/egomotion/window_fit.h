@@ -13,7 +13,7 @@
 namespace evical {
 
 struct WindowState {
-  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();    // beside the rows' known ones
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();    // in addition to the rows' known rates
   Eigen::Vector3d velocity_1_s = Eigen::Vector3d::Zero();  // by the mean depth
   std::vector<double> log_nearness;                        // by patch: of the mean depth by its own
 };
@@ -44,7 +44,8 @@ class WindowFit {
   };
   Seen seen(const EdgeRow& row) const { return seenAs(row, state_); }
   double weightOf(const EdgeResidual& residual) const;  // 1 at 0
-  // Of what the weighted residual changes by where the residual does: the weight, less what it changes by itself. Below 0 far out.
+  // Change of the weighted residual with the residual: the weight, minus the weight's own change. Below 0 for
+  // large residuals.
   double curvatureOf(const EdgeResidual& residual) const;
   double scale() const { return scale_; }  // of the residuals' values, robust
 
@@ -55,7 +56,7 @@ class WindowFit {
 
  private:
   static Seen seenAs(const EdgeRow& row, const WindowState& state);
-  Vector6d held(double size) const;  // added to the diagonal of what is no unknown
+  Vector6d held(double size) const;  // added to the diagonal of fixed numbers
   void rescale();
   double costOf(const WindowState& state) const;
   void build();

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// When in the window what it tells was told.
+// Times in the window at which the motion was determined.
 void weighParts(const WindowFit& fit, double window_s, WindowMotion& out) {
   double sum = 0.0;
   for (const EdgeRow& row : fit.rows()) {
@@ -61,7 +61,7 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   const double alone = fit.medianSquare();
   if (!fit.start(WindowUnknowns::Both)) return out;
   fit.refine();
-  // As well, up to what three numbers more explain by chance.
+  // Equally good, up to what three numbers more explain by chance.
   constexpr double kAsWell = 1.05, kNegligible = 0.01;  // squares of sigmas
   out.rotation_alone = alone <= kAsWell * fit.medianSquare() + kNegligible;
   out.inliers = fit.inlierShare();

@@ -1,6 +1,6 @@
-// The camera's motion in a short window of time, from how fast edges move along their normals (docs/maths.md, 16.2). The
-// image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at which an edge passes has the
-// slope g with g . (A w + B v / Z) = 1: whatever the scene is, as long as it stands still.
+// The camera's motion in a short window of time, from the speed of edges along their normals (docs/maths.md,
+// 16.2). The image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at
+// which an edge passes has the slope g with g . (A w + B v / Z) = 1. This holds for any scene at rest.
 #pragma once
 
 #include "core/data/edge_slope.h"
@@ -17,13 +17,13 @@
 
 namespace evical {
 
-// What became of a window. The rows of windowUseWords.
+// Outcome of a window. The rows of windowUseWords.
 enum class WindowUse {
   Used,
   FewEdges,      // too few with a speed
-  HardlyMoving,  // the image nearly stands still
-  NotExplained,  // most edges do not move as in a scene that stands still
-  Uncertain,     // the rotation is not told in any direction
+  HardlyMoving,  // the image is nearly at rest
+  NotExplained,  // most edges do not move as in a scene at rest
+  Uncertain,     // no direction of the rotation is determined
   NoGyroscope,   // the IMU has no samples at that time
   OutOfLine,     // it contradicts the others: by more than they scatter
 };
@@ -34,9 +34,8 @@ struct WindowMotion {
   static constexpr std::size_t kParts = 8;
 
   WindowUse use = WindowUse::FewEdges;
-  double begin_s = 0.0, end_s = 0.0;  // on the camera's clock since the recording's start
-  std::array<double, kParts> part_weights =
-      {};  // of equal parts of the window: how much each tells; their sum is 1
+  double begin_s = 0.0, end_s = 0.0;             // on the camera's clock since the recording's start
+  std::array<double, kParts> part_weights = {};  // of equal parts of the window; their sum is 1
   std::size_t slopes = 0;
   double inliers = 0.0;                                  // share of them that the motion explains
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in its frame

@@ -12,7 +12,7 @@ struct BestRotation {
   Eigen::Vector3d main_axis;                             // of the largest one, in the target's frame
 };
 
-// Of the sum of weight * target * source^T over all pairs; with determinant -1 the best reflection.
+// Rotation for the sum of weight * target * source^T over all pairs; with determinant -1 the best reflection.
 BestRotation bestRotation(const Eigen::Matrix3d& sum_of_products, double determinant = 1.0);
 
 }  // namespace evical

@@ -50,7 +50,7 @@ double gap_m(const std::vector<Eigen::Vector2d>& points_m, std::size_t of) {
   return std::sqrt(least_m2);
 }
 
-// What they measure across their longest direction, one sigma over that along it.
+// Extent across the longest direction, one sigma over that along it.
 double roundness(const std::vector<Eigen::Vector2d>& points_m) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& each : points_m) mean += each / static_cast<double>(points_m.size());
@@ -62,7 +62,7 @@ double roundness(const std::vector<Eigen::Vector2d>& points_m) {
 
 void validatePoints(const Board& board) {
   constexpr std::size_t kLeast = 4;
-  constexpr double kNarrowest = 0.01;  // of a line no pose can be told
+  constexpr double kNarrowest = 0.01;  // a line determines no pose
   const std::vector<Eigen::Vector2d>& points_m = board.given_m;
   if (points_m.size() < kLeast)
     throw badInput("board.points_m", std::to_string(points_m.size()) + " points are too few for a pose",

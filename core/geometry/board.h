@@ -15,7 +15,7 @@
 namespace evical {
 
 enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilGrid, Charuco, Points };
-// As sessions write them, in the enumeration's order.
+// Names in session files, in the enumeration's order.
 inline constexpr std::array kBoardTypeNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
                                                "aprilgrid",          "charuco",           "points"};
 static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Points) + 1);
@@ -30,12 +30,12 @@ enum class CircleShade { Dark, Bright };  // dark circles on a bright board, or 
 
 struct Board {
   BoardType type = BoardType::AsymmetricCircles;
-  // Of circles; of a checkerboard's inner corners; of an AprilGrid's tags; of a ChArUco board's squares. Of given
-  // points: as many rows as points, of one each.
+  // Number of circles; of a checkerboard's inner corners; of an AprilGrid's tags; of a ChArUco board's
+  // squares. For given points: as many rows as points, with one point each.
   int rows = 11;
   int cols = 4;
-  // Circles: between two rows (asymmetric: that is half the distance within a row); a square's edge; from one
-  // tag to the next. Of given points: what lies between neighbours, as a rule.
+  // Circles: distance between two rows (asymmetric: half the distance within a row). Squares: their edge.
+  // Tags: distance from one to the next. Given points: usual distance of neighbours.
   double spacing_m = 0.05;
   double radius_m = 0.02;  // of circles; 0: the points are corners
   CircleShade circles = CircleShade::Dark;
@@ -51,11 +51,11 @@ struct Board {
   bool hasTags() const { return type == BoardType::AprilGrid || type == BoardType::Charuco; }
 
   bool hasPattern() const { return type != BoardType::Points; }
-  // What a session says its size in.
+  // Key of the size in sessions.
   const char* sizeKey() const { return hasPattern() ? "spacing_m" : "points_m"; }
 
   int pointCount() const;
-  // Of circles and of corners between squares; tags' corners have no such place.
+  // Index of circles and of corners between squares; tags' corners have none.
   int index(int row, int col) const { return row * pointsInRow() + col; }
   int pointsInRow() const { return type == BoardType::Charuco ? cols - 1 : cols; }
 
@@ -76,7 +76,7 @@ struct Board {
   bool hasHalfTurnAmbiguity() const;
 };
 
-// Of points that are given by their places, flat ones: at least one.
+// Board of given flat points, at least one.
 Board boardOfPoints(std::vector<Eigen::Vector2d> given_m);
 
 // All points, by index.

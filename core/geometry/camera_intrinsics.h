@@ -16,8 +16,8 @@ struct CameraIntrinsics {
   Resolution resolution_px;
   Eigen::Vector2d focal_length_px = Eigen::Vector2d::Zero();
   Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();
-  // Radtan: k1 k2 p1 p2 k3; equidistant: k1 k2 k3 k4; double sphere: xi alpha; EUCM: alpha beta; omni: xi k1 k2 p1 p2.
-  // Those that a model has not are 0.
+  // Radtan: k1 k2 p1 p2 k3; equidistant: k1 k2 k3 k4; double sphere: xi alpha; EUCM: alpha beta; omni: xi k1
+  // k2 p1 p2. Unused coefficients are 0.
   std::array<double, 5> distortion = {0.0, 0.0, 0.0, 0.0, 0.0};
 
   bool operator==(const CameraIntrinsics&) const = default;

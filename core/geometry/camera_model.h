@@ -33,7 +33,8 @@ std::optional<Eigen::Vector2d> project(const CameraIntrinsics& camera, const Eig
 Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised,
                         Eigen::Matrix2d* jacobian = nullptr);
 
-// (x/z, y/z) of the ray through a pixel; nothing where there is none or where it is more than 85 degrees off axis.
+// (x/z, y/z) of the ray through a pixel; nothing without a ray, or if it is more than 85 degrees from the
+// axis.
 std::optional<Eigen::Vector2d> unproject(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 
 // The same ray as a unit vector, of the wide models at any angle.

@@ -1,4 +1,4 @@
-// Where a ChArUco board's markers are: in its bright squares, numbered row by row from the top left.
+// Places of a ChArUco board's markers: in its bright squares, numbered row by row from the top left.
 #pragma once
 
 #include "core/geometry/board.h"

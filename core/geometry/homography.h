@@ -1,4 +1,4 @@
-// How a plane is mapped onto another by a camera without distortion.
+// Homography of a plane onto another, as by a camera without distortion.
 #pragma once
 
 #include <Eigen/Core>

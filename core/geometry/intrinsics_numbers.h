@@ -12,7 +12,7 @@ namespace evical {
 CameraIntrinsics intrinsicsFrom(const double* numbers, CameraModel model, Resolution resolution_px);
 void writeIntrinsics(const CameraIntrinsics& camera, double* numbers);
 
-// Of the nine, where they make a camera; infinite where there is none.
+// Bounds of the nine numbers of a valid camera; infinite if unbounded.
 struct IntrinsicsBounds {
   std::array<double, 9> lower, upper;
 };
@@ -24,7 +24,7 @@ std::array<const char*, 5> distortionNames(CameraModel model);
 // At most; radtan does without the fifth (k3) where it is 0.
 int coefficientCount(CameraModel model);
 
-// What files call the models, in the order of CameraModel.
+// Names of the models in files, in the order of CameraModel.
 inline constexpr std::initializer_list<const char*> kCameraModelNames = {
     "pinhole_radtan", "pinhole_equidistant", "double_sphere", "eucm", "omni_radtan"};
 

@@ -1,4 +1,4 @@
-// The ways to lay a lattice of circles on a board of circles: turned, sheared and shifted.
+// Placements of a lattice of circles on a board of circles: rotated, sheared and shifted.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -20,12 +20,12 @@ inline constexpr std::array<LatticeMap, 4> kLatticeTurns = {
 
 LatticePlace applied(const LatticeMap& map, const LatticePlace& place);
 
-// The board's circles in steps of its own square lattice, positively oriented like the image's.
+// The board's circles in steps of the board's square lattice, positively oriented like the image's.
 std::map<LatticePlace, int> boardLattice(const Board& board);
 
 using LatticePlacement = std::vector<std::pair<int, std::size_t>>;  // board circle, index of the circle
 
-// The ways that lay at least `nearly` (a part) as many circles on the board as the best way does, most circles
+// Placements that put at least `nearly` (a part) as many circles on the board as the best one, most circles
 // first.
 std::vector<LatticePlacement> layOnBoard(const CircleLattice& lattice, const Board& board, double nearly);
 

@@ -101,7 +101,7 @@ CameraIntrinsics startOf(const CameraIntrinsics& camera, CameraModel model, int 
   if (model != camera.model) return plain;
   CameraIntrinsics start = camera;
   for (std::size_t i = static_cast<std::size_t>(coefficients); i < 5; ++i) start.distortion[i] = 0.0;
-  // Those coefficients alone may see less than the image.
+  // Those coefficients alone may cover less than the image.
   return std::isfinite(misfitOf(start, sights).sum_px2) ? start : plain;
 }
 

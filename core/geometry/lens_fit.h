@@ -15,8 +15,8 @@ struct LensFit {
 // image, by least squares of pixels. Pinholes are fitted up to 85 degrees off axis.
 LensFit fitLens(const CameraIntrinsics& camera, CameraModel model, int coefficients);
 
-// Where a fit to another lens starts: without distortion, of the same scale on the axis. The wide models are all three
-// stereographic then, r = 2 f tan(angle / 2), which is between what fisheyes and mirrors do.
+// Start of a fit to another lens: without distortion, with the same scale on the axis. The wide models are
+// all three stereographic then, r = 2 f tan(angle / 2), which is between fisheyes and mirrors.
 CameraIntrinsics plainLens(const CameraIntrinsics& like, CameraModel model);
 
 }  // namespace evical

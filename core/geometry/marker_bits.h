@@ -6,7 +6,7 @@
 
 namespace evical {
 
-// Of a square of bits, row by row from the top left, without the border: which are bright.
+// Bright bits of a square, row by row from the top left, without the border.
 using PatternBits = std::vector<std::vector<bool>>;
 
 inline constexpr const char* kUsualMarkers = "5x5";

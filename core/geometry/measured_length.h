@@ -1,4 +1,4 @@
-// How a board was measured: with a ruler, from one circle's centre to that of another in the same line.
+// A board's measured length: with a ruler, from one circle's centre to that of another in the same line.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -6,7 +6,7 @@
 namespace evical {
 
 struct MeasuredLength {
-  int spacings = 10;  // that lie between: from the first of 11 rows to the last there are 10
+  int spacings = 10;  // between the circles: from the first of 11 rows to the last there are 10
   double length_m = 0.5;
   double std_m = 0.0005;  // of ruler and eye; 0: exact
 

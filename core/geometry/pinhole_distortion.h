@@ -1,4 +1,4 @@
-// What lenses of pinhole cameras do to (x/z, y/z); OpenCV's equations (docs/maths.md, 3.1).
+// Distortion of (x/z, y/z) by lenses of pinhole cameras; OpenCV's equations (docs/maths.md, 3.1).
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@ inline bool foldsBack(const Eigen::Matrix2d& jacobian) {
   return !(jacobian.determinant() > 0.0) || jacobian.trace() <= 0.0;
 }
 
-// What is distorted to `target`, by Newton's iteration from `start`; nothing where it does not converge. `distort`:
-// (normalised, &jacobian) -> distorted.
+// The point whose distortion is `target`, by Newton's iteration from `start`; nothing if it does not
+// converge. `distort`: (normalised, &jacobian) -> distorted.
 template <class Distort>
 std::optional<Eigen::Vector2d> undistorted(const Eigen::Vector2d& target, const Eigen::Vector2d& start,
                                            Distort&& distort) {

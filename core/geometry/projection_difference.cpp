@@ -60,7 +60,7 @@ ProjectionChange::ProjectionChange(const CameraIntrinsics& camera, int columns, 
 
 namespace {
 
-// Errors of `other` along the rays, with the turn taken out that fits them best.
+// Errors of `other` along the rays, after the rotation that fits them best.
 std::vector<std::optional<Eigen::Vector2d>> turnedErrors(const std::vector<std::optional<RayPixel>>& rays,
                                                          const CameraIntrinsics& other) {
   constexpr int kIterations = 5, kLeastRays = 3;

@@ -1,6 +1,6 @@
-// How differently two cameras project, over the image; to first order, and as a difference. A turn of one
-// camera against the other is taken out: the pose takes it up wherever intrinsics are used, and a principal
-// point would seem much less sure than projections are.
+// Difference between the projections of two cameras, over the image; to first order, and as a difference. The
+// best rotation of one camera relative to the other is removed: the pose absorbs it when intrinsics are used,
+// and a principal point would seem much less accurate than projections are.
 #pragma once
 
 #include "core/geometry/camera_model.h"
@@ -39,8 +39,8 @@ std::vector<std::optional<Eigen::Vector2d>> projectionDifferences(const CameraIn
                                                                   const CameraIntrinsics& other, int columns,
                                                                   int rows);
 
-// Of `other` against `camera`, over the part of the image (which both must have the size of) that lies within
-// `radius_share` of the way from the principal point to the furthest corner.
+// Difference of `other` from `camera` (with the same image size), over the part of the image within
+// `radius_share` of the distance from the principal point to the furthest corner.
 ProjectionDifference projectionDifference(const CameraIntrinsics& camera, const CameraIntrinsics& other,
                                           double radius_share = 1.0);
 

@@ -1,4 +1,4 @@
-// How many pixels an image or a sensor has.
+// Number of pixels of an image or a sensor.
 #pragma once
 
 #include <string>

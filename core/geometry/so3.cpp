@@ -34,7 +34,7 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
-// Keeps a series of its own: the one above would serve as well, but moves the last digits of estimates.
+// Has a separate series: the one above would be equally suitable, but moves the last digits of estimates.
 Eigen::Matrix3d so3Exp(const Eigen::Vector3d& rotation_vector_rad) {
   const double angle2 = rotation_vector_rad.squaredNorm();
   double sine, cosine;  // sin(x)/x, (1-cos(x))/x^2

@@ -35,7 +35,7 @@ struct SplinePlace {
 SplinePlace placeInSpline(double start_s, double knot_spacing_s, int segment_count, double time_s);
 SplinePlace placeInSpline(const So3Spline& spline, double time_s);
 
-// How many segments of this spacing cover [begin_s, end_s].
+// Number of segments of this spacing that cover [begin_s, end_s].
 int segmentsToCover(double begin_s, double end_s, double knot_spacing_s);
 
 // All control points the same; covers [begin_s, end_s], starting at begin_s.
@@ -54,10 +54,10 @@ struct RotationJacobians {
   std::array<Eigen::Matrix3d, 4> rotation, velocity, acceleration;
 };
 
-// What to compute; each includes those before it.
+// Orders of derivatives to compute; each includes those before it.
 enum class RotationOrder { Rotation, Velocity, Acceleration };
 
-// What all times in one segment share. Build it once where many samples fall into the same segment.
+// Common values of all times in one segment. Build it once if many samples fall into the same segment.
 class So3Segment {
  public:
   // Quaternions as Eigen stores them (x y z w), as Ceres parameter blocks hold them.
@@ -65,7 +65,7 @@ class So3Segment {
              double knot_spacing_s, bool with_jacobians);
   So3Segment(const So3Spline& spline, int segment, bool with_jacobians);
 
-  // `jacobians` only if built with them; fields beyond `order` are left as they are.
+  // `jacobians` only if built with them; fields beyond `order` are unchanged.
   void evaluate(double u, RotationOrder order, RotationSample& sample,
                 RotationJacobians* jacobians = nullptr) const;
 

@@ -19,7 +19,7 @@ struct Depth {
   bool seen;
 };
 
-// Where x / (alpha d + (1 - alpha) z) turns back, z / d is this.
+// z / d where x / (alpha d + (1 - alpha) z) turns back.
 double lowestCosine(double alpha) {
   return alpha > 0.5 ? -(1.0 - alpha) / alpha : -alpha / (1.0 - alpha);
 }

@@ -8,7 +8,7 @@ namespace evical {
 
 inline constexpr int kTagSide_bits = 6;  // without the border
 
-// What of a tag is bright, row by row from its top left, without the border.
+// Bright bits of a tag, row by row from its top left, without the border.
 class TagBits {
  public:
   bool isBright(int row, int col) const { return bright_[place(row, col)]; }

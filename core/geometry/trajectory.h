@@ -11,7 +11,7 @@ namespace evical {
 RigidTransform worldFromImu(const So3Spline& world_from_imu_rotation, const VectorSpline& imu_in_world_m,
                             double time_s);
 
-// Pose of a camera at a time of its own clock; imu_time = camera_time + time_offset_s.
+// Pose of a camera at a time of the camera's clock; imu_time = camera_time + time_offset_s.
 RigidTransform cameraFromWorld(const So3Spline& world_from_imu_rotation, const VectorSpline& imu_in_world_m,
                                const RigidTransform& reference_from_camera, double time_offset_s,
                                double camera_time_s);

@@ -1,4 +1,4 @@
-// What every pixel of a camera is in ideal pixels (camera_model.h), once and for all.
+// Ideal pixels (camera_model.h) of every pixel of a camera, computed once.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace evical {
 
 struct CameraIntrinsics;
 
-// The ideal pixel of every pixel, row by row; NaN where there is none.
+// The ideal pixel of every pixel, row by row; NaN without one.
 class UndistortionTable {
  public:
   UndistortionTable() = default;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kHalvings = 200;  // to the last bit
 
-// Where a function that falls takes this value.
+// The place at which a falling function has this value.
 template <class Falling>
 double whereFallingTo(double wanted, double low, double high, const Falling& value) {
   for (int k = 0; k < kHalvings; ++k) {
@@ -31,7 +31,7 @@ double chiSquaredTail(double value, int count) {
 }
 
 double chiSquaredLimit(double probability, int count) {
-  constexpr double kLargest = 1e4;  // its tail is no number any more
+  constexpr double kLargest = 1e4;  // its tail underflows
   return whereFallingTo(probability, 0.0, kLargest,
                         [&](double value) { return chiSquaredTail(value, count); });
 }

@@ -1,10 +1,10 @@
-// How large sums of squares get by chance.
+// Chance limits of sums of squares.
 #pragma once
 
 namespace evical {
 
-// Of a sum of `count` squares of independent standard normal numbers: how likely it is above `value`, and the value
-// that it is above with this probability.
+// For a sum of `count` squares of independent standard normal numbers: the probability that it exceeds
+// `value`, and the value that it exceeds with this probability.
 double chiSquaredTail(double value, int count);
 double chiSquaredLimit(double probability, int count);
 

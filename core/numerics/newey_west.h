@@ -16,7 +16,7 @@ using ScoreVector = Eigen::Matrix<double, kSize, 1>;
 template <int kSize>
 using ScoreMatrix = Eigen::Matrix<double, kSize, kSize>;
 
-// Of scores at even steps in time: weights fall to zero at `lags` + 1 steps.
+// Scatter of scores at even steps in time: weights fall to zero at `lags` + 1 steps.
 template <int kSize>
 ScoreMatrix<kSize> neweyWestByLag(const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,
                                   std::size_t lags) {
@@ -35,7 +35,8 @@ ScoreMatrix<kSize> neweyWestByLag(const std::vector<ScoreVector<kSize>>& scores,
   return sum;
 }
 
-// Of scores at any times: weights fall to zero at `bound_s`; a bound of zero leaves those of one time.
+// Scatter of scores at any times: weights fall to zero at `bound_s`; a bound of zero leaves those of one
+// time.
 template <int kSize>
 ScoreMatrix<kSize> neweyWestByTime(std::span<const double> times_s,
                                    const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,

@@ -35,8 +35,8 @@ inline double cauchyWeight(double squared_error) {
 
 inline constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 
-// How many times larger than said the errors of points are, by the median of their squared norms in units of
-// what was said. 1 without any.
+// Ratio of the errors of points to their stated sigmas, by the median of their squared norms in units of
+// these. 1 without any.
 inline double scaleOfPoints(std::vector<double> squared_errors) {
   return squared_errors.empty() ? 1.0 : std::sqrt(medianOf(std::move(squared_errors)) / kMedianOfChi2With2);
 }

@@ -1,4 +1,4 @@
-// What a signal's noise is like over frequency and over time: P. Welch, The use of fast Fourier transform for the
+// Noise of a signal over frequency and over time: P. Welch, The use of fast Fourier transform for the
 // estimation of power spectra, 1967. Samples count as even in time.
 #pragma once
 
@@ -17,7 +17,7 @@ struct NoiseSpectrum {
 // `segment` samples; `segment` is even.
 NoiseSpectrum noiseSpectrum(std::span<const double> samples, double rate_hz, int segment);
 
-// Of lags 0, 1, ... `lags`, without the mean; 1 at lag 0. Zeros of samples that are all the same.
+// Autocorrelation for lags 0, 1, ... `lags`, without the mean; 1 at lag 0. Zeros if all samples are the same.
 std::vector<double> autocorrelation(std::span<const double> samples, int lags);
 
 }  // namespace evical
