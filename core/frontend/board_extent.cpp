@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// A row or a column of circles, on the board or beyond it: a board of its own.
+// A row or a column of circles, on the board or beyond it, as a separate board.
 struct Line {
   BoardScene scene;
   Eigen::Vector2d origin_m;

@@ -7,8 +7,8 @@
 
 namespace evical {
 
-// Looks at one window in which the board was tracked, and counts it.
-// A board that lies one step off has circles beyond one edge and none at the other: that view says nothing.
+// Checks one window in which the board was tracked, and counts it. A board that is misplaced by one step has
+// circles beyond one edge and none at the other: that view does not count.
 void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent);
 

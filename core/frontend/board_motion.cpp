@@ -69,7 +69,7 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   next.time_ns = time_ns;
   const PlaneFlow travel_px = dt * (motion.velocity_px_s + 0.5 * dt * motion.acceleration_px_s2);
   next.ideal_from_board = warped(motion.ideal_from_board, motion.frame, travel_px);
-  // The frame goes with the board.
+  // The frame moves with the board.
   next.frame.centre_px += motion.frame.flow(travel_px, motion.frame.centre_px);
   next.velocity_px_s =
       reframed(motion.velocity_px_s + dt * motion.acceleration_px_s2, motion.frame, next.frame);

@@ -1,5 +1,5 @@
 // All circles of a window together: the board's homography at the window's middle, the velocity field of its
-// image, and how far burst medians lie outside or inside the true edges. Fitted to the bursts themselves.
+// image, and the distance of burst medians outside or inside the true edges. Fitted to the bursts themselves.
 #pragma once
 
 #include "core/frontend/board_scene.h"
@@ -38,7 +38,7 @@ struct BoardMotion {
   ImageFrame frame;
   PlaneFlow velocity_px_s = PlaneFlow::Zero();
   PlaneFlow acceleration_px_s2 = PlaneFlow::Zero();
-  double radius_offset_px = 0.0;  // burst medians lie this far outside the edges, in pixels
+  double radius_offset_px = 0.0;  // of burst medians outside the edges, in pixels
   double typical_events = 0.0;    // of a burst at an edge that crosses its pixel squarely; 0: not known yet
   double residual_rms_px = 0.0;
   int bursts = 0;
@@ -49,7 +49,7 @@ struct BoardMotion {
   Eigen::Vector2d accelerationAt(const Eigen::Vector2d& ideal_pixel) const {
     return frame.flow(acceleration_px_s2, ideal_pixel);
   }
-  // How far a point of the board's image moves from the window's middle to `after_s` later.
+  // Motion of a point of the board's image from the window's middle to `after_s` later.
   Eigen::Vector2d travel(const Eigen::Vector2d& ideal_pixel, double after_s) const {
     return frame.flow(after_s * (velocity_px_s + 0.5 * after_s * acceleration_px_s2), ideal_pixel);
   }
@@ -77,10 +77,10 @@ std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board
 // Circles that touch the image.
 std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene);
 
-// True if the whole circle lies in the image.
+// True if the whole circle is in the image.
 bool insideImage(const CircleImage& circle, Resolution resolution_px);
 
-// A burst held against a projected circle.
+// A burst compared with a projected circle.
 struct EdgeDistance {
   double distance_px;      // outwards positive, ideal pixels
   Eigen::Vector2d normal;  // outwards, unit
@@ -97,7 +97,7 @@ inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vecto
 // Mean speed of the board's circles in the image, in the sensor's pixels.
 double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene);
 
-// Circles that lie in the image and move far enough in a window of this half width to fire events.
+// Circles that are in the image and move far enough in a window of this half width to fire events.
 std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s);
 inline int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
   return static_cast<int>(circlesExpected(motion, scene, half_window_s).size());
@@ -120,7 +120,7 @@ inline double crossingWeight(double leads, double events, double typical_events,
 }
 
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
-// `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts lie near the edges.
+// `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts are near the edges.
 std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
                                           const BoardScene& scene, double first_gate_px,
                                           const TrackingOptions& options);

@@ -78,7 +78,7 @@ struct CircleMotion {
         acceleration_gradient(motion.frame.gradient(motion.acceleration_px_s2, projected.centre_px)) {}
 };
 
-// Bursts that may lie near the circle's edge at any time of the fit.
+// Bursts that may be near the circle's edge at any time of the fit.
 void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double half_window_s,
                   double slack_px, std::vector<FitPoint>& points) {
   points.clear();

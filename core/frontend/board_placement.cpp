@@ -20,7 +20,7 @@ namespace {
 // Placements with fewer circles than this part of the best one's are not worth a fit.
 constexpr double kNearlyBest = 0.8;
 
-// How far the board's axes may be from equally long (logarithm of the ratio) and perpendicular (cosine).
+// Tolerance of the board's axes for equal length (logarithm of the ratio) and perpendicularity (cosine).
 constexpr double kAxesTolerance = 0.2;
 
 // The board's two axes as the camera sees them must be about equally long and perpendicular.
@@ -71,7 +71,8 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
   }
 }
 
-// Circles that the lattice missed or had given to an outlier: whatever lies where the homography puts them.
+// Circles that the lattice missed or had assigned to an outlier: any circle where the homography predicts
+// one.
 void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingPoint>& ideal,
               const Board& board, const GridOptions& options,
               std::vector<std::pair<int, std::size_t>>& placed) {
@@ -102,8 +103,8 @@ void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingP
 
 namespace {
 
-// Of motions that lay the lattice onto the same places, the first: where the board looks the same when
-// turned, a turned placement is no rival.
+// The first of all motions that map the lattice onto the same places: if the board looks the same when
+// rotated, a rotated placement is not a rival.
 std::vector<Eigen::Matrix3d> withoutTwins(const std::vector<Eigen::Matrix3d>& motions,
                                           const std::vector<Eigen::Matrix3d>& onto_itself) {
   constexpr double kSame = 1e-9;

@@ -1,4 +1,4 @@
-// Where a lattice of circles lies on the board: rotations, shifts, and the homography each of them means.
+// Placements of a lattice of circles on the board: rotations, shifts, and the homography of each.
 #pragma once
 
 #include "core/frontend/board_motion.h"
@@ -9,7 +9,7 @@
 
 namespace evical {
 
-// One way to lay the lattice on the board.
+// One placement of the lattice on the board.
 struct BoardPlacement {
   std::vector<std::pair<int, std::size_t>> circles;  // board circle, index of the moving circle
   BoardMotion motion;                                // rough: from centres and velocities alone
@@ -21,9 +21,9 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);
 
-// Motions of the board plane that lay the board's lattice onto itself, shifted or turned, so that at least
-// `least_overlap` of its circles meet circles: what a placement may be confused with. The identity is the
-// first. Motions that differ by a turn that leaves the whole lattice as it is are one.
+// Motions of the board plane that map the board's lattice onto itself, shifted or rotated, so that at least
+// `least_overlap` of its circles meet circles: placements that may be confused. The identity is the first.
+// Motions that differ by a rotation that leaves the whole lattice unchanged are one.
 std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// What does not change from window to window: the board, the sensor, and the lens between them.
+// Constants of all windows: the board, the sensor, and the lens between them.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -15,7 +15,7 @@
 
 namespace evical {
 
-// How lens distortion stretches a pixel: J J^T of J = d(ideal pixel) / d(pixel).
+// Stretch of a pixel by lens distortion: J J^T of J = d(ideal pixel) / d(pixel).
 struct PixelStretch {
   float xx = 1.0f, xy = 0.0f, yy = 1.0f;
 

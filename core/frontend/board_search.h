@@ -16,7 +16,7 @@
 
 namespace evical {
 
-// What a search goes through, in this order.
+// Stages of a search, in this order.
 enum class SearchStage { Bursts, Candidates, Circles, Lattice, Placement, JointFit, Done };
 
 // Everything a drawing may want to show.

@@ -85,7 +85,7 @@ WindowSlot BoardTracker::nextSlot() const {
   return {next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
 }
 
-// Where nothing moves for long there are no windows to look at.
+// Long times without motion have no windows to process.
 void BoardTracker::skipEmptyTime(std::int64_t until_ns) {
   if (motion_) return;
   const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
@@ -198,7 +198,7 @@ void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trac
   trace = std::move(anew);
 }
 
-// Circles that were seen since it was last sure how the board lies, by the names that they have now.
+// Circles seen since the placement was last certain, with their present numbers.
 void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
   const std::vector<int> now = renumbering(scene_.board, shift);
   const auto begin = observations_.views.begin() + static_cast<std::ptrdiff_t>(open_begin_);

@@ -1,6 +1,6 @@
 // The front end over time: events in, board views out, in bounded memory. The board is searched once, then
-// tracked from window to window; windows that were missed before it was found are tracked backwards. Tracking goes on
-// asking whether the board lies as it was found, and lays it anew where windows say that it does not.
+// tracked from window to window; windows that were missed before it was found are tracked backwards. Tracking
+// keeps checking the placement that was found, and replaces it if windows contradict it.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -40,7 +40,7 @@ class BoardTracker {
 
   const BoardScene& scene() const { return scene_; }
   const BurstHistory& history() const { return history_; }
-  // Views so far; complete but for windows that may still be found backwards.
+  // Views so far; complete except for windows that may still be found backwards.
   const BoardObservations& observations() const { return observations_; }
 
  private:
@@ -68,18 +68,18 @@ class BoardTracker {
   std::int64_t complete_until_ns_;
   std::int64_t last_burst_ns_;
   std::vector<EdgeBurst> new_bursts_;
-  std::optional<BoardMotion> motion_;  // last window that held
+  std::optional<BoardMotion> motion_;  // last tracked window
   std::int64_t next_begin_ns_ = 0;     // of the next slot
   std::int64_t last_search_ns_;
   double search_interval_s_;       // grows while searches fail
-  std::int64_t tracked_until_ns_;  // end of the last slot that held
+  std::int64_t tracked_until_ns_;  // end of the last tracked slot
   std::stop_token stop_;
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
   PolarityDelayFit polarity_delay_;
-  std::size_t open_begin_ = 0;  // first view since the board was found, or since circles told how it lies
+  std::size_t open_begin_ = 0;  // first view since the board was found, or since its placement was confirmed
   BoardObservations observations_;
 };
 

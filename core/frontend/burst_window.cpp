@@ -34,7 +34,7 @@ std::vector<EdgeBurst> BurstHistory::emptySlice() {
 std::vector<EdgeBurst>& BurstHistory::sliceAt(std::int64_t index) {
   if (slices_.empty() || slices_.back().index < index)
     return slices_.emplace_back(Slice{index, emptySlice()}).bursts;
-  // Where no time is empty its place is known.
+  // Without empty times the place is known.
   const auto place = static_cast<std::size_t>(std::max<std::int64_t>(index - slices_.front().index, 0));
   if (place < slices_.size() && slices_[place].index == index) return slices_[place].bursts;
   const auto found = firstFrom(index);

@@ -24,7 +24,7 @@ class BurstHistory {
   // Appends all bursts with begin_ns <= time < end_ns.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const;
   std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
-  // Until when there are no bursts from this time on, to a slice's accuracy; none where none are later.
+  // End of the time without bursts from this time on, to a slice's accuracy; nothing without later bursts.
   std::optional<std::int64_t> nextAfter(std::int64_t from_ns) const;
   bool empty() const { return slices_.empty(); }
 
@@ -66,7 +66,7 @@ class BurstWindow {
   explicit BurstWindow(const BoardScene& scene);
 
   void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
-  // What the history has no further than half_window_s from the middle.
+  // The history's bursts no further than half_window_s from the middle.
   void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
   // The same without bursts that stand alone (keepSupported).
   void fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,

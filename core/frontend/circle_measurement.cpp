@@ -31,7 +31,7 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
   const Eigen::Vector2d acceleration = motion.accelerationAt(circle.centre_px);
   const double speed = velocity.norm() + 0.5 * half_slot_s * acceleration.norm();
   const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
-  // Wider than the fit's last gate by what a circle may lie off the board's fit.
+  // Wider than the fit's last gate by the largest deviation of a circle from the board's fit.
   const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
   const double reach = circle.sensor_radius_px + gate_px + speed * half_slot_s * sensor_scale;
   const Eigen::Vector2d& middle = circle.sensor_centre_px;
@@ -61,8 +61,7 @@ struct CentreFit {
   unsigned sectors = 0;
 };
 
-// Residuals are linear in the shift as long as it is small against the radius; a
-// few rounds settle the weights.
+// Residuals are linear in the shift if it is small compared with the radius; a few rounds settle the weights.
 CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const TrackingOptions& options,
                     std::vector<EdgePoint>& points) {
   CentreFit fit;
@@ -159,7 +158,7 @@ class CircleMeter {
                                                                                : CircleVerdict::TooUnsure;
   }
 
-  // Of the circle that was measured last.
+  // Inliers of the last measured circle.
   void addInliers(std::vector<EdgeInlier>& inliers) const {
     for (const EdgePoint& point : points_) {
       if (!point.used) continue;

@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// Which bursts measure: those no further than half_s from the window's middle. Slots of neighbouring windows
-// do not overlap, so no burst serves two measurements. Times are told in seconds since start_ns.
+// Bursts of a measurement: those no further than half_s from the window's middle. Slots of neighbouring
+// windows do not overlap, so no burst serves two measurements. Times are in seconds since start_ns.
 struct MeasuredSlot {
   double half_s = 0.0;
   std::int64_t start_ns = 0;
@@ -23,7 +23,7 @@ enum class CircleVerdict {
   OutsideImage,   // not wholly inside, at least
   TooFewBursts,   // around its edge
   TooFewInliers,  // among the bursts around its edge
-  TooShortArc,    // its bursts lie along too little of its outline
+  TooShortArc,    // its bursts cover too little of its outline
   OffTheBoard,    // too far from where the board's fit has it
   TooUnsure,      // of its centre
 };
@@ -35,15 +35,15 @@ struct EdgeInlier {
   bool leading;
 };
 
-// What a measurement of all circles leaves out of its result; for drawings.
+// Further data of a measurement of all circles; for drawings.
 struct MeasurementTrace {
   std::vector<CircleVerdict> verdicts;  // by circle of the board
   std::vector<EdgeInlier> inliers;
 };
 
-// Fits each circle's centre (and radius offset, held near the board's) to the slot's bursts. Velocities come
-// from the board's field. Circles with another verdict than Measured are left out. The trace is filled where
-// it is asked for.
+// Fits each circle's centre (and radius offset, with a prior at the board's) to the slot's bursts. Velocities
+// come from the board's field. Circles with another verdict than Measured are excluded. The trace is filled
+// if it is not null.
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
                                               const BoardScene& scene, const MeasuredSlot& slot,
                                               const TrackingOptions& options,

@@ -14,7 +14,7 @@ namespace {
 // turn from 1 px away, after a second half of sqrt(D) - sqrt(D - 1.2): 3.5 times as long where D is 2 px, from where
 // on even blurred edges have crossed. Edges that do not turn leave longer pauses.
 constexpr double kRestToHalfCrossing = 3.5;
-// Whatever the pause is compared with: who waits longer holds up the windows for the slowest pixel.
+// Limit for any pause: longer waits delay the windows for the slowest pixel.
 constexpr double kLongestRest_s = 0.6;
 
 // Pixels come in no order, and a sensor's are more than a processor's fast memory holds: so many events before their

@@ -94,7 +94,7 @@ void EdgeSlopeFinder::sortByPixel() {
     times_ns_[begin_[slotOf(burst.x_px, burst.y_px, burst.brighter) + 1]++] = burst.time_ns;
 }
 
-// Of each pixel around the centre the burst that is nearest to the plane.
+// The burst nearest to the plane, for each pixel around the centre.
 void EdgeSlopeFinder::nearestBursts(const EdgeBurst& centre, const Plane& plane) {
   neighbours_.clear();
   const int r = options_.radius_px;
@@ -112,7 +112,7 @@ void EdgeSlopeFinder::nearestBursts(const EdgeBurst& centre, const Plane& plane)
   }
 }
 
-// False where those near the plane are too few, or lie on a line.
+// False if those near the plane are too few, or collinear.
 bool EdgeSlopeFinder::fitPlane(double largest_error_s, Plane& plane) const {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, t = 0.0, xt = 0.0, yt = 0.0;
   for (const Neighbour& at : neighbours_) {

@@ -27,7 +27,7 @@ class FlowImage {
     for (std::uint32_t i = 0; i < field.size(); ++i) planes_[field[i].leading][cellOf(field[i])] = i;
   }
 
-  // The flow at the pixel and all connected to it, taken out of the image; empty if it was taken before.
+  // The flow at the pixel and all connected to it, removed from the image; empty if it was removed before.
   std::vector<std::uint32_t> takeConnected(const NormalFlowField& field, std::uint32_t first) {
     std::vector<std::uint32_t>& plane = planes_[field[first].leading];
     std::vector<std::uint32_t> flows;

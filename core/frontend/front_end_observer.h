@@ -9,7 +9,7 @@ class BurstWindow;
 struct BoardSearch;
 struct WindowTrace;
 
-// Sees every window as it is looked at. Called from the thread that adds events.
+// Gets every window when it is processed. Called from the thread that adds events.
 class FrontEndObserver {
  public:
   virtual ~FrontEndObserver() = default;

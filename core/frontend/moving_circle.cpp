@@ -127,7 +127,7 @@ double typicalEdgeSpeed_px_s(const BurstWindow& window) {
         if (t == kNever) continue;
         const float left = centre[-1], right = centre[1], up = centre[-stride], down = centre[stride];
         if (left == kNever || right == kNever || up == kNever || down == kNever) continue;
-        // An edge passes in order: the middle pixel lies between its neighbours or near them.
+        // An edge passes in order: the middle pixel is between its neighbours or near them.
         const float a = 0.5f * (right - left), b = 0.5f * (down - up);
         const float slope2 = a * a + b * b;
         const float bend = std::abs(left + right - 2.0f * t) + std::abs(up + down - 2.0f * t);

@@ -26,7 +26,7 @@ struct MovingCircle {
 // if there are too few.
 double typicalEdgeSpeed_px_s(const BurstWindow& window);
 
-// `speed_px_s` > 0 is tried in several multiples where the candidate brings no speed of its own.
+// `speed_px_s` > 0 is tried in several multiples if the candidate has no speed.
 std::optional<MovingCircle> fitMovingCircle(const BurstWindow& window, const CircleCandidate& candidate,
                                             double speed_px_s, const MovingCircleOptions& options);
 

@@ -31,7 +31,7 @@ struct PlaneSums {
     yt += dy * time;
   }
 
-  // False if the pixels lie on a line.
+  // False if the pixels are collinear.
   bool solve(Plane& plane) const {
     const int cxx = n * xx - x * x, cxy = n * xy - x * y, cyy = n * yy - y * y;
     const double determinant =
@@ -56,7 +56,7 @@ void visitNeighbours(const float* centre, int stride, int radius, Visit&& visit)
   }
 }
 
-// False unless enough of the neighbourhood lies on a plane, the pixel itself included.
+// False unless enough of the neighbourhood is on a plane, the pixel itself included.
 bool fitPlane(const float* centre, int stride, int least_inliers, const NormalFlowOptions& options,
               Plane& plane) {
   PlaneSums sums;

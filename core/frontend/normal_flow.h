@@ -21,9 +21,9 @@ struct NormalFlow {
 
 using NormalFlowField = std::vector<NormalFlow>;
 
-// Where a plane t = a x + b y + c fits the neighbourhood: (a, b) / (a^2 + b^2). A surface with a border of at
-// least plane_radius_px. What lies off the plane is judged by the distance the edge covers in that time, so
-// slow and fast edges are treated alike.
+// Flow (a, b) / (a^2 + b^2) where a plane t = a x + b y + c fits the neighbourhood. A surface with a border
+// of at least plane_radius_px. Deviations from the plane are compared with the distance that the edge covers
+// in that time, so slow and fast edges are treated alike.
 NormalFlowField estimateNormalFlow(const ActiveEventSurface& surface, const NormalFlowOptions& options);
 
 }  // namespace evical

@@ -10,7 +10,7 @@ namespace evical {
 
 constexpr int kOutlineSectors = 16;
 
-// Of a normal of any length; sectors of 22.5 degrees, each with a number of its own.
+// Sector of a normal of any length; sectors of 22.5 degrees, numbered.
 inline std::size_t outlineSector(const Eigen::Vector2d& normal) {
   constexpr double kTan22 = 0.41421356237309503;
   const double ax = std::abs(normal.x()), ay = std::abs(normal.y());

@@ -1,6 +1,6 @@
-// Between the darkest and the brightest that a pixel sees it has a level, and every event is a step of it. The
-// level tells when an edge was in the middle of a pixel that it had not left, or does not leave, before it
-// turned back (docs/maths.md, 4.1).
+// Level of a pixel between its darkest and its brightest; every event is a step of it. The level shows when
+// an edge was in the middle of a pixel that it had not left, or does not leave, before it turned back
+// (docs/maths.md, 4.1).
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ class PixelLevel {
     int whole_events;  // that an edge fires here from one side to the other, as far as is known
   };
 
-  // Nothing if the edge was not in the middle during the burst. Bursts that nothing is known of, before or
-  // after, count as whole.
+  // Nothing if the edge was not in the middle during the burst. Bursts without knowledge of the time before
+  // or after count as whole.
   std::optional<Middle> pass(const LevelBurst& burst);
   // Events that are too few for a burst.
   void step(bool brighter, int events);

@@ -6,7 +6,7 @@
 namespace evical {
 
 void PolarityDelayFit::add(double speed_px_s, double radius_offset_px) {
-  constexpr double kSlow_px_s = 20.0;  // below it bursts lie elsewhere (docs/maths.md, 9.1)
+  constexpr double kSlow_px_s = 20.0;  // bursts of slower edges are displaced (docs/maths.md, 9.1)
   if (!(speed_px_s >= kSlow_px_s)) return;
   count_ += 1.0;
   speed_ += speed_px_s;

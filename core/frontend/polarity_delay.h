@@ -1,6 +1,7 @@
-// How much later pixels tell of edges that brighten them than of edges that darken them: a sign of little light, or of
-// slow biases. Bursts lie behind their edge by its pixels' delay times its speed, at a circle's leading and at its trailing
-// edge, of which one brightens and one darkens; so circles seem to grow or to shrink with their speed:
+// Delay of pixels for edges that brighten them, minus that for edges that darken them: a sign of little
+// light, or of slow biases. Bursts are behind their edge by its pixels' delay times its speed. Of a circle's
+// leading and trailing edge one brightens and one darkens, so circles seem to grow or to shrink with their
+// speed:
 //   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright ones.
 // docs/maths.md, 10.1.
 #pragma once
@@ -14,8 +15,8 @@ namespace evical {
 
 class PolarityDelayFit {
  public:
-  // Of one window: how fast the board's image moves, and how far bursts lie outside the circles' edges, both in the
-  // sensor's pixels. Edges that hardly move are left out.
+  // Adds one window: the speed of the board's image, and the distance of bursts outside the circles' edges,
+  // both in the sensor's pixels. Edges that hardly move are ignored.
   void add(double speed_px_s, double radius_offset_px);
 
   // Nothing of few windows, or of one speed. The sigma is of windows whose errors are independent.

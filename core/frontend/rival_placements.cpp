@@ -12,8 +12,8 @@
 namespace evical {
 namespace {
 
-// The board's lattice around the board as it is laid, as far as any rival reaches: each place is looked at once, and
-// every rival counts those that it needs.
+// The lattice around the board's present placement, as far as any rival reaches. Each place is measured once,
+// and every rival counts its own places.
 class LatticeAround {
  public:
   LatticeAround(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts, const BoardScene& scene)
@@ -48,7 +48,7 @@ class LatticeAround {
       expected_[static_cast<std::size_t>(circle)] = 1;
   }
 
-  // Of the board of so many circles that is shifted like this.
+  // Score of the board of so many circles with this shift.
   PlacementScore score(const Eigen::Matrix3d& shift, int circle_count) const {
     PlacementScore score;
     score.shift = shift;
@@ -67,7 +67,7 @@ class LatticeAround {
 
   double columnStep() const { return scene_.board.type == BoardType::AsymmetricCircles ? 2.0 : 1.0; }
 
-  // In spacings, from the first circle of the board as it is laid.
+  // In spacings, from the first circle of the present placement.
   Eigen::Vector2d placeOf(const Eigen::Matrix3d& shift, int circle) const {
     return (shift * board_.point_m(circle).homogeneous()).hnormalized() / board_.spacing_m;
   }
@@ -151,7 +151,7 @@ std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, c
   told_ = told_.value_or(false) || all([&](const PlacementScore& rival) {
             return rival.value() + options_.ambiguity_margin <= laid.value();
           });
-  // What is covered or still is missing without being elsewhere: only circles that are seen tell for good.
+  // Covered or resting circles are missing without being elsewhere: only visible circles are conclusive.
   const bool surely = all([&](const PlacementScore& rival) {
     return rival.measured + options_.ambiguity_margin < laid.measured;
   });

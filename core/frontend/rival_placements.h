@@ -1,5 +1,6 @@
-// The other ways to lay a board on the lattice that it was found on: an asymmetric grid that is shifted, or turned by a
-// quarter or a half, meets most of its own circles, and a view that shows a part of it may leave several open.
+// Other placements of a board on the lattice that it was found on. An asymmetric grid that is shifted, or
+// rotated by a quarter or a half turn, meets most of its circles, and a view that shows a part of it may
+// leave several open.
 #pragma once
 
 #include "core/frontend/board_motion.h"
@@ -13,7 +14,7 @@
 
 namespace evical {
 
-// How well a board that is laid in one way explains a window.
+// Agreement of a placement of the board with a window.
 struct PlacementScore {
   Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();  // of the board's plane: from now to before
   int measured = 0, missing = 0;  // circles that it explains, and those in view that it does not
@@ -21,16 +22,17 @@ struct PlacementScore {
   int value() const { return measured - missing; }
 };
 
-// The board as it is laid, and every other way to lay it on the same lattice (`shifts` as of latticeShifts): best first.
+// The board with its present placement, and with every other on the same lattice (`shifts` from
+// latticeShifts): best first.
 std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
                                             const std::vector<Eigen::Matrix3d>& shifts,
                                             const BurstWindow& window, const BoardScene& scene,
                                             double half_window_s, const TrackingOptions& options);
 
-// The same board laid like a rival.
+// The same board with a rival's placement.
 BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
 
-// Board circle of the rival for each circle of the board as it was laid; -1 where the rival has none.
+// Board circle of the rival for each circle of the present placement; -1 if the rival has none.
 std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift);
 
 // Holds a tracked board against its rivals: at every window while one of them is open, which is one that explains about as
@@ -39,7 +41,7 @@ class PlacementWatch {
  public:
   PlacementWatch(const Board& board, const GridOptions& options);
 
-  void begin();  // a board that was found anew: all is open
+  void begin();  // a board that was found again: all is open
   bool isDue() const { return wait_ <= 1; }
   void pass() { --wait_; }  // a window goes by without a look
 
@@ -48,7 +50,7 @@ class PlacementWatch {
   std::optional<Eigen::Matrix3d> look(const BurstWindow& window, const WindowTrace& trace,
                                       const BoardScene& scene, const TrackingOptions& options);
 
-  // By the last looks the circles seen leave no other way to lay the board.
+  // The visible circles of the last checks exclude all other placements.
   bool isSettled() const { return agreeing_ >= options_.contradicting_looks; }
   // Some look since begin(), or since the last one that contradicted, put the board ahead of all rivals, as a search has
   // to before it is believed; or there was no look.

@@ -1,5 +1,5 @@
-// Pictures of what the front end saw and made of it, one window each, enlarged by a whole factor so that
-// pixels stay pixels. A library of its own (evical_drawing): the front end itself draws nothing.
+// Pictures of the front end's stages, one window each, enlarged by a whole factor so that pixels stay pixels.
+// A separate library (evical_drawing): the front end itself draws nothing.
 #pragma once
 
 #include "core/frontend/board_search.h"
@@ -13,7 +13,7 @@ namespace evical {
 
 struct DrawingStyle {
   int width_px = 1000;            // about; the factor is whole
-  double covariance_sigmas = 30;  // of a measured centre's ellipse: honest ones are too small to see
+  double covariance_sigmas = 30;  // of a measured centre's ellipse: true ones are too small to see
   double arrow_s = 0.1;           // velocity arrows are this long
 };
 

@@ -12,7 +12,7 @@ class BurstHistory;
 struct BoardScene;
 
 // search_0000.png, search_0001.png, ... and window_0000.png, ...: numbered by the searches and windows
-// themselves, so that the numbers of two runs agree whatever every_nth is.
+// themselves, so that the numbers of two runs agree for any every_nth.
 class StageImageWriter : public FrontEndObserver {
  public:
   // Makes the directory. `scene` and `history` are the tracker's and outlive the writer; without a history

@@ -1,5 +1,5 @@
-// What the tracker makes of one window, as a function of its inputs. The tracker goes on from it; who draws
-// the window finds in it how far it came and why.
+// The tracker's result for one window, as a function of its inputs. The tracker continues from it; drawings
+// show its last stage and the reason.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -22,12 +22,12 @@ struct WindowSlot {
   double half_s() const { return 0.5e-9 * static_cast<double>(end_ns - begin_ns); }
 };
 
-// What all windows of a recording share.
+// Common data of all windows of a recording.
 struct TrackingInput {
   const BurstHistory& history;
   const BoardScene& scene;
   const FrontEndOptions& options;
-  std::int64_t start_ns = 0;  // times are told since then
+  std::int64_t start_ns = 0;  // zero of the times in seconds
 };
 
 // Part of the circles that should be seen which must be, for a tracked board to be gone on from.
@@ -53,7 +53,7 @@ struct WindowTrace {
   bool held() const { return ended == TrackingEnd::Held; }
 };
 
-// What a window that holds makes of so many circles.
+// Outcome of a tracked window with so many circles.
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options);
 
 enum class TraceDetail { Result, Everything };

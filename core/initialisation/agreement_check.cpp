@@ -60,7 +60,7 @@ void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& t
 
 }  // namespace
 
-// Drivers that stamp a message's samples when it arrives: nothing tells motion from their steps.
+// Drivers that stamp a message's samples when it arrives: their steps cannot be distinguished from motion.
 void checkStampsApart(const ImuData& imu) {
   std::vector<std::int64_t> rates_ns, forces_ns;
   for (const ImuSample& sample : imu.samples) {
@@ -91,9 +91,10 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
   // Rotations of single views are wrong by 1 to 3 mrad, which is all there is in a recording that hardly moves.
   constexpr double kBeyondNoise_rad = 0.01;
   if (rotation.pairs == 0 || rotation.rest_rad < kBeyondNoise_rad) return;
-  // Where motion about one axis outweighs the others, a wrong hand leaves little; but a reflection then leaves less. A
-  // mirrored gyroscope left 33 % of such a motion, where 40 % are allowed, and its reflection less than a fifth of that. Half of
-  // what is left, and the quarter of what is allowed from which a hand is asked for at all, are chosen, not measured.
+  // If motion about one axis dominates, a wrong hand leaves little, but a reflection then leaves less. A
+  // mirrored gyroscope left 33 % of such a motion, where 40 % are allowed, and its reflection less than a
+  // fifth of that. Half of the residual, and a quarter of the limit from which handedness is tested at all,
+  // are chosen, not measured.
   constexpr double kFarBetter = 0.5, kMuchBetter = 0.2, kSuspicious = 0.25;
   const bool unexplained = rotation.rotated >= options.largest_unexplained_motion;
   const bool left_handed = unexplained

@@ -1,5 +1,5 @@
-// Camera, gyroscope and accelerometer must tell of one motion. Where they do not, what could be wrong is tried,
-// and CalibrationFailed thrown with what explains it best: a result would be wrong by far.
+// Camera, gyroscope and accelerometer must measure the same motion. If they do not, possible causes are
+// tried, and CalibrationFailed is thrown with the most probable one: a result would have large errors.
 #pragma once
 
 #include "core/base/progress.h"

@@ -66,7 +66,7 @@ class AxesTrial {
     tracks_ = {{camera.poses, offset_s}};
   }
 
-  // Of the accelerations, were the accelerometer's axes these.
+  // Misfit of the accelerations with these axes of the accelerometer.
   double misfit_m_s2(const Eigen::Matrix3d& reading) const {
     std::vector<ImuSample> samples = imu().samples;
     for (ImuSample& sample : samples) sample.specific_force_m_s2 = reading * sample.specific_force_m_s2;
@@ -83,14 +83,14 @@ class AxesTrial {
   std::vector<CameraTrack> tracks_;
 };
 
-// Rates were negated for the trial where the gyroscope is left-handed.
-// The frame is the accelerometer's, so that of two that do not match the gyroscope is read anew. Readings are of the samples
-// as they came, which the session may already have turned.
+// Rates were negated for the trial if the gyroscope is left-handed. The frame is the accelerometer's, so if
+// the two do not match, the gyroscope's axes are changed. Axes are those of the samples as recorded, which
+// the session may already have rotated.
 AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, const std::string& imu,
                   const std::string& proof) {
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const bool as_is = reading.isApprox(identity), negated = reading.isApprox(-identity);
-  // Rates are turned by an axis' reflection into the other direction, too.
+  // A reflected axis also reverses the direction of rates.
   const Eigen::Matrix3d gyroscope =
       (left_handed_gyroscope ? -1.0 : 1.0) * reading.determinant() * reading.transpose();
   const auto read = [&](const char* sensor, const Eigen::Matrix3d& as) {
@@ -147,7 +147,7 @@ std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_
             : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", least_m_s2, as_is_m_s2);
     return causeOf(best, left_handed_gyroscope, input.imus[input.reference_imu].name, proof);
   } catch (const CalibrationError&) {
-    return std::nullopt;  // it fails for a reason of its own, however the axes are read
+    return std::nullopt;  // it fails for another reason, with any axes
   }
 }
 

@@ -1,6 +1,6 @@
-// Which of an IMU's axes are wrong where camera, gyroscope and accelerometer cannot be parts of one right-handed
-// rig: every reading is tried of the accelerometer's axes (each as any other, either way: 48), and the one under
-// which accelerations agree with positions is told.
+// Wrong axes of an IMU, if camera, gyroscope and accelerometer cannot be parts of one right-handed rig. Every
+// permutation and sign of the accelerometer's axes is tried (48), and the one under which accelerations agree
+// with positions is reported.
 #pragma once
 
 #include "core/base/progress.h"

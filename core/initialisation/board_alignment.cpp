@@ -31,7 +31,7 @@ std::vector<Moment> momentsOf(const CameraTrajectory& body, std::span<const Boar
   return moments;
 }
 
-// As poses without a place.
+// Rotations as poses without a translation.
 MeanPose meanRotation(std::span<const BoardSight> sights, const std::vector<Moment>& moments) {
   std::vector<RigidTransform> rotations;
   for (const Moment& moment : moments)
@@ -39,11 +39,11 @@ MeanPose meanRotation(std::span<const BoardSight> sights, const std::vector<Mome
                              moment.board_from_camera.rotation.conjugate(),
                          Eigen::Vector3d::Zero()});
   constexpr int kRounds = 20;
-  constexpr PoseSpread kSpread{0.02, 1.0};  // planar poses that were taken the wrong way round lie far off
+  constexpr PoseSpread kSpread{0.02, 1.0};  // mirrored solutions of planar poses are outliers
   return meanPose(rotations, rotations[rotations.size() / 2], kSpread, kRounds);
 }
 
-// R_wb t_c - t_wB = R_wB p_Bc - p_wb of every view, those that lie far off reweighted; unknown are t_wB and each t_c.
+// R_wb t_c - t_wB = R_wB p_Bc - p_wb of every view, outliers reweighted; unknown are t_wB and each t_c.
 class Translations {
  public:
   Translations(std::span<const BoardSight> sights, const std::vector<Moment>& moments,
@@ -95,8 +95,8 @@ class Translations {
   }
 
   Eigen::VectorXd weighted(const std::vector<double>& weights) const {
-    constexpr double kOpen = 1e-6;   // what no view tells stays at zero
-    constexpr double kGiven = 1e12;  // and what is known where it is
+    constexpr double kOpen = 1e-6;   // undetermined values stay at zero
+    constexpr double kGiven = 1e12;  // and known values stay
     const Eigen::Index size = columnOf(sights_.size());
     Eigen::MatrixXd normal = kOpen * Eigen::MatrixXd::Identity(size, size);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);

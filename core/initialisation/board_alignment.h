@@ -1,8 +1,8 @@
-// Where a further board stands in the world, and its cameras on the body (docs/maths.md, 8.12): the body's place is known
-// by what other cameras see of the world's board, and at those moments
+// Place of a further board in the world, and of its cameras on the body (docs/maths.md, 8.12). The body's
+// place is known from other cameras' views of the world's board, and at those moments
 //   world_from_body(t) body_from_camera = world_from_board board_from_camera(t),
-// the rotation of body_from_camera being known by hand-eye. Both translations follow from one linear system: the body
-// must turn about two axes.
+// with the rotation of body_from_camera known by hand-eye. Both translations follow from one linear system:
+// the body must rotate about two axes.
 #pragma once
 
 #include "core/data/calibration_priors.h"

@@ -11,8 +11,8 @@ namespace {
 
 // Wide, so that speeds at a stretch's end are those of several views.
 constexpr double kKnotSpacing_s = 0.08;
-// How far two gaps may differ and still speak for the same: carried on over some tenths of a second, hands
-// are a degree or two off.
+// Largest difference of two gaps that agree: extrapolated over some tenths of a second, hands deviate by a
+// degree or two.
 constexpr PoseSpread kSpread{0.04, 0.03};
 
 // A view with the motion around it.

@@ -1,6 +1,5 @@
-// How two cameras sit on each other when they see the board in turns, and no IMU measures the motion between:
-// where one loses the board and the other finds it, both are carried on to the middle of the gap at the
-// speed that they have.
+// Relative pose of two cameras that see the board in turns, without an IMU for the motion between: when one
+// loses the board and the other finds it, both are extrapolated to the middle of the gap at their speed.
 #pragma once
 
 #include "core/data/calibration_priors.h"

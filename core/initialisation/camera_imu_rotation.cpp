@@ -47,7 +47,7 @@ std::vector<Eigen::Vector3d> feltRotations(const std::vector<RotationPair>& pair
   return felt;
 }
 
-// What is given is as good as certain: information beyond that of any recording.
+// Given values are practically certain: information beyond that of any recording.
 Vector7 holding(bool rotation, bool offset) {
   constexpr double kCertain = 1e12;
   Vector7 information = Vector7::Zero();

@@ -12,8 +12,8 @@
 
 namespace evical {
 
-// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further
-// IMU by its own spline.
+// Rotation of a sensor relative to the reference, and its time offset: of a camera by hand-eye, or of a
+// further IMU by its own spline.
 struct RelativeRotation {
   Eigen::Quaterniond reference_from_sensor = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
@@ -25,17 +25,18 @@ struct RelativeRotation {
   int pairs = 0;
 };
 
-// How the camera turned between two views.
+// Rotation of the camera between two views.
 struct RotationPair {
   double from_s, to_s;       // camera clock
   Eigen::Vector3d seen_rad;  // camera(from)_from_camera(to), rotation vector
 };
-// Each view with the next one that is at least `pair_gap_s` later, if that is no further than `longest_pair_s`.
+// Each view with the next one that is at least `pair_gap_s` later, unless that is further than
+// `longest_pair_s`.
 std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
                                         double longest_pair_s);
 
-// From a start offset that is right to `time_offset_reach_s`, or exact where the prior gives it; a given
-// rotation is held, too. Nothing if fewer than five pairs are covered.
+// From a start offset that is correct to `time_offset_reach_s`, or exact if the prior gives it; a given
+// rotation is fixed, too. Nothing if fewer than five pairs are covered.
 std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                           const GyroRotation& gyro, double time_offset_s,
                                                           const InitialisationOptions& options,

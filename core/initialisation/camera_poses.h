@@ -31,8 +31,8 @@ struct CameraPoses {
 CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
                                 const InitialisationOptions& options, const RunContext& context = {});
 
-// Where a view allows two poses, takes the one whose rotation from its neighbours is as large as the
-// gyroscope's. Returns how many were swapped.
+// If a view allows two poses, takes the one whose rotation from its neighbours is as large as the
+// gyroscope's. Returns the number of swapped ones.
 int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,
                           double longest_pair_s);
 

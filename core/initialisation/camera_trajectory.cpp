@@ -81,7 +81,7 @@ std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
     each.push_back(inverse(world_from_reference) * pose.world_from_camera);
   }
   if (static_cast<int>(each.size()) < std::max(1, least_views)) return std::nullopt;
-  // Planar poses that were taken the wrong way round lie far off.
+  // Mirrored solutions of planar poses are outliers.
   constexpr int kRounds = 20;
   constexpr PoseSpread kSpread{0.02, 0.01};
   return RelativePose{meanPose(each, each[each.size() / 2], kSpread, kRounds), static_cast<int>(each.size())};

@@ -14,8 +14,8 @@
 
 namespace evical {
 
-// Where a view allows two poses, takes the one nearer to those of its neighbours in time.
-// Returns how many were swapped.
+// If a view allows two poses, takes the one nearer to those of its neighbours in time. Returns the number of
+// swapped ones.
 int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s);
 
 struct CameraTrajectory {
@@ -23,7 +23,7 @@ struct CameraTrajectory {
   VectorSpline camera_in_world_m;
   std::vector<double> view_times_s;  // ascending: where it is known
 
-  // A view lies within `gap_s` before and after.
+  // True with a view within `gap_s` before and after.
   bool isKnownAt(double time_s, double gap_s) const;
 };
 CameraTrajectory trajectoryThrough(const std::vector<CameraPose>& poses, double begin_s, double end_s,

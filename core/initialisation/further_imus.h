@@ -1,6 +1,6 @@
-// Where further IMUs sit on the rig. Rotation and time offset as for a camera (docs/maths.md, 8.7): a
-// gyroscope, too, sees how far it has turned between two moments. Then lever arm l and accelerometer bias b,
-// linear once the reference's motion is known:
+// Poses of further IMUs on the rig. Rotation and time offset as for a camera (docs/maths.md, 8.7): a
+// gyroscope also measures its rotation between two moments. Then lever arm l and accelerometer bias b, linear
+// given the reference's motion:
 //   R f - R_wb^T (p'' - g) = ([a]x + [w]x [w]x) l + R b        with R = reference_from_imu.rotation.
 #pragma once
 
@@ -21,7 +21,7 @@ struct ImuRotation {
   double correlation = 0.0;  // of the two gyroscopes' rates
 };
 
-// `reference` with its bias taken out. Throws CalibrationFailed where they do not overlap or do not agree.
+// `reference` with its bias removed. Throws CalibrationFailed if they do not overlap or do not agree.
 ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, const GyroRotation& reference,
                                   const InitialisationOptions& options, const RunContext& context);
 

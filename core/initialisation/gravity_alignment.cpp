@@ -69,9 +69,9 @@ struct Row {
   double weight = 1.0;  // robust
 };
 
-// The unknowns other than control points: levers, gravity, bias; and where the board's scale is asked for,
-// the scale, and the matrix by which the accelerometer's scales and axes are off, and the rotation with them,
-// row by row: without it, they would pass for the board's.
+// The unknowns other than control points: levers, gravity, bias. If the board's scale is estimated, also the
+// scale, and the matrix of errors of the accelerometer's scales and axes and of the rotation, row by row:
+// without it, they would be mistaken for the board's.
 struct Layout {
   explicit Layout(std::size_t cameras) : gravity(static_cast<Eigen::Index>(3 * cameras)) {}
   Eigen::Index gravity;
@@ -312,8 +312,8 @@ Vector3d Alignment::errorOf(const Row& row, const Solution& solution) const {
   return spline + sharedCoefficients(row) * solution.shared - target(row);
 }
 
-// Errors within a second may have one cause, such as a rotation that is a little off and turns gravity: the
-// larger of the sigma that takes all errors as independent, and of what the seconds' pulls scatter.
+// Errors within a second may have one cause, such as a small rotation error that rotates gravity: the larger
+// of the sigma for independent errors, and of the scatter of the seconds' pulls.
 double Alignment::scaleSigma(const Solution& solution) const {
   const double independent = std::sqrt(solution.covariance(layout_.scale(), layout_.scale()));
   const double segments_per_second = 1.0 / knot_spacing_s_;
@@ -331,7 +331,7 @@ double Alignment::scaleSigma(const Solution& solution) const {
   return std::max(independent, std::sqrt(squares));
 }
 
-// The next round's weights: what lies far off counts less, and both kinds count by how well they fit.
+// The next round's weights: outliers count less, and both kinds count by their fit.
 void Alignment::reweigh(const Solution& solution) {
   std::vector<double> positions, accelerations;
   for (Row& row : rows_) {

@@ -48,7 +48,7 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
                               std::int64_t start_ns, const So3Spline& rotation,
                               const InitialisationOptions& options, const RunContext& context = {});
 
-// How far accelerations are from what positions say, by their median, and nothing else: quicker.
+// Median difference between accelerations and positions, and nothing else: faster.
 double accelerationMisfit_m_s2(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                                std::int64_t start_ns, const So3Spline& rotation,
                                const InitialisationOptions& options, const RunContext& context = {});

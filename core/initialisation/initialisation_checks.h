@@ -1,5 +1,5 @@
-// What must hold before and between the steps of initialisation; each throws CalibrationError with what,
-// where and what to do.
+// Conditions before and between the steps of initialisation; each throws CalibrationError with problem, place
+// and advice.
 #pragma once
 
 #include "core/data/calibration_setup.h"

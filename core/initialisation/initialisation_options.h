@@ -1,4 +1,4 @@
-// What initialisation lets people choose.
+// Options of initialisation.
 #pragma once
 
 #include "core/base/option_struct.h"

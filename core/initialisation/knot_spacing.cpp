@@ -29,8 +29,8 @@ constexpr std::array kSpacings_s = {kClosestKnots_s, 0.003, 0.0035, 0.004, 0.005
                                     0.050,           0.060, 0.070,  0.085, kWidestKnots_s};
 // A spline with fewer samples to a knot follows their noise.
 constexpr double kLeastSamples_a_knot = 2.5;
-// What splines may miss, of the noise of a sample, and of what one view tells: it repeats with the motion, and
-// does not average out as noise does.
+// Allowed shares of missed motion, relative to the noise of a sample and to the precision of one view: it
+// repeats with the motion, and does not average out as noise does.
 constexpr double kMissedOfNoise = 0.1, kMissedOfView = 0.04;
 constexpr std::size_t kLeastSamples = 50;
 
@@ -45,14 +45,14 @@ struct Signal {
   std::size_t size() const { return values.size(); }
 };
 
-// Of the differences of control points, first ones or second ones.
+// Weights of the differences of control points, first or second ones.
 using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
 Weights weightsOf(Felt felt, double u) {
   if (felt == Felt::Velocity) return cumulativeWeights(u, 1.0).first_s;
   return Eigen::Vector2d(1.0 - u, u);
 }
 
-// What the best spline with some spacing leaves of a signal.
+// Residual of the best spline with some spacing for a signal.
 struct Fit {
   std::vector<double> squares;  // by sample, of all three axes
   double points = 0.0;          // that samples determine
@@ -89,7 +89,7 @@ Fit fitSplines(const Signal& signal, double spacing_s) {
   return fit;
 }
 
-// Mean by sample and axis, without the stretches that have most: a knock is no motion to follow.
+// Mean by sample and axis, without the stretches with the largest: a knock is not followed.
 double typicalMean(const Signal& signal, const std::vector<double>& squares) {
   constexpr double kStretch_s = 0.5, kKnocks = 0.05;
   struct Stretch {
@@ -115,7 +115,7 @@ double typicalMean(const Signal& signal, const std::vector<double>& squares) {
 // One sensor's samples against splines of any spacing.
 class Demand {
  public:
-  // `given_noise` of a sample; `view` is what one view tells of the signal's integral, once or twice.
+  // `given_noise` of a sample; `view` is the precision of one view for the signal's integral, once or twice.
   Demand(Signal signal, double closest_s, double given_noise, double view)
       : signal_(std::move(signal)), view_(view), closest_(fitSplines(signal_, closest_s)) {
     constexpr double kLeastFree = 0.05;
@@ -139,7 +139,7 @@ class Demand {
   double size() const { return static_cast<double>(signal_.size()); }
 
   bool isEnough(double spacing_s) const {
-    // What is missed has half a period to a knot at least, which bounds its integrals.
+    // Missed motion has at least half a period per knot, which bounds its integrals.
     const double frequency_rad_s = std::numbers::pi / spacing_s;
     const double moves = signal_.felt == Felt::Velocity ? frequency_rad_s : frequency_rad_s * frequency_rad_s;
     const double allowed = std::min(kMissedOfNoise * noise_, kMissedOfView * view_ * moves);

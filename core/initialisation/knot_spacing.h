@@ -1,6 +1,6 @@
-// How far apart the splines' knots may lie for the motion (docs/maths.md, 8.11). Rates and accelerations are
-// fitted by what splines with knots of some spacing can follow: what the closest knots leave is noise, and
-// what wider ones leave beyond that they miss.
+// Knot spacing of the splines for the motion (docs/maths.md, 8.11). Splines with several spacings are fitted
+// to rates and accelerations: the residual of the closest knots is noise, and the additional residual of
+// wider ones is missed motion.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -15,19 +15,19 @@
 
 namespace evical {
 
-// Where nothing is known of the motion, and for trials.
+// For unknown motion, and for trials.
 inline constexpr double kUsualKnot_s = 0.02;
 inline constexpr double kClosestKnots_s = 0.0025, kWidestKnots_s = 0.1;
 
-// How well one view tells where the camera is: splines must not miss that much either.
+// Precision of a camera's place from one view: splines must not miss that much either.
 struct ViewPrecision {
   double angle_rad = std::numeric_limits<double>::infinity();
   double position_m = std::numeric_limits<double>::infinity();
 };
-// Of the most precise camera.
+// Precision of the most precise camera.
 ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const AlignedCamera> aligned);
 
-// What one sensor of an IMU asks for, in its unit.
+// Demand of one sensor of an IMU, in its unit.
 struct KnotDemand {
   double spacing_s = kWidestKnots_s;  // the widest with which splines miss little
   double noise = 0.0;                 // of a sample, along one axis
@@ -46,8 +46,8 @@ struct TimeRange {
 // Closer knots would follow single samples, and their noise.
 double closestKnots_s(const ImuData& imu);
 
-// Of one IMU's samples within the range, on its clock; `rotation` is its gyroscope's, without bias. Too few
-// samples ask for kUsualKnot_s.
+// Spacing for one IMU's samples within the range, on its clock; `rotation` is its gyroscope's, without bias.
+// Too few samples give kUsualKnot_s.
 KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,
                         const GyroRotation& rotation, const ViewPrecision& views);
 

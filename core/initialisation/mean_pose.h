@@ -1,4 +1,4 @@
-// Several estimates of one pose become one: means, reweighted, so that those which lie far off hardly count.
+// Mean of several estimates of one pose, reweighted so that outliers hardly count.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"

@@ -47,7 +47,7 @@ class Part {
     for (const RotationPair& pair : pairs_) errors.push_back(error_rad(pair, offset_s).norm());
     return medianOf(std::move(errors));
   }
-  // One step of Gauss and Newton, Cauchy's weights; false where nothing tells.
+  // One Gauss-Newton step with Cauchy weights; false if nothing is determined.
   bool refine(OffsetPart& part) const {
     constexpr double kDelta_s = 1e-3;
     const double scale_rad = std::max(medianError_rad(part.time_offset_s), 1e-6);
@@ -156,7 +156,7 @@ std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
     best = ClockStep{parts[k].begin_s, step_s, std::abs(step_s) / std::hypot(before.std_s, after.std_s),
                      2 * k >= parts.size()};
   }
-  // What two levels leave must be noise again, which it is not of clocks that drift.
+  // The residual of two levels must be noise again; that of drifting clocks is not.
   constexpr double kFarBetter = 0.5;
   if (!best || best->sigmas < kSure_sigmas || std::abs(best->step_s) < kLeastStep_s ||
       least > kFarBetter * std::min(one_level, chi2OfLine(parts)))

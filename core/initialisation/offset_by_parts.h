@@ -14,7 +14,7 @@ struct OffsetPart {
   double begin_s = 0.0, end_s = 0.0;  // camera clock
   double time_offset_s = 0.0, time_offset_std_s = 0.0;
 };
-// Of parts of some seconds, with everything but the offset as it was found for the whole.
+// Offsets of parts of some seconds, with everything else from the whole recording.
 std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                        const RelativeRotation& whole, const InitialisationOptions& options);
 

@@ -17,8 +17,8 @@ struct PoseConsistency {
   double usual_rad = 0.0;  // median disagreement of those kept with their neighbours
 };
 
-// `gyro` with its bias taken out. Keeps poses that agree with most
-// of their neighbours within `largest_rotation_disagreement_rad`.
+// `gyro` with its bias removed. Keeps poses that agree with most of their neighbours within
+// `largest_rotation_disagreement_rad`.
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                     const RelativeRotation& hand_eye, const InitialisationOptions& options);
 

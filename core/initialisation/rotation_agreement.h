@@ -1,5 +1,5 @@
-// Whether camera and gyroscope can be parts of one rigid, right-handed rig: what is left of the gyroscope's
-// rotation once the best rotation of the camera's is taken off, and once the best reflection of it is.
+// Can camera and gyroscope be parts of one rigid, right-handed rig? The residual of the gyroscope's rotation
+// after the best rotation of the camera's, and after its best reflection.
 #pragma once
 
 #include "core/initialisation/camera_imu_rotation.h"
@@ -8,11 +8,11 @@
 
 namespace evical {
 
-// Of rotations between neighbouring views. Shares are of what the gyroscope turned: medians of |rest| over the
-// median of |turned|, without means, which a bias may be.
+// Agreement of rotations between neighbouring views. Shares are relative to the gyroscope's rotation: medians
+// of |rest| over the median of |turned|, without means, which a bias may be.
 struct RotationAgreement {
   double rotated = 0.0, reflected = 0.0;
-  double rest_rad = 0.0;  // what the best rotation leaves, by itself
+  double rest_rad = 0.0;  // residual of the best rotation
   int pairs = 0;          // 0: none overlap, and the rest says nothing
 };
 RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const GyroRotation& gyro,

@@ -1,6 +1,5 @@
-// How fast the camera turned, seen by its views of the board alone, and how fast the gyroscope
-// says it did. Sizes of rotation do not depend on how the camera is mounted, so only the time
-// offset can bring the two together.
+// Rotation rates of the camera, from its views of the board alone, and of the gyroscope. Angles do not depend
+// on the camera's mounting, so only the time offset can make the two agree.
 #pragma once
 
 #include "core/base/progress.h"
