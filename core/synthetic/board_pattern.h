@@ -1,5 +1,5 @@
-// Where a board is printed and where it is paper: circles, squares, or tags as Kalibr's AprilGrid has them, with a
-// border of two modules and a small black square at every corner between tags, or ChArUco boards with usual markers.
+// Printed pattern of a board: circles, squares, or tags like Kalibr's AprilGrid, with a border of two modules
+// and a small black square at every corner between tags, or ChArUco boards with usual markers.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -16,7 +16,7 @@ class BoardPattern {
  public:
   explicit BoardPattern(const Board& board);
 
-  // Whether there is ink, at metres on the board; paper beyond its edge.
+  // True on ink, at metres on the board; paper beyond its edge.
   bool isInk(const Eigen::Vector2f& p) const;
 
   // The printed part's corners.

@@ -22,7 +22,8 @@ class BoardSurface {
   Eigen::Vector2d slope(const Eigen::Vector2d& p) const { return curvature_1_m_ * p; }
   const Eigen::Matrix2d& curvature_1_m() const { return curvature_1_m_; }
 
-  // Where a ray that leaves the camera at `camera_m` and meets the plane at `on_plane_m` meets the sheet.
+  // Intersection with the sheet of a ray that leaves the camera at `camera_m` and meets the plane at
+  // `on_plane_m`.
   struct Hit {
     Eigen::Vector2f point_m;
     Eigen::Matrix2f stretch;  // d(point_m) / d(on_plane_m)

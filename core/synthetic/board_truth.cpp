@@ -16,12 +16,12 @@
 namespace evical {
 namespace {
 
-// Where the camera's stamps of `stamp_s` look in the reference IMU's time.
+// The reference IMU's time of the camera's stamp `stamp_s`.
 double worldTime_s(const SimulatedCamera& camera, double stamp_s) {
   return stamp_s + camera.time_offset_s - camera.delay_s();
 }
 
-// Of a plane z = height + slope . (x, y).
+// A plane z = height + slope . (x, y).
 struct Sheet {
   double height_m = 0.0;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();

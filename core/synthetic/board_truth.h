@@ -1,4 +1,4 @@
-// What a perfect front end would see, and noisy observations made from it without events.
+// Views of a perfect front end, and noisy observations made from them without events.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -20,8 +20,8 @@ struct TrueCircle {
   bool isVisible() const { return inside && !hidden; }
 };
 
-// All circles in front of the camera, at a time that the camera's *stamps* show: the delay of pixels and the
-// clocks' offset are taken out, so detections can be compared directly. Seconds since scenario.start_ns.
+// All circles in front of the camera, at a time of the camera's *stamps*: the delay of pixels and the clocks'
+// offset are removed, so detections can be compared directly. Seconds since scenario.start_ns.
 std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
                                       std::size_t camera, double stamp_s);
 

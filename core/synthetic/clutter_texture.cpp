@@ -64,7 +64,7 @@ void normalise(Image& image) {
   for (float& v : image.values) v = static_cast<float>((v - mean) / sigma);
 }
 
-// As much variance in every octave, like pictures of natural scenes.
+// Clouds with the same variance in every octave, like pictures of natural scenes.
 Image clouds(int size, Random& random) {
   Image sum(size), white(size);
   for (float& v : white.values) v = static_cast<float>(random.normal());
@@ -80,7 +80,7 @@ Image clouds(int size, Random& random) {
   return sum;
 }
 
-// Rectangles that lie on each other, small ones more numerous (a dead-leaves picture).
+// Overlapping rectangles, small ones more numerous (a dead-leaves picture).
 Image objects(int size, Random& random) {
   constexpr int kObjects = 1200;
   constexpr double kSmallest = 6.0, kLargest = 110.0;  // half sides

@@ -1,5 +1,4 @@
-// What lies behind the board: a periodic picture of overlapping flat objects on a cloudy
-// ground, as a room has.
+// Background of the board: a periodic picture of overlapping flat objects on a cloudy ground, like a room.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ class DriveMotionModel {
  public:
   explicit DriveMotionModel(const DriveScenario& scenario);
 
-  // Of the reference IMU, at seconds since the start on its clock. The world's z axis points up.
+  // State of the reference IMU, at seconds since the start on its clock. The world's z axis points up.
   MotionState at(double time_s) const;
 
   // 1 on the way, 0 in stops.

@@ -13,8 +13,8 @@
 
 namespace evical {
 
-// Between stops the rig is turned into the next attitude, and sways and wobbles on the way; sums of sinusoids that a
-// smooth envelope lets come and go.
+// Motion between stops: the rig rotates into the next attitude, and sways and wobbles on the way, by sums of
+// sinusoids with a smooth envelope.
 struct DriveMotion {
   int stops = 0;          // 0: it never stops
   int attitudes = 1;      // that stops take in turn
@@ -28,7 +28,7 @@ struct DriveMotion {
   double cycle_s() const { return stop_s + drive_s; }
 };
 
-// What changes of an IMU at a moment: added to what was true before.
+// Change of an IMU at a moment, added to its previous truth.
 struct ImuStep {
   std::size_t imu = 0;
   double at_s = 0.0;
@@ -47,7 +47,7 @@ struct DriveScenario {
   std::int64_t start_ns = 1'700'000'000'000'000'000;
   double gravity_m_s2 = 9.81;  // along the world's -z
   DriveMotion motion;
-  std::vector<SimulatedImu> imus;  // the first is the reference; as they were when calibrated
+  std::vector<SimulatedImu> imus;  // the first is the reference; with their values at the calibration
   std::vector<ImuStep> steps;
   double trajectory_hz = 0.0;  // 0: no trajectory is written
   double trajectory_noise_m = 1e-3, trajectory_noise_rad = 1e-4;
@@ -56,7 +56,7 @@ struct DriveScenario {
   SimulatedImu imuAt(std::size_t imu, double time_s) const;
 };
 
-// Whether the file is one of these; else it is a scenario of cameras.
+// True for a drive scenario; otherwise it is a scenario of cameras.
 bool isDriveScenario(const std::filesystem::path& path);
 
 // Absent keys keep the defaults; `base:` names another one that this one changes. Throws CalibrationError (BadInput).

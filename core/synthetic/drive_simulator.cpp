@@ -18,7 +18,7 @@ struct Measured {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
-// Of the first order: what is left from the last sample, and as much new as keeps its size.
+// First-order noise: the decayed previous sample, and as much new noise as keeps its size.
 class ShakenMount {
  public:
   ShakenMount(const MountShake& shake, double rate_hz, Random random)

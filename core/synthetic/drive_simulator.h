@@ -1,4 +1,4 @@
-// What the IMUs of a drive measure, and what a trajectory of it says.
+// Measurements of a drive's IMUs, and its trajectory.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -12,7 +12,7 @@ namespace evical {
 // Stamps on the IMU's own clock, nanoseconds in the scenario's epoch; SI units.
 std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size_t imu);
 
-// trajectory.csv as a calibration writes it, with noise; empty where none is asked for.
+// trajectory.csv as a calibration writes it, with noise; empty unless the scenario asks for one.
 std::string driveTrajectoryCsv(const DriveScenario& scenario);
 
 }  // namespace evical

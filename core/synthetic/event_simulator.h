@@ -11,9 +11,9 @@ namespace evical {
 
 using EventSink = std::function<void(EventSpan)>;
 
-// Calls `sink` with packets of about 10 ms in time order; stamps are the camera's own,
-// nanoseconds in the scenario's epoch, on whole microseconds. Deterministic from the seed
-// whatever the number of threads. Bounded memory.
+// Calls `sink` with packets of about 10 ms in time order; stamps are of the camera's clock, nanoseconds in
+// the scenario's epoch, on whole microseconds. Deterministic from the seed for any number of threads. Bounded
+// memory.
 void simulateEvents(const Scenario& scenario, std::size_t camera, const EventSink& sink,
                     const RunContext& context = {}, int threads = 2);
 

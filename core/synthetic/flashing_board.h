@@ -29,7 +29,7 @@ class FlashingBoard {
   };
   Stretch take(std::size_t pixel);
 
-  // Whether the pattern is on the screen; else it is white.
+  // True if the pattern is on the screen; otherwise it is white.
   bool isShown(double time_s) const;
   // At the last stretch's end.
   const SceneLight::Light& last(std::size_t pixel) const { return last_[pixel]; }

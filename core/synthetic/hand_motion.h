@@ -1,4 +1,4 @@
-// What hands add to a motion of sinusoids (HandModel): the tremor, bumps and steps of each quantity, and the
+// Additions of hands to a motion of sinusoids (HandModel): tremor, bumps and steps of each quantity, and
 // stops, which stretch time.
 #pragma once
 
@@ -23,7 +23,7 @@ struct MotionSinusoid {
   MotionValue at(double time_s) const;
 };
 
-// The motion's own time against the clock's: it stands still in stops. Twice differentiable.
+// The motion's time as a function of the clock's: constant during stops. Twice differentiable.
 MotionValue motionTime(const HandModel& hand, double time_s);
 // A value of the motion's time as one of the clock's.
 MotionValue throughTime(const MotionValue& value, const MotionValue& time);

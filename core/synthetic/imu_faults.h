@@ -1,4 +1,4 @@
-// What a real IMU, its clock and its driver do to samples that are otherwise ideal (ImuFaults).
+// Faults of a real IMU, its clock and its driver, added to ideal samples (ImuFaults).
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// What a first-order filter makes of truth(time), its delay taken off: delays are the clocks' affair. The
-// integral over its answer to a pulse, by the rule of Gauss and Laguerre; as it is for a cutoff of 0.
+// Output of a first-order filter for truth(time), minus its delay: delays are part of the clocks. The
+// integral over its pulse response, by Gauss-Laguerre quadrature; unchanged for a cutoff of 0.
 template <class Truth>
 Eigen::Vector3d lowPassed(const Truth& truth, double time_s, double cutoff_hz) {
   if (cutoff_hz <= 0.0) return truth(time_s);
@@ -27,7 +27,7 @@ Eigen::Vector3d lowPassed(const Truth& truth, double time_s, double cutoff_hz) {
   return sum;
 }
 
-// Changes what was measured, then its stamps, then what gets lost. In time order.
+// Changes the measurements, then their stamps, then drops some. In time order.
 void spoilSamples(const Scenario& scenario, std::size_t imu, std::vector<ImuSample>& samples);
 
 }  // namespace evical

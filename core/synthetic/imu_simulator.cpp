@@ -11,7 +11,7 @@ namespace evical {
 
 namespace {
 
-// Tells `use` of every sample and of the biases in it.
+// Calls `use` with every sample and its biases.
 template <class Use>
 void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
   const SimulatedImu& imu = scenario.imus[index];

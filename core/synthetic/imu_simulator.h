@@ -1,4 +1,4 @@
-// What a simulated IMU measures: exact motion, scale and misalignment, biases, noise.
+// Samples of a simulated IMU: exact motion, scale and misalignment, biases, noise.
 #pragma once
 
 #include "core/data/imu_sample.h"

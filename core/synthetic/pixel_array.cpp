@@ -121,7 +121,7 @@ PixelArray::Response PixelArray::responseOf(const Step& step, float input, int x
   return {std::exp(-1.0f / lag), lag, lag * (step.end_s - step.begin_s)};
 }
 
-// Drawn anew after each event.
+// Drawn again after each event.
 float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const {
   const float mean = on ? pixel.threshold_on : pixel.threshold_off;
   if (model_.threshold_noise <= 0.0) return mean;
@@ -132,7 +132,7 @@ float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const 
   return mean * static_cast<float>(std::max(1.0 + model_.threshold_noise * random.normal(), kLeastFactor));
 }
 
-// So many that the lamp's light is nearly linear within one.
+// Number of steps for which the lamp's light is nearly linear within one.
 int PixelArray::leastSteps(double length_s) const {
   constexpr double kStepsPerPeriod = 8.0;
   int steps = 2;
@@ -270,7 +270,7 @@ void PixelArray::emitCrossings(const Step& step, double before, double after, in
     crossing_s = std::clamp(crossing_s, time_s, step.end_s);
     const double free_s = pixel.last_event_s + model_.refractory_s;
     if (crossing_s < free_s) {
-      // Held in reset until the refractory period ends: the level then is the new reference.
+      // In reset until the refractory period ends: the level then is the new reference.
       if (free_s > step.end_s) {
         pixel.reference = static_cast<float>(after);
         return;

@@ -23,8 +23,8 @@ class PixelArray {
 
   int tileRows() const { return renderer_.tileRows(); }
 
-  // Settles all pixels on what they see; their references lie anywhere within the thresholds, as if they had
-  // been running before. It is the recording's start.
+  // Settles all pixels on their present light; their references are anywhere within the thresholds, as if
+  // they had been running before. This is the recording's start.
   void reset(const RigidTransform& world_from_camera);
 
   // A stretch of a few milliseconds, then each of its rows of tiles once, in any
@@ -47,7 +47,7 @@ class PixelArray {
     std::uint32_t event_count = 0;
     double last_event_s = -1.0;
   };
-  // Of the low-pass filter over a step.
+  // Response of the low-pass filter over a step.
   struct Response {
     float decay, lag;  // exp(-dt / tau), tau / dt
     double constant_s;
@@ -82,7 +82,7 @@ class PixelArray {
   std::unique_ptr<RoomRenderer> room_;       // where there is a room, the same
   int width_px_;
   float step_travel_px_;
-  // Whether pixels may be left alone where nothing moves, and whether the lamp alone makes them fire.
+  // May pixels be skipped if nothing moves, and does the lamp alone make them fire?
   bool rests_, lamp_is_weak_;
   std::vector<float> own_light_;  // log, added to what a pixel sees; empty where all answer alike
   std::vector<Pixel> pixels_;

@@ -15,7 +15,8 @@ namespace {
 constexpr int kBlurs = 5;
 constexpr double kSharpest_texels = 0.5;
 
-// Of a step that a Gaussian blurs, nearly: a cubic of as much variance, 0 to 1 within so many sigmas to either side.
+// Step blurred by a Gaussian, nearly: a cubic of the same variance, 0 to 1 within so many sigmas to either
+// side.
 constexpr float kStepReach = 2.236f;
 
 float blurredStep(float sigmas) {
@@ -108,7 +109,7 @@ int RoomRenderer::nearestWall(const Instant& instant, const Eigen::Vector2f& ray
   return nearest;
 }
 
-// How far what a pixel sees at this depth moves away from it.
+// Image motion of a point at this depth away from the pixel.
 float RoomRenderer::travel(std::size_t pixel, float inverse_depth_1_m, const Instants& instants) const {
   const Eigen::Vector2f& ray = rays_[pixel];
   if (!(inverse_depth_1_m > 0.0f)) return 0.0f;
@@ -279,7 +280,8 @@ float RoomRenderer::onWall(const Instant& instant, int wall, const Eigen::Vector
   return picture(room_.walls[k], place.hnormalized(), sharpness);
 }
 
-// Where two walls meet both are equally far; how many pixels from there is told by how their 1/z part.
+// On an edge of two walls both are equally far; its distance in pixels follows from the difference of their
+// 1/z.
 float RoomRenderer::onWalls(const Instant& instant, std::size_t pixel,
                             const std::array<Sharpness, 6>& sharpness) const {
   const Eigen::Vector2f& ray = rays_[pixel];
@@ -310,7 +312,7 @@ float RoomRenderer::onWalls(const Instant& instant, std::size_t pixel,
   return std::log(own * std::exp(light) + (1.0f - own) * std::exp(other));
 }
 
-// How much of a pixel lies on a box's side, and where.
+// Share of a pixel on a box's side, and its place.
 float RoomRenderer::coverOf(const RoomSide& side, const PlacedSide& placed, std::size_t pixel,
                             Eigen::Vector2f& place_m) const {
   const Eigen::Matrix3f& h = placed.side_from_ray;

@@ -55,7 +55,7 @@ class RoomRenderer {
     float part = 0.0f;
   };
 
-  // What a tile sees of a box's side, from the first to the last instant.
+  // Part of a tile on a box's side, from the first to the last instant.
   enum class Extent { Nothing, Part, All };
   struct CornerPlace;
 
@@ -81,7 +81,7 @@ class RoomRenderer {
   RoomScene room_;
   int width_px_;
   float blur_px_, texels_per_m_, focal_px_;
-  std::vector<Eigen::Vector2f> rays_;        // per pixel; NaN where there is none
+  std::vector<Eigen::Vector2f> rays_;        // per pixel; NaN without one
   std::vector<Eigen::Matrix2f> ray_per_px_;  // d(ray)/d(pixel)
   std::vector<ClutterTexture> pictures_;     // each twice as blurred as the one before
   double sharpest_texels_;

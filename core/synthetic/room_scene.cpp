@@ -22,7 +22,7 @@ Eigen::Vector3d boardMiddle_m(const Board& board) {
   return {half.x(), half.y(), 0.0};
 }
 
-// The six sides of a cuboid that is turned about the vertical; `inside`: they look inwards.
+// The six sides of a cuboid that is rotated about the vertical; `inside`: they face inwards.
 std::array<RoomSide, 6> sidesOf(const Eigen::Vector3d& middle_m, const Eigen::Vector3d& half_m,
                                 double turn_rad, bool inside, double tone, Random& random) {
   const Eigen::Matrix3d axes = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -43,7 +43,7 @@ std::array<RoomSide, 6> sidesOf(const Eigen::Vector3d& middle_m, const Eigen::Ve
   return sides;
 }
 
-// Whether a box at this place leaves the middle free, stays within the walls, and touches no other.
+// True if a box at this place leaves the middle free, stays within the walls, and touches no other.
 bool hasRoom(const Eigen::Vector3d& at_m, double radius_m, const RoomModel& room,
              const std::vector<RoomBox>& others, const Eigen::Vector3d& middle_m) {
   const Eigen::Vector3d away = (at_m - middle_m).cwiseAbs();

@@ -18,7 +18,7 @@ struct RoomSide {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d along = Eigen::Vector3d::UnitX(), down = Eigen::Vector3d::UnitY();  // unit
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d picture_m = Eigen::Vector2d::Zero();  // where in the picture its middle lies
+  Eigen::Vector2d picture_m = Eigen::Vector2d::Zero();  // place of its middle in the picture
   double log_tone = 0.0;
 
   Eigen::Vector3d normal() const { return along.cross(down); }  // out of boxes, into the room

@@ -31,14 +31,16 @@ struct EventPixelModel {
   double low_pass_s = 3e-4;     // time constant of the photoreceptor
   double stamp_jitter_s = 0.0;  // stamps are late by the absolute value of a normal variable with this sigma
 
-  // What else real pixels do; all off by default. low_pass_s is that at the light halfway between ink and paper:
-  // it goes with a power of the light, and brightening is faster than it by this share, darkening slower.
+  // Further effects of real pixels; all disabled by default. low_pass_s is that at the light halfway between
+  // ink and paper: it is proportional to a power of the light. Brightening is faster than it by this share,
+  // darkening slower.
   double low_pass_light_power = 0.0;  // 1: twice the light, half the time
   double low_pass_polarity = 0.0;
   double vignetting = 0.0;       // share of the light that the image's corners lack: they are slower
   double threshold_noise = 0.0;  // sigma from event to event, relative
   double leak_rate_hz = 0.0;     // of brightening events where nothing changes
-  // Of the arbiter: events wait for their turn, and are stamped at it; those that would wait longer are lost.
+  // Rate of the arbiter: events wait for their turn, and are stamped at it; those that would wait longer are
+  // lost.
   double readout_rate_hz = 0.0;  // 0: without limit
   double longest_wait_s = 1e-3;
 
@@ -53,7 +55,7 @@ struct EventPixelModel {
   }
 };
 
-// What a frame camera takes of the same scene.
+// Frames of the same scene by a frame camera.
 struct FrameModel {
   double rate_hz = 20.0;
   double exposure_s = 4e-3;
@@ -74,13 +76,13 @@ struct SimulatedCamera {
   EventPixelModel pixel;
   std::optional<FrameModel> frames = {};  // in the place of events
   std::string board = "board";            // that it sees, by name
-  std::string same_sensor_as = {};        // a camera whose lens and place it has, and the session says so
+  std::string same_sensor_as = {};        // a camera with the same lens and place, also in the session
 
   // By how much a stamp is late.
   double delay_s() const { return frames ? 0.0 : pixel.delay_s(); }
 };
 
-// What else is wrong with an IMU, its clock and its messages; all off by default.
+// Further faults of an IMU, its clock and its messages; all disabled by default.
 struct ImuFaults {
   double low_pass_hz = 0.0;  // of a first-order filter in gyroscope and accelerometer; without its delay
   double gyroscope_range_rad_s = 0.0, accelerometer_range_m_s2 = 0.0;  // limits of each axis
@@ -100,9 +102,9 @@ struct ImuFaults {
   bool operator==(const ImuFaults&) const = default;
 };
 
-// What is true of an IMU, and how it measures. Biases are those at the start where they walk.
-// A mount that gives: what an IMU measures beside the body's motion, on each axis for itself; noise that a low pass of
-// the first order lets through. Sigmas.
+// Truth of an IMU, and its measurement model. Biases are those at the start if they walk. Motion of a mount
+// that gives: measured by an IMU in addition to the body's motion, separately on each axis; noise through a
+// first-order low pass. Sigmas.
 struct MountShake {
   double rate_rad_s = 0.0, force_m_s2 = 0.0, correlation_s = 0.3;
 };
@@ -119,8 +121,8 @@ struct SimulatedImu : ImuState {
   ImuFaults faults;
 };
 
-// What hands add to a motion; all off by default. Stops come every so often and take so long, speeding down
-// and up within a quarter of a second; tremor goes on during them.
+// Additions of hands to a motion; all disabled by default. Stops have a period and a duration, and ramp down
+// and up within a quarter of a second; tremor continues during them.
 struct HandModel {
   double tremor_rad = 0.0, tremor_m = 0.0;  // sigmas of all quantities, at 8 to 12 Hz
   double jerks_per_s = 0.0;                 // bumps of some 0.1 s at random moments
@@ -130,9 +132,9 @@ struct HandModel {
 };
 
 // The first camera looks at a point that wanders around the board's middle, from a distance and along a
-// direction that wander too. Each of these quantities is a sum of sinusoids drawn from the seed. On top, it
-// may turn to and fro about its own y axis, evenly, where it stands: other cameras of a rig then see the
-// board in its place.
+// direction that wander too. Each of these quantities is a sum of sinusoids drawn from the seed. In addition,
+// it may rotate to and fro about its y axis, evenly, in place: other cameras of a rig then see the board in
+// turn.
 struct MotionModel {
   double distance_m = 0.55;
   double distance_amplitude_m = 0.08;
@@ -144,7 +146,7 @@ struct MotionModel {
   double turn_period_s = 4.0;
   double tilt_amplitude_rad = 0.0;  // and about its x axis
   double tilt_period_s = 7.0;
-  // Where it walks to and fro on top of all that, along the world's axes; at a third to three times the period.
+  // Walk to and fro in addition, along the world's axes; at a third to three times the period.
   Eigen::Vector3d walk_amplitude_m = Eigen::Vector3d::Zero();
   double walk_period_s = 8.0;
   double lowest_frequency_hz = 0.3;  // before scaling to the speed
@@ -155,8 +157,8 @@ struct MotionModel {
   HandModel hand = {};
 };
 
-// How far the board is from flat: by how much the middle of its rows and of its columns stands out, and its corners by
-// a twist (core/data/board_bow.h).
+// Bow of the board: height of the middle of its rows and of its columns, and of its corners by a twist
+// (core/data/board_bow.h).
 struct SimulatedBow {
   double rows_m = 0.0, columns_m = 0.0, twist_m = 0.0;
 
@@ -178,7 +180,7 @@ struct HandOverBoard {
   double shadow_edge_m = 0.004;  // sigma of the shadow's edge
 };
 
-// People who walk past between the board and what lies behind it; off by default.
+// People who walk past between the board and its background; disabled by default.
 struct PeopleModel {
   double every_s = 0.0;
   double speed_m_s = 1.2;
@@ -215,7 +217,7 @@ struct RoomModel {
   bool isThere() const { return size_m.minCoeff() > 0.0; }
 };
 
-// What the session says wrongly, relative to the truth.
+// Errors of the session, relative to the truth.
 struct SessionErrors {
   double spacing = 0.0, focal_length = 0.0;  // 0.01: 1 % too large
   double principal_point_px = 0.0;           // along x
@@ -224,7 +226,7 @@ struct SessionErrors {
   bool operator==(const SessionErrors&) const = default;
 };
 
-// Beside the scenario's own, for the cameras that name it.
+// Board in addition to the scenario's first, for the cameras that name it.
 struct SimulatedBoard {
   std::string name = "board";
   Board board;

@@ -13,7 +13,7 @@ namespace evical {
 void readBoard(const YamlNode& map, Scenario& scenario);
 void readFurtherBoards(const YamlNode& list, Scenario& scenario);
 
-// What can be wrong only once a scenario and its bases are put together. Throws CalibrationError (BadInput).
+// Checks that need a scenario together with its bases. Throws CalibrationError (BadInput).
 void validateBoards(const Scenario& scenario, const std::string& file);
 
 const Board& boardOf(const Scenario& scenario, std::size_t camera);
@@ -21,7 +21,8 @@ const Board& boardOf(const Scenario& scenario, std::size_t camera);
 // Nothing where the camera sees the board whose frame is the world.
 const SimulatedBoard* furtherBoardOf(const Scenario& scenario, std::size_t camera);
 
-// As if this camera's board were the only one, its frame the world: poses are to be taken by boardFromWorld.
+// The scene as if this camera's board were the only one, its frame the world: transform poses by
+// boardFromWorld.
 Scenario sceneOf(const Scenario& scenario, std::size_t camera);
 RigidTransform boardFromWorld(const Scenario& scenario, std::size_t camera);
 

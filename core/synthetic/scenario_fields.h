@@ -1,5 +1,5 @@
-// How scenarios' keys are read: all of these leave the value alone where the key is absent, which is how a scenario
-// changes its base.
+// Readers of scenarios' keys: all of these keep the value if the key is absent, so a scenario changes its
+// base.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -51,7 +51,7 @@ inline void get(const YamlNode& map, const char* key, Eigen::Matrix<double, Size
   }
 }
 
-// What every kind of scenario begins with: the scenario that it rests on, read by `read` (path, depth), its name, its seed.
+// Beginning of every kind of scenario: its base, read by `read` (path, depth), its name, its seed.
 template <class AnyScenario, class Read>
 void readBeginning(const YamlNode& root, const std::filesystem::path& path, int depth, const Read& read,
                    AnyScenario& scenario) {

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kNearestLamp_m = 0.05;
 
-// Upper triangular and near the identity, or it is no IMU.
+// Must be upper triangular and near the identity.
 void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
   const auto node = map.find(key);
   if (!node) return;
@@ -307,7 +307,7 @@ void readGravity(const YamlNode& root, Eigen::Vector3d& gravity) {
   gravity *= norm / gravity.norm();
 }
 
-// What the recording's session knows, and what it has wrong.
+// The session's knowledge of the recording, and its errors.
 void readSession(const YamlNode& map, Scenario& scenario) {
   map.allowOnly(
       {"intrinsics", "spacing_error", "focal_length_error", "principal_point_error_px", "imu_noise_factor"});
@@ -335,7 +335,7 @@ void shareSensors(const std::string& file, std::vector<SimulatedCamera>& cameras
   }
 }
 
-// What can be wrong only once a scenario and its bases are put together.
+// Checks that need a scenario together with its bases.
 void validateWhole(const Scenario& scenario, const std::string& file) {
   validateBoards(scenario, file);
   validateRoom(scenario, file);

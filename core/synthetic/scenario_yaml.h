@@ -13,11 +13,11 @@ namespace evical {
 // values out of range are badInput naming file, key and line.
 Scenario readScenario(const std::filesystem::path& path);
 
-// The keys of result.yaml with the true values. time_offset_s is what a perfect estimator reports: the
-// clocks' offset less the pixels' delay; both stand beside it.
+// The keys of result.yaml with the true values. time_offset_s is the report of a perfect estimator: the
+// clocks' offset minus the pixels' delay; both are written next to it.
 std::string truthYaml(const Scenario& scenario);
 
-// Where frame cameras' pictures are, beside the recording: a folder for each, named by its stream.
+// Folder of frame cameras' pictures, next to the recording: with one folder for each, named by its stream.
 inline constexpr const char* kFramesFolder = "frames";
 
 // A session for the recording `recording_file` in the same folder.

@@ -38,7 +38,7 @@ Eigen::Matrix3f planeFromRay(const RigidTransform& camera_from_world, double dep
   return h.inverse().cast<float>();
 }
 
-// How a ray of length 1 moves with its pixel; it stays of that length.
+// Derivative of a ray of length 1 by its pixel; the length is constant.
 Eigen::Matrix<float, 3, 2> rayPerPixel(const CameraIntrinsics& lens, const Eigen::Vector3d& ray) {
   Eigen::Matrix<double, 2, 3> by_ray;
   if (!project(lens, ray, &by_ray)) return Eigen::Matrix<float, 3, 2>::Zero();

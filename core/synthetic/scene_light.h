@@ -1,5 +1,5 @@
-// What a pixel of a blurred image sees of a board of any kind and of the clutter behind it, at one instant. It is the
-// same scene as SceneRenderer's, whose tiles know circles only.
+// Light of a pixel of a blurred image of any board and its background, at one instant. It is the same scene
+// as SceneRenderer's, whose tiles support circles only.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
@@ -26,7 +26,7 @@ class SceneLight {
   };
   Planes at(const RigidTransform& world_from_camera) const;
 
-  // Reflectances as the pixel averages them: with the board's pattern, and with plain paper in its place.
+  // Mean reflectances of a pixel: with the board's pattern, and with plain paper instead.
   struct Light {
     float shown = 0.0f, hidden = 0.0f;
   };
@@ -39,7 +39,7 @@ class SceneLight {
     Eigen::Matrix2f per_px = Eigen::Matrix2f::Zero();
     bool ahead = false;
   };
-  // Of a pixel: what lies behind the sheet, its paper, its ink.
+  // Shares of a pixel: background of the sheet, its paper, its ink.
   using Shares = std::array<float, 3>;
 
   double texelsPerPixel() const;
@@ -58,7 +58,7 @@ class SceneLight {
   float blur_px_, paper_, ink_;
   ClutterTexture texture_;
   float texels_per_m_ = 1.0f;
-  std::vector<Eigen::Vector3f> rays_;  // of length 1; zero where there is none
+  std::vector<Eigen::Vector3f> rays_;  // of length 1; zero without one
   std::vector<Eigen::Matrix<float, 3, 2>> ray_per_px_;
   std::vector<Eigen::Vector2f> offsets_px_;
   std::vector<float> weights_;

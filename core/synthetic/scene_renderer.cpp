@@ -86,7 +86,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
   }
 }
 
-// Of the plane that lies so far behind the board's.
+// Homography of the plane at this distance behind the board's.
 Eigen::Matrix3f SceneRenderer::planeFromRay(const RigidTransform& camera_from_world, double depth_m) {
   const Eigen::Matrix3d r = camera_from_world.rotation.toRotationMatrix();
   Eigen::Matrix3d h;
@@ -108,7 +108,7 @@ SceneRenderer::Tile SceneRenderer::tile(int column, int row) const {
   return {x, y, std::min(kTile_px, width_px_ - x), std::min(kTile_px, height_px_ - y)};
 }
 
-// How far what a pixel shows moves away from it, on the board and on the background.
+// Motion of a pixel's content away from it, on the board and on the background.
 float SceneRenderer::travel(std::size_t pixel, const Instants& instants) const {
   const Eigen::Vector3f ray = rays_[pixel].homogeneous();
   float farthest = 0.0f;
@@ -176,7 +176,7 @@ void SceneRenderer::lookAtPlanes(const Tile& tile, const Instants& instants, Til
     }
   }
   constexpr float kSlack = 1.1f;  // pixels within a tile differ a little in size
-  // Corners stand for their tile up to a pixel, and three instants for all between them up to half the way.
+  // Corners represent their tile up to a pixel, and three instants all times between them up to half the way.
   const float reach = (kEdgeReach * blur_px_ + 1.0f + 0.5f * view.travel_px) * metres_per_px;
   view.reach_m = visible ? kSlack * kEdgeReach * blur_px_ * metres_per_px : std::numeric_limits<float>::max();
   if (!visible) low = board_low_m_, high = board_high_m_;
@@ -210,7 +210,7 @@ float SceneRenderer::clutter(const Instant& instant, const Eigen::Vector2f& ray)
                   (h(1, 0) * ray.x() + h(1, 1) * ray.y() + h(1, 2)) * scale);
 }
 
-// How much of a pixel lies on the sheet.
+// Share of a pixel on the sheet.
 float SceneRenderer::sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px) const {
   const Eigen::Vector2f inside_m = (point_m - board_low_m_).cwiseMin(board_high_m_ - point_m);
   const float inside_px =
@@ -218,9 +218,9 @@ float SceneRenderer::sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f
   return std::isfinite(inside_px) ? edge(inside_px) : 0.0f;
 }
 
-// How much of a pixel is ink of the circle whose centre it lies `away` from. A disk blurred by
-// sigma looks smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's
-// convolution with a curved edge.
+// Share of a pixel in the ink of the circle whose centre is `away` from it. A disk blurred by sigma looks
+// smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's convolution with a curved
+// edge.
 float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const {
   const auto radius = static_cast<float>(board_.radius_m);
   const float distance = away_m.norm();

@@ -42,7 +42,7 @@ class SceneRenderer {
   int tileRows() const { return (height_px_ + kTile_px - 1) / kTile_px; }
   Tile tile(int column, int row) const;
 
-  // What a tile shows from the first to the last of three instants.
+  // Content of a tile from the first to the last of three instants.
   enum class Content { Paper, Circles, Clutter, Mixed };
   struct TileView {
     Content content = Content::Mixed;
@@ -50,14 +50,14 @@ class SceneRenderer {
     float travel_px = 0.0f;  // how far the image moves there, at most
     float reach_m = 0.0f;    // further than this from an edge on the board nothing of it is seen
     std::vector<Eigen::Vector2f> circles_m;  // centres of those that it may show
-    // What comes and goes: figures in a set of bits, the hand's shadow, the lamp in the varnish.
+    // Passing objects: figures in a set of bits, the hand's shadow, the lamp in the varnish.
     unsigned figures = 0;
     bool shadow = false, gloss = false;
     bool isVisited() const { return figures != 0 || shadow || gloss; }
   };
   using Instants = std::array<const Instant*, 3>;  // begin, middle, end
   void look(const Tile& tile, const Instants& instants, TileView& view) const;
-  // How far figures' images move there, if they are there or not.
+  // Motion of the figures' images there, visible or not.
   float visitorsTravel_px(const Tile& tile, const Instants& instants) const;
 
   // Row by row.
@@ -66,12 +66,12 @@ class SceneRenderer {
  private:
   static constexpr float kEdgeReach = 4.0f;  // in sigmas of the blur
 
-  // How much of a pixel lies on the sheet, where, and how much of that is ink.
+  // Share of a pixel on the sheet, its place, and the share of ink in it.
   struct BoardPart {
     float on_board = 0.0f, ink = 0.0f;
     Eigen::Vector2f point_m = Eigen::Vector2f::Zero();
   };
-  // Of a figure, by one pixel.
+  // A pixel's view of a figure.
   struct Seen {
     Eigen::Vector2f own_m = Eigen::Vector2f::Zero();
     float metres_per_px = 0.0f;
@@ -116,11 +116,11 @@ class SceneRenderer {
   SceneModel scene_;
   bool is_visited_;  // now and then: by figures, or by a lamp that the varnish mirrors
   Eigen::Vector3f lamp_m_;
-  float shadow_sigma_m_;  // of its edge as it is seen
+  float shadow_sigma_m_;  // of its visible edge
   int width_px_, height_px_;
   float blur_px_, paper_, ink_, log_paper_, log_ink_;
   Eigen::Vector2f board_low_m_, board_high_m_;  // the sheet's corners
-  std::vector<Eigen::Vector2f> rays_;           // per pixel; NaN where there is none
+  std::vector<Eigen::Vector2f> rays_;           // per pixel; NaN without one
   std::vector<Eigen::Matrix2f> ray_per_px_;     // d(ray)/d(pixel)
   float texels_per_m_;
   ClutterTexture texture_;

@@ -1,4 +1,4 @@
-// The scenario as its session has it: what is true, but for what the session says wrongly.
+// The scenario according to its session: the truth, except for the session's errors.
 #pragma once
 
 #include "core/synthetic/scenario.h"
@@ -7,7 +7,7 @@ namespace evical {
 
 Scenario asSessionSays(Scenario scenario);
 
-// Where a circle's centre really is on the board.
+// True place of a circle's centre on the board.
 inline Eigen::Vector2d trueCentre_m(const Scenario& scenario, int circle) {
   const Eigen::Vector2d centre_m = scenario.board.point_m(circle);
   return {centre_m.x(), (1.0 + scenario.board_stretch) * centre_m.y()};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWalkSpread = 3.0;  // of its frequencies, about one in its period
 
-// Whatever the standard library: the same numbers from the same seed.
+// The same numbers from the same seed with any standard library.
 double uniform(std::mt19937_64& generator) {
   return static_cast<double>(generator() >> 11) * 0x1.0p-53;
 }
@@ -116,7 +116,7 @@ struct Swing {
   double amplitude_rad, frequency_rad_s;
 };
 
-// About an axis of its own, to and fro about a mean angle.
+// Rotation about the state's axis, to and fro about a mean angle.
 MotionState turned(MotionState state, const Eigen::Vector3d& axis, double mean_rad, Swing swing,
                    double time_s) {
   const double phase = swing.frequency_rad_s * time_s;

@@ -28,11 +28,11 @@ class SinusoidMotion {
  public:
   explicit SinusoidMotion(const Scenario& scenario);
 
-  // Of the reference IMU, at seconds since the scenario's start on its clock.
+  // State of the reference IMU, at seconds since the scenario's start on its clock.
   MotionState imuAt(double time_s) const;
   MotionState cameraAt(std::size_t camera, double time_s) const;
   RigidTransform worldFromCamera(std::size_t camera, double time_s) const;
-  // Of the board that it sees.
+  // Pose of the camera relative to its board.
   RigidTransform boardFromCamera(std::size_t camera, double time_s) const;
 
   // RMS image speed of those of the board's circles that are in the first camera's image.
@@ -45,7 +45,7 @@ class SinusoidMotion {
 
   void addHand();
   Value at(Quantity quantity, double time_s) const;
-  MotionState gazeAt(double time_s) const;  // the first camera but for its turns
+  MotionState gazeAt(double time_s) const;  // the first camera without its rotations
   MotionState firstCameraAt(double time_s) const;
 
   Scenario scenario_;

@@ -55,7 +55,7 @@ std::vector<SceneRenderer::PlacedFigure> SceneRenderer::figuresAt(const RigidTra
   return placed;
 }
 
-// What the pixel sees of the figure's plane, in the figure's own coordinates; false where it does not see it.
+// The pixel's view of the figure's plane, in the figure's coordinates; false if it does not see it.
 bool SceneRenderer::see(const PlacedFigure& placed, std::size_t pixel, Seen& seen) const {
   const Eigen::Vector3f b = placed.plane_from_ray * rays_[pixel].homogeneous();
   if (!(b.z() > 0.0f)) return false;
@@ -66,7 +66,7 @@ bool SceneRenderer::see(const PlacedFigure& placed, std::size_t pixel, Seen& see
   return seen.metres_per_px > 0.0f;
 }
 
-// How far the image of a figure moves away from a pixel.
+// Motion of a figure's image away from a pixel.
 float SceneRenderer::travelOf(const PlacedFigure& placed, const Instants& instants, std::size_t pixel) const {
   float path = 0.0f;
   for (std::size_t half = 0; half < 2; ++half) {
@@ -146,7 +146,7 @@ Eigen::Vector3f SceneRenderer::onSheet(const Eigen::Vector2f& point_m) const {
           surface_.isBent() ? static_cast<float>(surface_.behind_m(point_m.cast<double>())) : 0.0f};
 }
 
-// Where the light passes the hand's plane that a point of the board gets from the lamp.
+// Point of the hand's plane that the light from the lamp to a point of the board passes.
 Eigen::Vector2f SceneRenderer::castOnto(const Eigen::Vector2f& point_m) const {
   const auto part = static_cast<float>(scene_.hand.height_m) / -lamp_m_.z();
   return point_m + part * (lamp_m_.head<2>() - point_m);
@@ -175,7 +175,7 @@ float SceneRenderer::litSheet(const Instant& instant, const BoardPart& board, co
   return light + static_cast<float>(scene_.gloss.strength) * std::exp(-0.5f * off * off);
 }
 
-// Lays the figure over what is behind it.
+// Draws the figure over its background.
 void SceneRenderer::cover(const PlacedFigure& placed, std::size_t pixel, float& light) const {
   Seen seen;
   if (!see(placed, pixel, seen)) return;

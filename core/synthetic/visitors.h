@@ -32,7 +32,7 @@ struct Limb {
 struct Figure {
   static constexpr int kMostLimbs = 8;
 
-  int visit = 0;                // tells figures of two instants apart
+  int visit = 0;                // distinguishes figures of two instants
   float behind_board_m = 0.0f;  // its plane; negative: in front of the board
   Eigen::Vector2f place_m = Eigen::Vector2f::Zero();
   Eigen::Matrix2f own_from_plane = Eigen::Matrix2f::Identity();
@@ -46,7 +46,7 @@ struct Figure {
   Eigen::Vector2f own_m(const Eigen::Vector2f& on_plane_m) const {
     return own_from_plane * (on_plane_m - place_m);
   }
-  // How far within its outline; negative outside.
+  // Distance from its outline inwards; negative outside.
   float inside_m(const Eigen::Vector2f& own) const {
     float inside = limbs[0].inside_m(own);
     for (int k = 1; k < limb_count; ++k)
@@ -58,7 +58,7 @@ struct Figure {
 std::optional<Figure> handAt(const Scenario& scenario, double time_s);
 std::vector<Figure> peopleAt(const Scenario& scenario, double time_s);
 
-// Whether the hand is between the camera and any part of a disk about a point on the board.
+// True if the hand is between the camera and any part of a disk about a point on the board.
 bool isHidden(const Figure& hand, const Eigen::Vector3d& camera_m, const Eigen::Vector3d& centre_m,
               double radius_m);
 
