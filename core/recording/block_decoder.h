@@ -1,4 +1,4 @@
-// What turns the bytes behind a file's header into events, block by block; see block_reader.h.
+// Decoder of the bytes after a file's header into events, block by block; see block_reader.h.
 #pragma once
 
 #include "core/data/event.h"
@@ -14,7 +14,7 @@
 
 namespace evical {
 
-// How often something was met, and at which byte of the file first.
+// Count of an occurrence, and the byte of the file of the first.
 struct Occurrences {
   std::uint64_t count = 0, first_byte = 0;
   void add(std::uint64_t byte) {
@@ -22,7 +22,7 @@ struct Occurrences {
   }
 };
 
-// What decoders leave out or count; the reader makes faults of it.
+// Data that decoders drop or count; the reader makes faults of them.
 struct BlockFindings {
   Occurrences outside;               // events beyond the sensor
   Occurrences untimed;               // events before the first complete time
@@ -44,7 +44,7 @@ class BlockDecoder {
 
   const BlockFindings& findings() const { return findings_; }
 
-  // What was between the events, since the vector was emptied last; of formats that have an IMU.
+  // IMU samples between the events, since the vector was emptied last; for formats that have an IMU.
   std::vector<RawImuSample>& imuSamples() { return imu_samples_; }
   // The same of frames.
   virtual std::vector<Frame>* frames() { return nullptr; }
@@ -55,7 +55,7 @@ class BlockDecoder {
   BlockFindings findings_;
 };
 
-// Which coordinates lie on the sensor; all where its size is not known.
+// Range of valid coordinates on the sensor; all if its size is unknown.
 class SensorArea {
  public:
   SensorArea() = default;

@@ -1,6 +1,6 @@
-// Reads files that are a header and then events packed one behind the other, in blocks of a fixed size: one
-// stream of events, and one each of IMU samples, frames and triggers where the format has them. What is odd is said in the faults, with
-// the byte at which it began.
+// Reads files with a header and then packed events, in blocks of a fixed size: one stream of events, and one
+// each of IMU samples, frames and triggers if the format has them. Faults report anomalies, with the byte at
+// which each began.
 #pragma once
 
 #include "core/recording/block_decoder.h"

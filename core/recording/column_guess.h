@@ -1,5 +1,5 @@
-// What columns of numbers without names mean, and what unit times are in: told by their first rows. For tables of text and
-// arrays of NumPy.
+// Meaning of columns of numbers without names, and the unit of times: guessed from their first rows. For
+// tables of text and arrays of NumPy.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ inline constexpr double kEpoch_ns = 1e17;
 // Fractions are seconds; whole numbers us, or ns where us would be no time or no rate of events.
 std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows);
 
-// Whether an event of this polarity is brighter: 1 is, 0 and -1 are not. Nothing for others, which may be triggers.
+// True for a brighter polarity: 1 is, 0 and -1 are not. Nothing for others, which may be triggers.
 template <class Number>
 std::optional<bool> brighterOf(Number polarity) {
   if (polarity == Number(1)) return true;

@@ -19,14 +19,14 @@ constexpr std::string_view kRateWords[] = {
     "gyro", "gyr",    "gyros",           "gyroscope",   "gyroscopes",   "omega", "angular",
     "ang",  "angvel", "angularvelocity", "angularrate", "rotationrate", "rate",  "rates",
     "w",    "g"};
-// Of columns that name a sensor, but hold something else of it.
+// Words in columns that name a sensor, but contain something else of it.
 constexpr std::string_view kOtherWords[] = {
     "covariance", "cov",          "variance", "var",         "std",         "stddev",     "bias", "biases",
     "delta",      "dt",           "integral", "orientation", "quat",        "quaternion", "mag",  "magn",
     "magnet",     "magnetometer", "magnetic", "temp",        "temperature", "accuracy",   "user", "gravity",
     "relative",   "status",       "offset",   "scale",       "clipping",    "attitude",   "pose", "position",
     "count",      "id",           "exposure", "duration",    "interval",    "jerk"};
-// Where one of these is, the column is a time, whatever sensor it is of.
+// With one of these, the column is a time, for any sensor.
 constexpr std::string_view kStampWords[] = {"time",  "times",  "timestamp", "timestamps",
                                             "stamp", "stamps", "datetime"};
 constexpr std::string_view kTimeWords[] = {"time",    "times",    "timestamp",  "timestamps",   "stamp",
@@ -36,7 +36,7 @@ constexpr std::string_view kTimeWords[] = {"time",    "times",    "timestamp",  
                                            "usec",    "usecs",    "microsec",   "microseconds", "us",
                                            "msec",    "msecs",    "millisec",   "milliseconds", "ms",
                                            "millis",  "micros"};
-// What may stand beside the x of an event.
+// Words next to the x of an event.
 constexpr std::string_view kPlaceWords[] = {"event", "events", "ev",     "pos", "coord", "coords",
                                             "px",    "pixel",  "pixels", "pix", "addr",  "field"};
 constexpr std::string_view kPolarityWords[] = {"p", "pol", "ps", "pols", "polarity", "polarities", "on"};

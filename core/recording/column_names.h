@@ -1,6 +1,6 @@
-// What a column of a table holds, told by its name. Knows the names that data sets, makers of IMUs and programs use:
-// "w_RS_S_x [rad s^-1]", "UncompGyroX", "accelerometer_m_s2[0]", "field.linear_acceleration.z". Columns count by their
-// names only, never by their places.
+// Meaning of a table's column, determined by its name. Has the names that data sets, makers of IMUs and
+// programs use: "w_RS_S_x [rad s^-1]", "UncompGyroX", "accelerometer_m_s2[0]", "field.linear_acceleration.z".
+// Columns count by their names only, never by their places.
 #pragma once
 
 #include "core/data/imu_units.h"

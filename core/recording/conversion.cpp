@@ -55,7 +55,7 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Reco
   return chosen;
 }
 
-// Where nobody chose: what people may miss.
+// For default choices: data that users may miss.
 void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& format,
                       const ConversionRequest& request, const RunContext& context) {
   if (!request.streams.empty()) return;
@@ -79,7 +79,7 @@ void checkPaths(const ConversionRequest& request) {
     throw badInput(request.output.string(), "input and output are the same", "Choose another output");
 }
 
-// What the events reach, where the file does not tell.
+// Range of the events' coordinates, if the file does not state the size.
 void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& streams,
                const std::vector<std::size_t>& chosen, const RunContext& context) {
   std::vector<std::size_t> unknown;

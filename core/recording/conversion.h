@@ -25,9 +25,9 @@ struct ConversionSummary {
   std::vector<RecordingFault> faults;  // of the input
 };
 
-// The output appears when it is whole; a folder is made if need be. IMU samples become what the target
-// states. Where neither the file nor the request tells a sensor's size, the events are read once more to find
-// it. Throws CalibrationError, and Cancelled.
+// The output appears when it is complete; a folder is created if necessary. IMU samples are in the units of
+// the target. If neither the file nor the request gives a sensor's size, the events are read once more to
+// find it. Throws CalibrationError, and Cancelled.
 ConversionSummary convertRecording(const ConversionRequest& request, const RunContext& context);
 
 }  // namespace evical

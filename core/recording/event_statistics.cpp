@@ -27,8 +27,8 @@ EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions
   counted_px_.height_px = 0;
 }
 
-// How many rows are counted, with this one if the sensor may have it: memory grows with what events reach,
-// not with what a file claims.
+// Number of counted rows, with this one if the sensor may have it: memory grows with the events' coordinates,
+// not with a file's claim.
 unsigned EventStatistics::rowsWith(unsigned y_px) {
   if (y_px < static_cast<unsigned>(most_rows_)) {
     counted_px_.height_px = std::max(counted_px_.height_px, static_cast<int>(y_px) + 1);

@@ -1,4 +1,4 @@
-// What inspection gathers about one event stream as its packets go by.
+// Statistics of one event stream for inspection, gathered packet by packet.
 #pragma once
 
 #include "core/recording/inspection.h"

@@ -12,7 +12,7 @@ namespace evical {
 
 double medianInterval_s(const std::vector<ImuSample>& samples);
 double medianInterval_s(const std::vector<RawImuSample>& samples);
-// Of finite samples only; in the unit of the samples.
+// Median norm of finite samples only; in the unit of the samples.
 double medianForceNorm(const std::vector<ImuSample>& samples);
 double medianForceNorm(const std::vector<RawImuSample>& samples);
 // Median over pieces of 2 s of the norm of the mean specific force, turned by the gyroscope into one frame

@@ -73,7 +73,7 @@ void setMeasuredBy(const std::vector<RawImuSample>& raw, ImuStreamKind kind,
                                                  : MeasuredBy::Gyroscope;
 }
 
-// Of frames, and of points by their times.
+// Times of frames, and of points.
 class TimeStatistics {
  public:
   void add(std::int64_t time_ns) {

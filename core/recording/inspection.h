@@ -54,7 +54,8 @@ struct Inspection {
   std::vector<RecordingFault> faults;
 };
 
-// Reads to the end, also frames, of which nothing is decoded; call on a fresh reader. Event memory is a count a pixel; IMU samples are held.
+// Reads to the end, including frames, which are not decoded; call on a fresh reader. Event memory is a count
+// per pixel; IMU samples are kept.
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
                             const RunContext& context = {});
 

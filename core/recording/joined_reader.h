@@ -16,7 +16,7 @@ class JoinedReader : public RecordingReader {
  public:
   struct Part {
     std::unique_ptr<RecordingReader> reader;
-    std::string name;  // of the stream of a reader that has only one; empty: as it is
+    std::string name;  // of a reader's only stream; empty: unchanged
   };
   // At least one part.
   explicit JoinedReader(std::vector<Part> parts);

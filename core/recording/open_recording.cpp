@@ -40,7 +40,7 @@ constexpr const char* kReadable =
     "with events.txt and imu.txt (or .csv), or one such file, and folders of pictures (EuRoC, Kalibr, DSEC, "
     "TUM-VIE, others)";
 
-// What people may well hand us, by its first bytes.
+// Formats that users may try, by their first bytes.
 struct OtherFormat {
   std::string_view magic;
   const char *problem, *advice;
@@ -65,7 +65,7 @@ std::string firstBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-// Only its name tells what a packed file is.
+// The type of a packed file follows from its name only.
 bool isRos2File(const std::filesystem::path& path, std::string_view start) {
   const std::string name = path.filename().string();
   const bool packed_bag = name.ends_with(".db3.zstd") || name.ends_with(".mcap.zstd");
@@ -79,7 +79,7 @@ std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path) {
   return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path); });
 }
 
-// Of what can be read twice.
+// Requires files that can be read twice.
 void requireFiles(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::error_code ignored;
@@ -90,7 +90,7 @@ void requireFiles(const std::filesystem::path& folder) {
   }
 }
 
-// A reader and the pictures that stand beside what it reads; one of the two may be missing.
+// A reader and the pictures next to its files; one of the two may be missing.
 std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> reader,
                                               pictures::PictureFolder found) {
   std::vector<JoinedReader::Part> parts;

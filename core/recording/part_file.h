@@ -15,10 +15,10 @@ std::string numberBytes(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-// Writes beside `path`, under a name of its own that begins with `path`'s; finish() brings it to the disk and
+// Writes next to `path`, under another name that begins with `path`'s; finish() writes it to the disk and
 // renames it, the destructor removes it if finish() was not reached. Of several that write to one path the
-// last to finish stays, whole. Everything throws CalibrationError with path and reason: BadInput where
-// something lies at `path` that is no file, else CalibrationFailed.
+// last to finish stays, complete. All functions throw CalibrationError with path and reason: BadInput if
+// something else than a file exists at `path`, otherwise CalibrationFailed.
 class PartFile {
  public:
   explicit PartFile(std::filesystem::path path);
@@ -32,7 +32,7 @@ class PartFile {
   std::uint64_t size() const { return size_; }
   void finish();
 
-  // Where the content is until then, for libraries that write it themselves.
+  // Place of the content until then, for libraries that write it themselves.
   const std::filesystem::path& partPath() const { return part_path_; }
 
  private:

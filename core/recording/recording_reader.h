@@ -22,9 +22,8 @@ class RecordingReader {
   // Everything the file holds, also what cannot be decoded; known as soon as the file is open.
   virtual const std::vector<StreamInfo>& streams() const = 0;
 
-  // Which streams read() hands out, by index; all of type Events, Imu and Points if never called. Frames are
-  // handed out as they are stored: what is not looked at is not decoded.
-  // Call before the first read.
+  // Selects the streams of read(), by index; all of type Events, Imu and Points if never called. Frames stay
+  // encoded: unused ones are never decoded. Call before the first read.
   virtual void select(const std::vector<std::size_t>& streams) = 0;
 
   // The next packet, never an empty one, its events in order of time; false at the end. Reuses the
@@ -34,7 +33,7 @@ class RecordingReader {
 
   virtual double fractionRead() const = 0;  // of the file's bytes, 0..1
 
-  // What was found damaged or odd so far: complete once read() has returned false.
+  // Damage and anomalies so far: complete once read() has returned false.
   virtual const std::vector<RecordingFault>& faults() const = 0;
 
   virtual std::string format() const = 0;  // "rosbag", "text"

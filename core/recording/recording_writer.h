@@ -1,5 +1,6 @@
-// Writes recordings that we and others can read. A file appears under its name only once it is whole: until
-// finish() it has another one beside, and it is removed when something fails or finish() is never called.
+// Writes recordings that we and others can read. A file appears under its name only when it is complete:
+// until finish() it has another name in the same folder, and it is removed when something fails or finish()
+// is never called.
 #pragma once
 
 #include "core/data/recording.h"
@@ -25,14 +26,15 @@ class RecordingWriter {
   // e.g. on a full disk.
   virtual void write(std::size_t stream, EventSpan events) = 0;
   virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
-  // As it is stored; of one stream either all encoded or none. Only where RecordingFormat::frames says so.
+  // Encoded or not; of one stream either all encoded or none. Only if RecordingFormat::frames allows it.
   virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
 
   // The time that is 0 in the file, once something has been written. Other than 0 only for formats that cannot hold the times.
   virtual std::int64_t origin_ns() const { return 0; }
 
-  // What readers will call the streams given at creation, in their order: not every format keeps names.
+  // Names that readers will give to the streams given at creation, in their order: not every format keeps
+  // names.
   virtual std::vector<std::string> streamNames() const = 0;
 };
 

@@ -364,7 +364,7 @@ SeparateReader::~SeparateReader() {
   end();
 }
 
-// Whatever it is doing: nobody waits for it any more.
+// In any state: nobody waits for it any more.
 void SeparateReader::end() {
   if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   if (process_ <= 0) return;

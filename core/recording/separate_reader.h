@@ -1,5 +1,5 @@
-// A reader in a process of its own, for libraries that a damaged file can bring down: what ends there is that
-// process, and the recording is read as far as it went.
+// A reader in a separate process, for libraries that can crash on a damaged file: only that process ends, and
+// the recording is read up to there.
 #pragma once
 
 #include "core/recording/recording_reader.h"

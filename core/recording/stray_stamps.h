@@ -8,7 +8,8 @@
 
 namespace evical {
 
-// How far a stamp may be from those before it without further proof, and how many that agree are proof.
+// Largest difference of a stamp from those before it without further proof, and the number of agreeing ones
+// that are proof.
 struct StampTolerance {
   std::int64_t ahead_ns, behind_ns;
   std::size_t enough;
@@ -16,13 +17,13 @@ struct StampTolerance {
 // Events hardly ever pause for longer; what does is looked at, and costs little. Packets of IMU samples may.
 inline constexpr StampTolerance kEventStamps = {100'000'000, 1'000'000'000, 16};
 inline constexpr StampTolerance kSampleStamps = {1'000'000'000, 1'000'000'000, 3};
-// Those of one frame agree, and prove nothing.
+// Stamps of one frame agree, and prove nothing.
 inline constexpr StampTolerance kPointStamps = {1'000'000'000, 1'000'000'000, 1000};
 
-// Items of one sensor on their way, in the order in which they were recorded. Those that jump wait until
-// enough follow that agree with them, or until one agrees again with what was before: then they were strays.
-// The first ones are held back for a moment: drivers stamp them 0, or by a clock that is not set yet.
-// Item has a member time_ns.
+// Items of one sensor in transit, in the order in which they were recorded. Those that jump wait until enough
+// follow that agree with them, or until one agrees again with the items before: then they were strays. The
+// first ones wait for a moment: drivers stamp them 0, or by a clock that is not set yet. Item has a member
+// time_ns.
 template <class Item>
 class StampFilter {
  public:
@@ -30,11 +31,11 @@ class StampFilter {
 
   // Leaves in `items` those that count so far.
   void filter(std::vector<Item>& items);
-  // At the end. Few items in all count as they are.
+  // Call at the end. Few items in all count unchanged.
   void finish(std::vector<Item>& items);
 
   std::uint64_t strays() const { return strays_; }
-  // Of the first stray: its stamp, and the one from which it is away.
+  // The first stray's stamp, and the one from which it differs.
   std::int64_t strayTime_ns() const { return stray_time_ns_; }
   std::int64_t strayFrom_ns() const { return stray_from_ns_; }
 
@@ -53,7 +54,7 @@ class StampFilter {
   StampTolerance tolerance_;
   bool started_ = false, proven_ = false;
   std::int64_t latest_ns_ = 0;
-  std::vector<Item> waiting_, held_;  // held: the first ones, until they are proven
+  std::vector<Item> waiting_, held_;  // held_: the first ones, until they are proven
   std::uint64_t strays_ = 0;
   std::int64_t stray_time_ns_ = 0, stray_from_ns_ = 0;
 };

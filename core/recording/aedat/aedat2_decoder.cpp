@@ -66,8 +66,8 @@ std::size_t Aedat2Decoder::decode(std::string_view bytes, std::uint64_t offset, 
   return records * kAedat2Record_bytes;
 }
 
-// A step of more than half the range is the counter's beginning anew, or, the other way, a late record from
-// before that.
+// A step of more than half the range is a wrap of the counter, or, in the other direction, a late record from
+// before it.
 std::int64_t Aedat2Decoder::unwrapped_us(std::int32_t time_us, std::uint64_t byte) {
   const std::int64_t step_us = started_ ? std::int64_t{time_us} - last_us_ : 0;
   if (step_us < -kHalfRange_us && wrapped_us_ <= kLargestWrapped_us) {

@@ -125,7 +125,7 @@ StreamInfo aedat2Stream(const char* name, StreamType type, const std::string& ch
   return stream;
 }
 
-// What the header does not say, from the events.
+// Facts that are missing in the header, from the events.
 void guessChip(const Look& look, std::string& chip, Resolution& size_px, BlockFormat& format) {
   chip = look.wide ? "DAVIS" : "DVS128";
   size_px = look.wide ? smallestDavis(look.reach_px) : aedat::chipSize(chip);

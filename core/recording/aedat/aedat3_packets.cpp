@@ -22,7 +22,7 @@ Type typeOf(std::int16_t number) {
   return number <= static_cast<std::int16_t>(Type::Imu9) ? static_cast<Type>(number) : Type::Other;
 }
 
-// Of one event; 0: any.
+// Size of one event; 0: any.
 std::uint64_t elementSize(Type type) {
   switch (type) {
     case Type::Special:

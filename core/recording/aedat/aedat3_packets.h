@@ -1,5 +1,5 @@
-// What stands in the packets of an AEDAT 3.1 file: a header of 28 bytes, and events of one type and size.
-// Times are us since the device began. Source: iniVation's "AEDAT file formats", libcaer.
+// Packets of an AEDAT 3.1 file: a header of 28 bytes, and events of one type and size. Times are us since the
+// device began. Source: iniVation's "AEDAT file formats", libcaer.
 #pragma once
 
 #include "core/data/event.h"

@@ -134,7 +134,7 @@ bool Aedat3Reader::isHeaderAt(std::uint64_t position, PacketHeader& header) {
   return true;
 }
 
-// What looks like one may be data: the packet must end in the file, and at its end or before another.
+// Data may look like a header: the packet must end in the file, and at its end or before another.
 std::uint64_t Aedat3Reader::findHeader(std::uint64_t from) {
   PacketHeader header, next;
   for (std::uint64_t at = from; at + aedat3::kHeader_bytes <= file_.size(); ++at) {
@@ -146,7 +146,7 @@ std::uint64_t Aedat3Reader::findHeader(std::uint64_t from) {
   return file_.size();
 }
 
-// `position` is where the packet's data begin. What is damaged is said the second time it is met, when it is
+// `position` is the beginning of the packet's data. Damage is reported the second time it is met, when it is
 // read.
 bool Aedat3Reader::nextPacket(PacketHeader& header, std::uint64_t& position, bool say) {
   while (position_ < file_.size()) {

@@ -147,7 +147,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
   }
 }
 
-// Where the description has none, or a damaged one.
+// For descriptions without a type, or with a damaged one.
 void Aedat4Reader::takeTypeOfPackets(aedat::StreamDescription& stream, const Listed& listed) {
   const std::string type = typeOfPacket(listed.first_position);
   if (!stream.type.empty() && findType(type)) {
@@ -195,7 +195,7 @@ bool Aedat4Reader::looksLikeData(std::uint64_t position, std::int32_t size) {
   return std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 == static_cast<std::uint64_t>(size);
 }
 
-// The file's size where there is none.
+// The file's size if there is none.
 std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
   constexpr std::uint64_t kBlock_bytes = 1 << 20;
   constexpr std::uint64_t kOverlap_bytes = 20;
@@ -242,7 +242,7 @@ void Aedat4Reader::resumeBehind(std::uint64_t position) {
   if (table_position_ != 0) position_ = std::min(position_, table_position_);
 }
 
-// A size that goes past the end may be a lie, or the recording was cut off here.
+// A size that goes past the end may be false, or the recording was cut here.
 bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
   const std::uint64_t at = header.position;
   resumeBehind(at);

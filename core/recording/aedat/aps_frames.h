@@ -15,9 +15,9 @@ class ApsFrames {
  public:
   explicit ApsFrames(const Resolution& size_px) : size_px_(size_px) {}
 
-  // How many samples turn out to belong to no whole frame, this one or those before it.
+  // Number of samples that turn out to belong to no whole frame, this one or those before it.
   std::uint64_t add(std::uint32_t address, std::int64_t time_ns);
-  // Those of a frame that the file's end cuts.
+  // Samples of a frame that the file's end cuts.
   std::uint64_t left() const { return read_; }
 
   // Whole ones since the vector was emptied last: at the middle of their exposures, brighter is more.

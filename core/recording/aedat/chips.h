@@ -7,7 +7,8 @@
 
 namespace evical::aedat {
 
-// Of "DAVIS240C", "Davis346blue", "DVS128"; unknown for others, and for what is no event camera.
+// Size of "DAVIS240C", "Davis346blue", "DVS128"; unknown for others, and for devices that are not event
+// cameras.
 Resolution chipSize(std::string_view name);
 
 }  // namespace evical::aedat

@@ -1,6 +1,6 @@
 // Google's FlatBuffers, read by hand out of untrusted bytes: size prefix, offset of the root table, four
-// letters that name the type, tables. Nothing is read past the end; whatever fails makes ok() false for good
-// and yields zeros. Fields that equal their default are absent. Source: flatbuffers.dev, "Internals".
+// letters that name the type, tables. Nothing is read past the end; any failure makes ok() false for good and
+// yields zeros. Fields that equal their default are absent. Source: flatbuffers.dev, "Internals".
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ class FlatBuffer {
   FlatTable root() { return tableAt(0); }
   FlatTable tableAt(std::size_t position);  // where the offset to the table stands
 
-  // Where a field of `size` bytes is; 0 where it is absent.
+  // Place of a field of `size` bytes; 0 if it is absent.
   std::size_t field(const FlatTable& table, std::size_t index, std::size_t size);
 
   template <class Number>

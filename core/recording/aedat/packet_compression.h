@@ -1,4 +1,4 @@
-// How packets of an AEDAT4 file are packed.
+// Compression of an AEDAT4 file's packets.
 #pragma once
 
 #include <cstddef>

@@ -45,8 +45,8 @@ struct PixelFormat {
 constexpr PixelFormat kPixelFormats[] = {
     {0, FrameFormat::Gray8, 1}, {16, FrameFormat::Bgr8, 3}, {24, FrameFormat::Bgra8, 4}};
 
-// What is not known of begin and end of the exposure is 0 or absent; newer files then tell its length, and
-// the frame's time is its begin.
+// An unknown begin or end of the exposure is 0 or absent; newer files then give its length, and the frame's
+// time is its begin.
 bool takeFrameTime(FlatBuffer& buffer, const FlatTable& root, Frame& frame) {
   const auto time_us = buffer.number<std::int64_t>(root, 0);
   const auto begin_us = buffer.number<std::int64_t>(root, 3), end_us = buffer.number<std::int64_t>(root, 4);

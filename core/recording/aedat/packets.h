@@ -1,5 +1,5 @@
-// What stands in the packets of an AEDAT4 file, and in its header and table: unpacked bytes to numbers and
-// back. Times in the file are us. Source: inivation-docs "AEDAT_file_formats.md", dv-processing (fbs files).
+// Packets of an AEDAT4 file, its header and table: unpacked bytes to numbers and back. Times in the file are
+// us. Source: inivation-docs "AEDAT_file_formats.md", dv-processing (fbs files).
 #pragma once
 
 #include "core/base/time.h"

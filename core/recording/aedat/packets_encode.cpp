@@ -1,4 +1,4 @@
-// The flatbuffers are laid out with fixed offsets: what stands before an element is the same in every packet.
+// The flatbuffers have fixed offsets: the bytes before an element are the same in every packet.
 #include "core/base/time.h"
 #include "core/recording/aedat/packets.h"
 

@@ -1,4 +1,4 @@
-// What the XML in the header of an AEDAT4 file says about its streams.
+// Streams described by the XML in the header of an AEDAT4 file.
 #pragma once
 
 #include "core/geometry/resolution.h"

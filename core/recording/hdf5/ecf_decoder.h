@@ -9,7 +9,7 @@
 
 namespace evical::hdf5 {
 
-// As in the file's compound type.
+// Layout of the file's compound type.
 struct EcfEvent {
   std::uint16_t x = 0, y = 0;
   std::int16_t p = 0;

@@ -113,7 +113,7 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
         fmt::format("{} states {} rows and stores {} bytes", path_, rows_, H5Dget_storage_size(dataset_)),
         "The file is damaged");
   }
-  // Opened anew with room for at least one unpacked chunk, so that none is unpacked twice.
+  // Opened again with room for at least one unpacked chunk, so that none is unpacked twice.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access, 521, std::clamp(2 * chunk_bytes_, kLeastCache_bytes, kLargestCache_bytes), 1.0);
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);

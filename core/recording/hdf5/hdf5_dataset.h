@@ -11,7 +11,7 @@
 
 namespace evical::hdf5 {
 
-// What is known without reading any data.
+// Properties that need no data to be read.
 struct DatasetInfo {
   std::string path;  // in the file, without the leading '/'
   std::vector<std::uint64_t> extent;

@@ -13,8 +13,8 @@ inline constexpr H5Z_filter_t kLzf = 32000, kBlosc = 32001, kEcf = 0x8ECF;
 // In this process; more than once does no harm.
 void registerFilters();
 
-// How large a chunk must be unpacked, for what this thread reads meanwhile: libhdf5 copies as much out of
-// what a filter returns, without looking how much it is.
+// Expected unpacked size of a chunk, for this thread's reads meanwhile: libhdf5 copies that much out of a
+// filter's result, without checking its size.
 class ExpectedChunk {
  public:
   explicit ExpectedChunk(std::size_t bytes);
@@ -26,7 +26,7 @@ class ExpectedChunk {
 // Chunks of `rows` elements of `element_bytes`, by Blosc with zstd and byte shuffle.
 void setBlosc(hid_t creation, std::size_t element_bytes, std::size_t chunk_bytes);
 
-// What people know a filter by: "32015 (Zstandard)".
+// Usual name of a filter: "32015 (Zstandard)".
 std::string filterName(H5Z_filter_t filter);
 
 }  // namespace evical::hdf5

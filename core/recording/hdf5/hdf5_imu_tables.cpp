@@ -81,7 +81,7 @@ class ImuDatasets : public ImuTable {
   std::size_t rate_column_ = 0;
 };
 
-// TUM-VIE's table. Only empty lines, comments and the first, where it has names, are no rows.
+// TUM-VIE's table. Only empty lines, comments and a first line with names are not rows.
 class ImuText : public ImuTable {
  public:
   explicit ImuText(const std::filesystem::path& path) : lines_(path) {}

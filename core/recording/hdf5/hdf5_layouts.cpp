@@ -111,7 +111,7 @@ class TableLayoutFinder {
     return nullptr;
   }
 
-  // Of one that lacks another part: a name that is damaged is none that is looked for.
+  // True for a part of a stream that lacks another one: damaged names do not match.
   bool isPartOfAStream(const DatasetInfo& dataset) const {
     const std::string folder = dataset.folder(), name = dataset.name();
     const auto has = [&](std::initializer_list<const char*> names) { return find(folder, names) ? 1 : 0; };
@@ -224,7 +224,7 @@ class TableLayoutFinder {
     }
   }
 
-  // M3ED's times stand in the folder above, for both cameras; MVSEC's beside the pictures.
+  // M3ED's times are in the folder above, for both cameras; MVSEC's are next to the pictures.
   void addFrames(const DatasetInfo& dataset) {
     const std::string folder = dataset.folder(), above = withoutSlash(folder);
     const std::string parent = above.substr(0, above.rfind('/') + 1);

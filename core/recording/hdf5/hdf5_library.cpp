@@ -13,8 +13,8 @@ herr_t keepInnermost(unsigned depth, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
-// On damaged files the library loses memory of its own, and complains of it on stderr when it is closed at
-// the program's end. Every file is closed by its handle before: nothing is left for it to do then.
+// On damaged files the library leaks memory, and reports it on stderr when it is closed at the program's end.
+// Every file is closed by its handle before: nothing is left to do then.
 void closeNothingAtExit() {
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);

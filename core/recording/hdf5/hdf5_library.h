@@ -46,7 +46,7 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-// What the library says went wrong last, in its own words.
+// The library's message for its last error.
 std::string lastProblem();
 
 // Throws CalibrationError (BadInput); also where the file was cut off or is still being written.

@@ -42,8 +42,8 @@ class Hdf5Reader : public RecordingReader {
   std::vector<RecordingFault> faults_;
 };
 
-// Whether a folder holds TUM-VIE's files of events.
+// True if a folder has TUM-VIE's files of events.
 bool isTumVieFolder(const std::filesystem::path& folder);
-bool hasTumVieImu(const std::filesystem::path& folder);  // which may stand there without them
+bool hasTumVieImu(const std::filesystem::path& folder);  // may exist without them
 
 }  // namespace evical

@@ -22,7 +22,7 @@ struct TimeScale {
   std::int64_t unit_ns = 1000;  // of whole ones
   std::int64_t offset_ns = 0;
   bool is_real = false;
-  bool convert(std::int64_t time, std::int64_t& time_ns) const;  // false if it is no time
+  bool convert(std::int64_t time, std::int64_t& time_ns) const;  // false for an invalid time
   bool convert(double time, std::int64_t& time_ns) const;
 };
 
@@ -63,13 +63,14 @@ class ImuTable {
 // Lists x, y, t, p of equal length (the shortest counts), in this order.
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
                                         std::int64_t offset_us, const std::string& place);
-// What rows of four hold that cannot be told.
+// Rows of four columns that cannot be identified.
 class UnknownColumns : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Rows x, y, t, p, or t, x, y, p, as the numbers themselves show. Throws UnknownColumns where they are no events.
+// Rows x, y, t, p, or t, x, y, p, as the numbers themselves show. Throws UnknownColumns if they are not
+// events.
 std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place);
 // Metavision's: a compound of x, y, p, t.
 std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, const std::string& place);

@@ -27,7 +27,7 @@ class Times {
 
   DatasetRows& rows() { return real_ ? static_cast<DatasetRows&>(*real_) : *whole_; }
 
-  // Of a row that rows() has.
+  // Time of a row that rows() has.
   bool convert(std::uint64_t row, const TimeScale& time, std::int64_t& time_ns) {
     return real_ ? time.convert(real_->numbersFrom(row)[0], time_ns)
                  : time.convert(whole_->numbersFrom(row)[0], time_ns);

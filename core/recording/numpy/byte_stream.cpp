@@ -24,7 +24,7 @@ std::ifstream opened(const ByteRange& range) {
   return file;
 }
 
-// Of bytes that go by in order.
+// Checksum of bytes in order.
 class Checksum {
  public:
   explicit Checksum(const ByteRange& range) : expected_(range.checksum), rest_(range.bytes) {}

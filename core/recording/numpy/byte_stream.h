@@ -10,12 +10,12 @@
 
 namespace evical::numpy {
 
-// Where the bytes of an array are: alone in a file, or as a member of an archive.
+// Place of an array's bytes: alone in a file, or as a member of an archive.
 struct ByteRange {
   std::filesystem::path path;
   std::uint64_t position = 0;
   std::uint64_t packed_bytes = 0;  // in the file, which has as many
-  std::uint64_t bytes = 0;         // unpacked: no more than that many, whatever the file claims
+  std::uint64_t bytes = 0;         // unpacked: at most that many, for any claim of the file
   bool deflated = false;
   std::optional<std::uint32_t> checksum;  // CRC-32 of the unpacked bytes
 };
@@ -30,7 +30,7 @@ class ByteStream {
   // False where there are fewer.
   virtual bool skip(std::uint64_t count) = 0;
 
-  // What is wrong with the bytes read so far; empty if nothing is. A checksum is compared once all bytes have gone by.
+  // Problem of the bytes read so far; empty without one. A checksum is compared after the last byte.
   virtual std::string problem() const = 0;
 };
 

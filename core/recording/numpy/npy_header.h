@@ -1,4 +1,4 @@
-// What the header of a .npy file or member says: the format of NumPy's numpy/lib/format.py, versions 1 to 3.
+// Header of a .npy file or member: the format of NumPy's numpy/lib/format.py, versions 1 to 3.
 #pragma once
 
 #include "core/recording/numpy/byte_stream.h"
@@ -42,7 +42,7 @@ struct ArrayHeader {
   bool isStructured() const { return fields.size() != 1 || !fields.front().name.empty(); }
 };
 
-// Throws CalibrationError (BadInput) at `place` where it is none, or damaged.
+// Throws CalibrationError (BadInput) at `place` if it is invalid or damaged.
 ArrayHeader readArrayHeader(ByteStream& bytes, const std::string& place);
 
 }  // namespace evical::numpy

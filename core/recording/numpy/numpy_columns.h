@@ -1,5 +1,5 @@
-// Columns of numbers in arrays, read side by side in blocks of bounded size: each column of a table may be in an array
-// of its own, or beside others in one.
+// Columns of numbers in arrays, read in parallel in blocks of bounded size: each column of a table may be in
+// an array for itself, or with others in one.
 #pragma once
 
 #include "core/recording/numpy/byte_stream.h"
@@ -50,7 +50,7 @@ class ColumnBlocks {
   template <class Sink>
   void forEach(std::size_t column, Sink sink) const;
 
-  // What is wrong so far, with the array's name; empty if nothing is.
+  // Problem so far, with the array's name; empty without one.
   std::string problem() const;
 
  private:

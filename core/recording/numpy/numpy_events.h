@@ -23,7 +23,7 @@ class EventTable {
   std::uint64_t rows() const { return rows_; }
   std::string problem() const { return blocks_.problem(); }
 
-  // Rows that are left out, and the first of them.
+  // Number of omitted rows, and the first of them.
   const Occurrences& untimed() const { return untimed_; }
   const Occurrences& outside() const { return outside_; }
   const Occurrences& unpolarised() const { return unpolarised_; }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kHeadRows = 2000;
 constexpr std::size_t kEnoughArrayRows = 100;
 constexpr double kFewestArrayEventsPerS = 50.0;  // as seconds; slower ones are us with fractions
-constexpr std::size_t kFewestRows = 5;           // of a table that is told by its numbers: a matrix has four
+constexpr std::size_t kFewestRows = 5;           // of a table identified by its numbers: a matrix has four
 constexpr double kCoarse_ns = 1000.0;
 
 // Numbers of one kind, one a row, and how many rows are claimed and there.
@@ -63,7 +63,7 @@ std::optional<Numbers> listOf(const Array& array) {
   return numbers;
 }
 
-// So many columns: (N, count) in either order of memory, or (count, N).
+// Array with so many columns: (N, count) in either order of memory, or (count, N).
 std::vector<Numbers> columnsOf(const Array& array, std::size_t count) {
   const auto& shape = array.header.shape;
   if (!isPlain(array) || shape.size() != 2 || (shape[0] != count && shape[1] != count)) return {};
@@ -117,7 +117,7 @@ std::vector<ColumnNumbers> headOf(std::span<const Column> columns, std::uint64_t
   return heads;
 }
 
-// The unit that the first times are in, where no name and no type tells it.
+// Unit of the first times, if neither name nor type determines it.
 std::int64_t unitOfTimes(const ColumnNumbers& times, std::size_t rows) {
   const bool slow = rows >= kEnoughArrayRows &&
                     static_cast<double>(rows) < kFewestArrayEventsPerS * (times.last - times.first);
@@ -226,7 +226,8 @@ class ArrayLayoutFinder {
     add(layoutOf(numbers, unit_ns), array.name, "fields " + names);
   }
 
-  // Of several arrays that could be a part the one that is as long as the others, else that of the usual name.
+  // Selects, of several arrays for a part, the one with the same length as the others, otherwise that of the
+  // usual name.
   static const Candidate* chosen(const Group& group, Part part, std::uint64_t rows) {
     const auto found = group.find(part);
     if (found == group.end()) return nullptr;

@@ -31,13 +31,13 @@ struct EventLayout {
 struct FoundArrays {
   std::vector<EventLayout> events;
   std::vector<std::string> problems;  // sentences about what might have been more
-  std::vector<const Array*> others;   // that are no part of events
+  std::vector<const Array*> others;   // that do not belong to events
 };
 
-// The arrays must outlive what is found.
+// The arrays must outlive the result.
 FoundArrays findEvents(const std::vector<Array>& arrays);
 
-// Whether arrays of these names are a stream of events: x, y, t, p in any of the spellings.
+// True if arrays of these names are a stream of events: x, y, t, p in any of the spellings.
 bool nameEvents(const std::vector<std::string>& arrays);
 
 }  // namespace evical::numpy

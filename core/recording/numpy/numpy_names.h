@@ -1,4 +1,4 @@
-// What part of events an array or field is, told by its name.
+// Part of events in an array or field, determined by its name.
 #pragma once
 
 #include <cstddef>

@@ -29,7 +29,7 @@ bool isOfAnImu(const std::string& name) {
          name.find("accel") != std::string::npos;
 }
 
-// Of a folder of numbered files the first that has events; the number of files if none has.
+// The first file with events in a folder of numbered files; the number of files if none has any.
 std::size_t firstWithEvents(const std::vector<std::filesystem::path>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     try {
@@ -37,7 +37,7 @@ std::size_t firstWithEvents(const std::vector<std::filesystem::path>& files) {
       for (const numpy::EventLayout& layout : numpy::findEvents(found.arrays).events)
         if (layout.rows > 0) return i;
     } catch (const CalibrationError&) {
-      // reading says so
+      // reported when it is read
     }
   }
   return files.size();

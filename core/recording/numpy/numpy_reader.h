@@ -1,7 +1,8 @@
-// Events in NumPy's files, as tonic, Metavision, event libraries and data sets save them: .npy, .npz, a folder of arrays of one
-// field each (EVIMO2's dataset_events_t.npy, ..._xy.npy, ..._p.npy), or a folder of numbered files one after another
-// (vid2e, EventScape). numpy_layouts.h says which arrays are events, and what is guessed is said.
-// Python objects are never unpickled. Pictures and IMU samples in arrays are not read.
+// Events in NumPy's files, as tonic, Metavision, event libraries and data sets save them: .npy, .npz, a
+// folder of arrays of one field each (EVIMO2's dataset_events_t.npy, ..._xy.npy, ..._p.npy), or a folder of
+// numbered files one after another (vid2e, EventScape). numpy_layouts.h identifies the arrays of events; a
+// warning states every guess. Python objects are never unpickled. Pictures and IMU samples in arrays are not
+// read.
 #pragma once
 
 #include "core/recording/event_order.h"
@@ -62,10 +63,10 @@ class NumpyReader : public RecordingReader {
   std::vector<RecordingFault> faults_;
 };
 
-// Whether a file is an array, or an archive of arrays.
+// True if a file is an array, or an archive of arrays.
 bool isNumpyFile(const std::filesystem::path& path, std::string_view first_bytes);
 
-// Whether a folder's arrays are events by their names, or by being numbered.
+// True if a folder's arrays are events by their names, or numbered.
 bool isNumpyFolder(const std::filesystem::path& folder);
 
 }  // namespace evical

@@ -126,7 +126,7 @@ class ArchiveReader {
     return member;
   }
 
-  // Of the numbers that do not fit in 32 bits, in this order.
+  // Reads the numbers that do not fit in 32 bits, in this order.
   static void takeFrom64(std::string_view extra, ByteRange& range, std::uint64_t& local_at) {
     ByteCursor fields(extra);
     while (fields.remaining() >= 4) {

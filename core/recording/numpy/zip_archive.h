@@ -20,7 +20,7 @@ struct ZipMember {
 // Throws CalibrationError (BadInput) where the directory, which stands at the end, is missing or damaged.
 std::vector<ZipMember> zipMembers(const std::filesystem::path& path);
 
-// The name of the member that a file of this beginning has first; empty if it is no ZIP archive.
+// Name of the first member of a file with this beginning; empty for other files than ZIP archives.
 std::string_view firstZipMember(std::string_view first_bytes);
 
 }  // namespace evical::numpy

@@ -124,7 +124,7 @@ void numberPictures(PictureList& list) {
       "more, name them by their ns (of 12 digits or more), or give a data.csv as EuRoC's.");
 }
 
-// As others than Kalibr name them.
+// Names of other programs than Kalibr.
 void correctMicroseconds(PictureList& list) {
   const std::vector<Picture>& all = list.pictures;
   if (all.size() < 2) return;

@@ -43,7 +43,7 @@ struct PictureFolder {
 // TUM-VIE: left_images/, right_images/. RPG: images.txt.
 PictureFolder findPictures(const std::filesystem::path& folder);
 
-// Only those that stand beside the text of an RPG recording, or beside the events of a TUM-VIE recording.
+// Only those next to the text of an RPG recording, or next to the events of a TUM-VIE recording.
 PictureFolder findRpgPictures(const std::filesystem::path& folder);
 PictureFolder findTumViePictures(const std::filesystem::path& folder);
 

@@ -1,4 +1,4 @@
-// Files of pictures in a folder: which there are, in which order, and times that stand in their names.
+// Files of pictures in a folder: their list, their order, and the times in their names.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ std::vector<std::string> folderNames(const std::filesystem::path& folder);
 // The digits that a name consists of up to its extension; from 12 digits on they are ns, fewer are a count.
 std::optional<std::int64_t> timeInName(std::string_view name);
 
-// Whether a name that a list states stays within the list's folder.
+// True if a name in a list stays within the list's folder.
 bool staysInside(const std::filesystem::path& name);
 
 }  // namespace evical::pictures

@@ -22,7 +22,7 @@ std::string fileContent(const std::filesystem::path& path, std::uintmax_t most) 
   return bytes;
 }
 
-// Of the first picture that is there.
+// Size of the first existing picture.
 Resolution firstPictureSize(const pictures::PictureList& list) {
   constexpr std::size_t kMostTried = 10;
   constexpr std::uintmax_t kHead_bytes = 1 << 16;

@@ -1,5 +1,5 @@
 // Folders of pictures as streams of encoded frames; see picture_lists.h. Names and times of all pictures are
-// held (some 100 bytes each), of their content one picture at a time.
+// in memory (some 100 bytes each), and the content of one picture at a time.
 #pragma once
 
 #include "core/recording/pictures/picture_lists.h"

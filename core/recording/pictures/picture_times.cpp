@@ -14,7 +14,7 @@ namespace {
 constexpr int kMicrosecondDigits = 3;  // digits
 constexpr double kLongestExposure_s = 1.0;
 
-// Hands each line that may be a row to `take`, which is false where it is none.
+// Calls `take` with each line that may be a row; it returns false for others.
 template <class Take>
 void readRows(const std::filesystem::path& table, const char* columns, PictureList& list, const Take& take) {
   TextLines lines(table);

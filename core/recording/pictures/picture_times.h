@@ -1,5 +1,5 @@
-// The tables that tell when pictures were taken, one row each. Lines that are no rows are faults, but for
-// comments, empty ones, and the first where it has names.
+// Tables of the times of pictures, one row each. Lines that are not rows are faults, except for comments,
+// empty ones, and the first if it has names.
 #pragma once
 
 #include "core/recording/pictures/picture_lists.h"

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 24;
 constexpr std::uint32_t kHalfHigh = 1U << 11;  // a step back by so much is a wrap, a smaller one disorder
-constexpr std::uint32_t kNearWrap = 1U << 6;   // a late word from before a wrap lies so close to it
+constexpr std::uint32_t kNearWrap = 1U << 6;   // largest distance of a late word from before a wrap
 constexpr std::uint32_t kLargestHigh = 0xFFF;
 constexpr std::uint32_t kEvt3Side_px = 1U << 11;
 

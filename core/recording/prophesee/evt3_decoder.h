@@ -13,7 +13,7 @@
 
 namespace evical {
 
-// What was met besides the events that were handed out.
+// Counts of everything except the decoded events.
 struct Evt3Counts {
   std::uint64_t triggers = 0;
   std::uint64_t outside = 0;   // events beyond the sensor; dropped

@@ -137,7 +137,7 @@ bool isDatType(unsigned char type) {
   return type == 0 || type == 12 || type == 14;
 }
 
-// Whether the two bytes between text and events are there.
+// True with the two bytes between text and events.
 bool takeDatBytes(std::string_view start, FileHeader& header) {
   const std::string_view bytes = start.substr(std::min<std::size_t>(header.data_offset, start.size()));
   if (bytes.size() < 2) return false;

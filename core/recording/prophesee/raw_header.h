@@ -16,7 +16,7 @@ enum class HalfOrder { Unknown, Plain, Exchanged };  // of the two halves of EVT
 struct FileHeader {
   Encoding encoding = Encoding::Evt2;
   HalfOrder half_order = HalfOrder::Unknown;
-  Resolution resolution_px;       // where the file or its system tells
+  Resolution resolution_px;       // if the file or its system states it
   std::uint64_t data_offset = 0;  // in the file
   int version = 0;                // of DAT
   unsigned char event_type = 0;   // of DAT: 0 and 12 events, 14 triggers

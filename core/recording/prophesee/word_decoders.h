@@ -12,9 +12,8 @@
 
 namespace evical::prophesee {
 
-// A counter of some bits that begins anew when it is full. Only a step from its last quarter to
-// its first is one; other steps back are left as they are. A step to the last quarter soon after
-// is disorder about the wrap.
+// A counter of some bits that wraps when it is full. Only a step from its last quarter to its first is a
+// wrap; other steps back are unchanged. A step to the last quarter soon after is disorder about the wrap.
 class WrappingCounter {
  public:
   explicit WrappingCounter(int bits) : bits_(bits) {}
@@ -65,7 +64,7 @@ class Evt21Decoder : public BlockDecoder {
   std::int64_t high_ns_ = 0;
 };
 
-// Whether the words at the beginning of the data make more sense with their halves exchanged.
+// True if the words at the beginning of the data make more sense with their halves exchanged.
 bool looksExchanged(std::string_view data);
 
 class Evt3BlockDecoder : public BlockDecoder {

@@ -39,7 +39,7 @@ struct RecordHeader {
 // False if the bytes are not a list of fields with an op among them.
 bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
 
-// What the data of a connection record tells.
+// Content of a connection record's data.
 struct ConnectionData {
   std::string_view topic, type, md5, definition;
 };

@@ -36,9 +36,9 @@ bool takeBagRecord(std::string_view& records, BagRecord& record) {
   return true;
 }
 
-// Those that `rosbag record --split` made before and behind this one: "a_3.bag" for "a_2.bag". Their names
-// may also hold the time at which they were begun, which differs: "a_2024-05-06-07-08-09_2.bag". They count
-// from 0: without that one these are recordings that somebody numbered.
+// Parts that `rosbag record --split` made before and after this one: "a_3.bag" for "a_2.bag". Their names may
+// also contain the time of their start, which differs: "a_2024-05-06-07-08-09_2.bag". They count from 0:
+// without that one these are recordings with numbers given by a person.
 std::vector<std::string> otherParts(const std::filesystem::path& path) {
   constexpr const char* kNumbered = R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.bag)";
   const std::regex numbered(kNumbered);
@@ -130,8 +130,8 @@ BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord&
   return record.end() <= file_.size() ? RecordState::Whole : RecordState::Cut;
 }
 
-// A chunk's header somewhere from here on, also within data: packed data don't look like one by chance, and
-// chunks hold none. The file's size where there is none.
+// A chunk's header somewhere from here on, also within data: packed data do not look like one by chance, and
+// chunks contain none. The file's size if there is none.
 std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
   static constexpr std::string_view kOp("op=\x05", 4);
   constexpr std::uint64_t kBlock_bytes = 1 << 20;
@@ -155,8 +155,8 @@ std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
   return file_.size();
 }
 
-// Where the file goes on behind a record, whatever its length says. `chunk_data` is where those of the last
-// chunk begin: a chunk with a false length may hide the next one.
+// Continuation of the file after a record, for any stated length. `chunk_data` is the beginning of the last
+// chunk's data: a chunk with a false length may hide the next one.
 std::uint64_t BagSource::recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
                                      std::uint64_t& chunk_data) {
   const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
@@ -166,8 +166,8 @@ std::uint64_t BagSource::recordAfter(std::uint64_t position, RecordState state, 
   return scanForChunk(chunk_data != 0 ? chunk_data : position + 1);
 }
 
-// What can be unpacked of it: a cut chunk is read up to the cut, and one whose length lies as far as its
-// packed data can go. False if that is nothing.
+// Unpacks the intact part: a cut chunk is read up to the cut, and one with a false length as far as its
+// packed data go. False if that is nothing.
 bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
   chunk_position_ = position;
   chunk_ = {};
@@ -317,7 +317,7 @@ void BagSource::skipUnwantedChunks() {
   }
 }
 
-// Where a record is damaged, or longer than it can be, the index tells where to go on, or a search.
+// If a record is damaged, or longer than possible, the index gives the next place, or a search.
 bool BagSource::nextChunk() {
   FileRecord record;
   for (;;) {

@@ -1,5 +1,5 @@
 // ROS 1 bags, format 2.0, chunk by chunk: memory is that of the largest chunk. A damaged bag is read as far
-// as it is whole, and what is missing goes to the FaultSink.
+// as it is intact, and the FaultSink gets the missing parts.
 #pragma once
 
 #include "core/recording/random_access_file.h"
@@ -37,7 +37,7 @@ class BagSource : public MessageSource {
     Damaged,  // not even that
   };
 
-  // A record of the file: its header, and where its data lie.
+  // A record of the file: its header, and the place of its data.
   struct FileRecord {
     rosbag::RecordHeader header;  // views into header_bytes_
     std::uint64_t data_position = 0;
@@ -78,7 +78,7 @@ class BagSource : public MessageSource {
   std::uint64_t chunk_position_ = 0;  // in the file
   std::string_view chunk_;            // the rest of the records in the chunk being read
   std::size_t chunk_size_ = 0;        // of all of them
-  bool chunk_is_cut_ = false;         // and so its last record, which was said
+  bool chunk_is_cut_ = false;         // and so its last record, which was reported
 };
 
 }  // namespace evical::ros

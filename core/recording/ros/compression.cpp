@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kLargestMessage_bytes = std::uint64_t{1} << 30;
 constexpr int kZstdLevel = 3;  // the library's default
 
-// Makes room behind what is there, within the declared size.
+// Makes room after the existing bytes, within the declared size.
 void growTowards(std::string& output, std::size_t used, std::uint64_t size_bytes) {
   constexpr std::size_t kFirst_bytes = std::size_t{4} << 20;
   output.resize(
@@ -40,7 +40,7 @@ ZstdContext zstdContext() {
   return context;
 }
 
-// What comes out until the data end or contradict themselves; `whole` tells whether a frame just ended.
+// Output until the data end or contradict themselves; `whole` is true if a frame just ended.
 Unpacked unpackZstdStream(std::string_view data, std::uint64_t largest_bytes, std::string& output,
                           bool& whole) {
   const ZstdContext context = zstdContext();

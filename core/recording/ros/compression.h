@@ -1,5 +1,5 @@
-// Unpacks the chunks and messages of ROS recordings. A size that lies does not make memory grow: it follows
-// what the data really hold.
+// Unpacks the chunks and messages of ROS recordings. A false size does not make memory grow: memory follows
+// the actual data.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ Unpacked unpackBz2(std::string_view data, std::uint64_t size_bytes, std::string&
 Unpacked unpackZstd(std::string_view data, std::uint64_t size_bytes, std::string& output);
 Unpacked copyPlain(std::string_view data, std::uint64_t size_bytes, std::string& output);
 
-// Of one zstd frame of any size, but not beyond 1 GiB.
+// Unpacks one zstd frame of any size, but not beyond 1 GiB.
 Unpacked unpackZstdFrame(std::string_view data, std::string& output);
 inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
 

@@ -45,7 +45,7 @@ bool decodeLibcaer(const EventPacket& packet, std::vector<Event>& events) {
   return true;
 }
 
-// u16 words, code in bits 12-15; each message starts anew.
+// u16 words, code in bits 12-15; each message starts without a state.
 void decodeLibcaerCmp(const EventPacket& packet, std::vector<Event>& events) {
   std::int64_t high_us = 0, low_us = 0;
   std::uint32_t x_px = 0, y_px = 0;

@@ -21,9 +21,9 @@ inline constexpr const char* kReadableEncodings = "evt3, mono, libcaer and libca
 
 class EventPacketDecoder {
  public:
-  // Appends the packet's events, as the encoding orders them. Times of evt3 are the sensor's own, of the
-  // others the host's. False if the packet cannot be decoded: a big-endian one, an unknown encoding, a base
-  // that is no time, or bytes that are no whole number of events; what comes before these is handed out.
+  // Appends the packet's events, in the order of the encoding. Times of evt3 are the sensor's, of the others
+  // the host's. False if the packet cannot be decoded: a big-endian one, an unknown encoding, an invalid time
+  // base, or a fraction of an event at the end; the events before it are appended.
   bool decode(const EventPacket& packet, std::vector<Event>& events);
 
   std::uint64_t triggers() const { return triggers_ + evt3_.counts().triggers; }

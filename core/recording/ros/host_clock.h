@@ -1,5 +1,5 @@
-// How a sensor's own clock lies to that of the host that received its data, from stamps at the arrival of
-// packets: each is late by a delay of its own, so the earliest ones tell.
+// Offset of a sensor's clock to that of the host that received its data, from stamps at the arrival of
+// packets: each is late by a different delay, so the earliest ones count.
 #pragma once
 
 #include <cstdint>

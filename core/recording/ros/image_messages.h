@@ -1,5 +1,5 @@
-// The messages of ROS that carry pictures: sensor_msgs/Image and sensor_msgs/CompressedImage. Pixels stay as
-// they are stored.
+// The messages of ROS with pictures: sensor_msgs/Image and sensor_msgs/CompressedImage. Pixels stay encoded
+// as stored.
 #pragma once
 
 #include "core/data/frame.h"
@@ -19,10 +19,10 @@ inline constexpr const char* kReadablePackedImages = "jpeg and png";
 bool isReadableImage(std::string_view encoding);      // "mono8"
 bool isReadablePackedImage(std::string_view format);  // "jpeg", "bgr8; png compressed bgr8"; empty: perhaps
 
-// What a message says of its picture; the views point into it.
+// A message's picture and its properties; the views point into it.
 struct ImageMessage {
   std::int64_t stamp_ns = 0;
-  Resolution size_px;         // of packed ones from the picture's own header, where that tells
+  Resolution size_px;         // of packed ones from the picture's header, if that states it
   std::string_view encoding;  // or the format of a packed one
   bool big_endian = false;
   std::size_t row_bytes = 0;
@@ -33,8 +33,8 @@ struct ImageMessage {
 bool parseImage(std::string_view message, Serialization serialization, ImageMessage& image);
 bool parsePackedImage(std::string_view message, Serialization serialization, ImageMessage& image);
 
-// Of a message whose encoding or format is readable; false if its numbers contradict one another, or packed
-// bytes are no such picture.
+// Frame of a message with a readable encoding or format; false if its numbers contradict one another, or
+// packed bytes are not such a picture.
 bool toFrame(const ImageMessage& image, Frame& frame);
 bool toPackedFrame(const ImageMessage& image, Frame& frame);
 

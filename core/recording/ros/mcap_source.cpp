@@ -296,7 +296,7 @@ bool McapSource::chunkIsWanted(std::uint64_t position) const {
   });
 }
 
-// What can be unpacked of it: a cut chunk is read up to the cut.
+// Unpacks the intact part: a cut chunk is read up to the cut.
 bool McapSource::loadChunk(const Record& record) {
   chunk_ = {};
   std::string_view bytes;
@@ -359,7 +359,7 @@ void McapSource::skipDamage(const Record& record) {
   if (is_chunk) loadChunk(record);
 }
 
-// From the index if there is one, else by searching; the file's size where there is none.
+// From the index if there is one, otherwise by searching; the file's size if there is none.
 std::uint64_t McapSource::chunkAfter(std::uint64_t position) {
   const auto found = chunk_channels_.upper_bound(position);
   if (found != chunk_channels_.end()) return found->first;

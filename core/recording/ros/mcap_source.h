@@ -1,5 +1,5 @@
-// MCAP files, chunk by chunk: memory is that of the largest chunk. A file that was cut off or has no summary
-// is read in sequence as far as it is whole.
+// MCAP files, chunk by chunk: memory is that of the largest chunk. A file that was cut or has no summary is
+// read in sequence as far as it is intact.
 #pragma once
 
 #include "core/recording/random_access_file.h"
@@ -80,7 +80,7 @@ class McapSource : public MessageSource {
   std::string unpacked_;
   std::string_view chunk_;                    // the rest of the records in the chunk being read
   std::size_t chunk_size_ = 0;                // of all of them
-  bool chunk_is_cut_ = false;                 // and so its last record, which was said
+  bool chunk_is_cut_ = false;                 // and so its last record, which was reported
   std::vector<std::string> without_schema_;   // topics
   std::set<std::uint16_t> unknown_channels_;  // of messages
   bool closed_ = false;                       // the file has its end

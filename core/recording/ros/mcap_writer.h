@@ -21,7 +21,7 @@ class McapWriter : public ros::RosWriter {
   void finish() override;
 
  private:
-  // Of the stream of the same number; its id is also its schema's.
+  // Channel of the stream of the same number; its id is also its schema's.
   struct Channel {
     bool announced = false;                                      // its record is in a chunk
     std::uint64_t messages = 0;                                  // of the file

@@ -50,7 +50,7 @@ TypeTable parseDefinition(std::string_view definition) {
   return types;
 }
 
-// Empty for what is no built-in type.
+// Empty for other than built-in types.
 std::string_view builtIn(std::string_view type) {
   if (type == "bool" || type == "byte" || type == "char") return "uint8";  // one byte, all of them
   constexpr std::array<std::string_view, 13> kKnown = {"uint8",  "int8",   "uint16",  "int16",   "uint32",

@@ -1,4 +1,4 @@
-// What a ROS message definition serialises to, so that copies of a type under another name are recognised.
+// Serialised layout of a ROS message definition, so that copies of a type under another name are recognised.
 #pragma once
 
 #include <optional>

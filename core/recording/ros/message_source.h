@@ -1,4 +1,4 @@
-// One file of a ROS recording as its messages, whatever the container.
+// One file of a ROS recording as its messages, for any container.
 #pragma once
 
 #include "core/recording/ros/topic_streams.h"

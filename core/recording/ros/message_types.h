@@ -1,4 +1,4 @@
-// Which ROS messages carry what we read, and how they are told apart.
+// Types of ROS messages that are read, and their recognition.
 #pragma once
 
 #include "core/data/recording.h"
@@ -23,8 +23,8 @@ const MessageType& imuType(Serialization serialization);
 const MessageType& imageType(Serialization serialization);
 const MessageType& packedImageType(Serialization serialization);
 
-// By md5 first, then by the names of packages that are known, then by the fields of the definition, and where
-// there is none by the last part of the name: packages get renamed and copied.
+// By md5 first, then by the names of known packages, then by the fields of the definition, and without one by
+// the last part of the name: packages get renamed and copied.
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition);
 
 }  // namespace evical::ros

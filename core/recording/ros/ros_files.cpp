@@ -39,7 +39,7 @@ std::vector<fs::path> filesByNumber(const fs::path& folder) {
   return files;
 }
 
-// Only what lies in the folder: the file may come from anywhere.
+// Only files in the folder: metadata may come from anywhere.
 std::vector<fs::path> filesOfMetadata(const fs::path& folder) {
   std::vector<fs::path> files;
   const YamlNode info = YamlNode::load(folder / "metadata.yaml")["rosbag2_bagfile_information"];

@@ -1,4 +1,4 @@
-// Which files a ROS recording consists of, and opening them whatever they are packed in.
+// Files of a ROS recording, and opening them with any compression.
 #pragma once
 
 #include "core/recording/ros/message_source.h"
@@ -10,11 +10,11 @@
 
 namespace evical::ros {
 
-// A file, or a folder's files in the order of its metadata.yaml; where there is none, or it is damaged, in
-// the order of their numbers. Throws CalibrationError (BadInput) if there are none.
+// A file, or a folder's files in the order of its metadata.yaml; if it is missing or damaged, in the order of
+// their numbers. Throws CalibrationError (BadInput) if there are none.
 std::vector<std::filesystem::path> rosFiles(const std::filesystem::path& path, const FaultSink& sink);
 
-// Whether a folder looks like a ROS 2 recording.
+// True if a folder looks like a ROS 2 recording.
 bool isRos2Folder(const std::filesystem::path& folder);
 
 // By content: a ROS 1 bag, or MCAP or sqlite3; those packed with zstd (compression_mode FILE) are unpacked to

@@ -30,8 +30,8 @@ struct EventPacket {
 };
 bool parseEventPacket(std::string_view message, Serialization serialization, EventPacket& packet);
 
-// Both append to `message`, which is empty or without padding of its own. Times must be what a ROS time can
-// hold: within [0, 2^32) s for ROS 1, 2^31 for CDR. ROS 2 has no sequence number.
+// Both append to `message`, which is empty or has no padding. Times must be within the range of a ROS time:
+// [0, 2^32) s for ROS 1, 2^31 for CDR. ROS 2 has no sequence number.
 void encodeEventArray(EventSpan events, std::uint32_t sequence, Resolution resolution_px,
                       Serialization serialization, std::string& message);
 void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization serialization,

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-// How far streams are looked for that have not been met.
+// Range of the search for streams that have not been met.
 constexpr std::uint64_t kMostLooked_bytes = 64 << 20;
 constexpr int kMostLooked = 20'000;  // messages
 

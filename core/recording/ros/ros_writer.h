@@ -1,4 +1,4 @@
-// What the writers of ROS recordings share: events gathered to messages, samples encoded, checks.
+// Common parts of the writers of ROS recordings: events gathered to messages, samples encoded, checks.
 #pragma once
 
 #include "core/recording/recording_writer.h"

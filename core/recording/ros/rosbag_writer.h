@@ -20,7 +20,7 @@ class RosbagWriter : public ros::RosWriter {
     std::int64_t time_ns;
     std::uint32_t offset;  // of the message record in the chunk
   };
-  // Of the stream of the same number.
+  // Connection of the stream of the same number.
   struct Connection {
     bool announced = false;         // its connection record is in a chunk
     std::vector<IndexEntry> index;  // of the chunk being gathered

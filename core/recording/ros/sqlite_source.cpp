@@ -35,7 +35,7 @@ bool hasWriteAheadLog(const std::filesystem::path& path) {
   return !error && size > 0;
 }
 
-// What the file's header says it has; 0 if it says nothing.
+// Size stated by the file's header; 0 without one.
 std::uint64_t statedBytes(const std::filesystem::path& path) {
   std::array<unsigned char, 32> header{};
   std::ifstream file(path, std::ios::binary);
@@ -55,7 +55,7 @@ class SqliteSource::Database {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
     status_ = sqlite3_open_v2(uriOf(path, immutable).c_str(), &handle_, flags, nullptr);
     if (!ok()) return;
-    // A file of unknown origin shall not run code of its own.
+    // A file of unknown origin must not run its code.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
     // Files that are shorter than they say are refused but in this mode.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_WRITABLE_SCHEMA, cut ? 1 : 0, nullptr);

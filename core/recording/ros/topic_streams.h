@@ -30,8 +30,8 @@ class TopicStreams {
 
   // Resolution, encoding, and whether stamps are stamps, from the first messages of a stream.
   void lookInto(std::size_t stream, std::string_view message);
-  bool knows(std::size_t stream) const;  // that further looking tells nothing
-  void finishLooking();                  // selects what is read by default, lists triggers
+  bool knows(std::size_t stream) const;  // true if more messages cannot change it
+  void finishLooking();                  // selects the default streams, lists triggers
 
   const std::vector<StreamInfo>& streams() const { return streams_; }
   void select(const std::string& path, const std::vector<std::size_t>& streams);
@@ -41,9 +41,9 @@ class TopicStreams {
   // where in the file the message is.
   bool decode(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
               const std::string& place, Packet& packet);
-  // What remains of a message in which time ran far back; to be asked before the next message.
+  // Rest of a message in which time ran far back; call before the next message.
   bool handOutRest(Packet& packet);
-  // What only the whole recording tells.
+  // Conclusions that need the whole recording.
   void finishReading();
 
   const std::vector<RecordingFault>& faults() const { return faults_; }
@@ -56,14 +56,15 @@ class TopicStreams {
     Serialization serialization = Serialization::Ros1;
     bool selected = false;
     int looked = 0;  // messages
-    // Stamps in the first messages. Some zeros and nothing else are no stamps; a single zero may be meant.
+    // Stamps in the first messages. Some zeros and nothing else mean no stamps; a single zero may be
+    // intended.
     std::uint64_t zero_stamps = 0, other_stamps = 0;
     bool stampless() const { return zero_stamps > 1 && other_stamps == 0; }
-    // Steps back within messages, put in order.
+    // Steps back within messages, which were sorted.
     std::uint64_t disordered = 0;
     std::int64_t largest_disorder_ns = 0;
     std::string encoding;  // of event packets and pictures, from their first message
-    // Of event packets.
+    // Decoder of event packets.
     EventPacketDecoder decoder;
     std::optional<std::size_t> trigger_stream;
     bool refused() const;  // its encoding

@@ -1,4 +1,4 @@
-// A file packed with zstd, unpacked beside the system's other temporary files.
+// A file packed with zstd, unpacked into the folder of the system's temporary files.
 #pragma once
 
 #include "core/recording/ros/message_source.h"

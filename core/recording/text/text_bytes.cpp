@@ -28,7 +28,7 @@ void TextBytes::Closing::operator()(gzFile_s* file) const {
   gzclose(file);
 }
 
-// What is not packed is handed through as it is.
+// Files that are not packed are read unchanged.
 TextBytes::TextBytes(const std::filesystem::path& path) : file_(gzopen(path.c_str(), "rb")) {
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   gzbuffer(file_.get(), kBuffer_bytes);

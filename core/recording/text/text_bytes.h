@@ -22,11 +22,11 @@ class TextBytes {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit TextBytes(const std::filesystem::path& path);
 
-  // How many were read; 0 at the end, and where a packed file cannot be unpacked any further.
+  // Number of bytes read; 0 at the end, and if a packed file cannot be unpacked any further.
   std::size_t read(char* bytes, std::size_t count);
   bool isDamaged() const { return damaged_; }  // the end came before that of what is packed
 
-  // Of the file as it is on the disk.
+  // Size of the file on the disk.
   std::uint64_t size() const { return size_; }
   std::uint64_t position() const;
 

@@ -69,7 +69,7 @@ TextStyle styleOf(std::string_view line) {
 // The first lines of a table: rows of numbers, and what stands above them.
 class TableHead {
  public:
-  // `line` has its number in the file. False if the text is no table.
+  // `line` has its number in the file. False if the text is not a table.
   bool add(std::string_view line, std::uint64_t number) {
     if (rows == 0) first_row = number + 1;
     if (line.substr(0, 4) == "sep=" || readGeometry(line)) return true;
@@ -182,7 +182,7 @@ bool recogniseEcho(const TableHead& head, TextColumns& columns) {
   return true;
 }
 
-// Seven columns: gravity tells which three are the accelerometer's.
+// Seven columns: gravity identifies the accelerometer's three.
 bool guessImu(const TableHead& head, TextColumns& columns) {
   if (head.columns.size() != kImuColumns) return false;
   const bool first = isGravity(medianOf(head.first_norms)), second = isGravity(medianOf(head.second_norms));
@@ -222,7 +222,7 @@ void describeGuess(TextColumns& columns) {
                   order, unit, unit, events ? "x,y,p" : "ax,ay,az,gx,gy,gz"));
 }
 
-// Of the lines above the rows the one that names their columns; nullptr if none does.
+// The line above the rows that names their columns; nullptr without one.
 const TableHeader* headerOf(const TableHead& head) {
   const auto fits = [&](const TableHeader& header) {
     return head.rows == 0 || header.names.size() == head.columns.size();

@@ -1,5 +1,6 @@
-// What the columns of a text table mean: by their names, from the file's header line or from the session. Without names only
-// documented layouts count, and what the numbers themselves show, which is then said.
+// Meaning of the columns of a text table: by their names, from the file's header line or from the session.
+// Without names only documented layouts count, and evidence in the numbers themselves, which is then
+// reported.
 #pragma once
 
 #include "core/data/recording.h"
@@ -14,13 +15,13 @@
 
 namespace evical {
 
-// One of the columns whose sum is the time: seconds and nanoseconds may stand in two.
+// One of the columns whose sum is the time: seconds and nanoseconds may be in two.
 struct TimeColumn {
   std::size_t column = 0;
   std::int64_t unit_ns = 1'000'000'000;
 };
 
-// How a table's lines are written.
+// Notation of a table's lines.
 struct TextStyle {
   bool blanks = false;         // only blanks separate columns
   bool decimal_comma = false;  // "1,5" is a number; semicolons or tabs separate columns
@@ -39,10 +40,10 @@ struct TextColumns {
   AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
   double acceleration_factor = 1.0, rate_factor = 1.0;  // to these units
   Resolution resolution_px;                             // from a line %geometry:w,h, or e2vid's "w h"
-  std::uint64_t first_row = 1;                          // its line; those before it are no rows
+  std::uint64_t first_row = 1;                          // its line; those before it are not rows
   std::vector<std::string> notes;                       // for people: what was guessed, what is not used
   std::string unused;                                   // names of columns that are not read
-  std::string problem, advice;  // a table whose columns cannot be told: why, and what helps
+  std::string problem, advice;  // a table with unidentified columns: why, and what helps
 
   std::size_t count() const;  // columns that a line must have
   bool isTable() const { return type != StreamType::Other || !problem.empty(); }
@@ -57,7 +58,8 @@ TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view
 void splitColumns(std::string_view line, std::vector<std::string_view>& columns);
 void splitColumns(std::string_view line, const TextStyle& style, std::vector<std::string_view>& columns);
 
-// As parseNumber and parseTime, in the table's own style. A time may also be a date of ISO 8601 (UTC where no zone is given).
+// Like parseNumber and parseTime, in the table's style. A time may also be a date of ISO 8601 (UTC without a
+// zone).
 bool parseCell(std::string_view text, const TextStyle& style, double& number);
 bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& columns,
                 std::int64_t& time_ns);

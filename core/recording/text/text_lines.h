@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// What ends the lines of a text that begins so: a newline, or a carriage return where it has no newline.
+// Line end of a text with this beginning: a newline, or a carriage return if it has no newline.
 char lineEndOf(std::string_view first_bytes);
 
 class TextLines {
@@ -42,8 +42,8 @@ class TextLines {
 // when there are no more.
 std::string_view takeColumn(std::string_view& line);
 
-// Seconds to ns, exactly for up to 9 decimals, rounded beyond; also with an exponent. False if it is no such
-// number or beyond 2^63 ns.
+// Seconds to ns, exactly for up to 9 decimals, rounded beyond; also with an exponent. False for other text or
+// beyond 2^63 ns.
 bool parseSeconds(std::string_view text, std::int64_t& time_ns);
 
 // The same for times in units of 10^digits ns: 9 for seconds, 3 for us.

@@ -1,7 +1,8 @@
-// Text and CSV, a table a file: events, IMU samples, or points of a board that another program found. Columns are told by
-// the names in the header line or in the session (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event
-// camera data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines starting with
-// '#' or '%' are comments. Files may be packed with gzip.
+// Text and CSV, one table per file: events, IMU samples, or points of a board that another program found.
+// Columns are identified by the names in the header line or in the session (text_columns.h). A folder with
+// "events.txt" and "imu.txt" as in the RPG event camera data set, or "events.csv" and "imu.csv", or one such
+// file alone. Times are read exactly to the ns. Lines starting with '#' or '%' are comments. Files may be
+// packed with gzip.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -19,7 +20,7 @@ namespace evical {
 
 class TextTableReader : public RecordingReader {
  public:
-  // A folder or a file. Throws CalibrationError (BadInput) if the columns of one cannot be told.
+  // A folder or a file. Throws CalibrationError (BadInput) if the columns of one cannot be identified.
   explicit TextTableReader(const std::filesystem::path& path, const ColumnNames& names = {});
 
   const std::vector<StreamInfo>& streams() const override { return streams_; }
@@ -40,7 +41,7 @@ class TextTableReader : public RecordingReader {
     Event next_event{};  // read, but it belongs to the next packet
     bool has_next_event = false;
     std::optional<MeasuredPoint> next_point = {};  // the same
-    std::uint64_t other_types = 0;                 // lines that are no events, by their type
+    std::uint64_t other_types = 0;                 // lines that are not events, by their type
   };
 
   void addSource(const std::filesystem::path& path, const std::string& names);
@@ -62,10 +63,11 @@ class TextTableReader : public RecordingReader {
   std::vector<std::string_view> parts_;  // of a line
 };
 
-// Whether a file, packed or not, is a table of events, IMU samples or points, or one whose columns cannot be told.
+// True if a file, packed or not, is a table of events, IMU samples or points, or one with unidentified
+// columns.
 bool isTextTable(const std::filesystem::path& file);
 
-// Whether a folder has files that this reader knows by name.
+// True if a folder has files that this reader recognises by name.
 bool isTextFolder(const std::filesystem::path& folder);
 
 }  // namespace evical

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// What the kinds of text differ in.
+// Differences between the kinds of text.
 struct TextStyle {
   const char *events_file, *imu_file;
   const char *events_header, *imu_header;
