@@ -1,5 +1,5 @@
-// The camera's motion in a short window of time, from the speed of edges along their normals (docs/maths.md,
-// 16.2). The image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at
+// The camera's motion in a short window of time, from the speed of edges along their normals
+// (docs/maths.md, 16.2). The image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at
 // which an edge passes has the slope g with g . (A w + B v / Z) = 1. This holds for any scene at rest.
 #pragma once
 
