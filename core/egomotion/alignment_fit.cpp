@@ -61,7 +61,7 @@ Eigen::Matrix3d AlignmentFit::weightOf(std::size_t k, const Eigen::Vector3d& err
   return cauchyWeight(size / kCauchySquares) * information;
 }
 
-// The windows' own sigmas hold where their edges are few; where they are many what they do not model counts.
+// The windows' own sigmas are valid if their edges are few; if they are many, model errors count.
 void AlignmentFit::findScales(const AlignmentState& state) {
   std::vector<double> sizes, squares;
   std::vector<Eigen::Vector3d> errors;

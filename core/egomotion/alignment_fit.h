@@ -37,7 +37,7 @@ class AlignmentFit {
   Eigen::Vector3d imuRate_rad_s(const WindowMotion& window, const AlignmentState& state,
                                 Eigen::Vector3d* by_time = nullptr) const;
 
-  // Gauss-Newton from `state`. False where the numbers do not tell it.
+  // Gauss-Newton from `state`. False if the solution is not determined.
   bool solve(AlignmentState& state);
 
   // Residuals of each window after the last solve(), in units of their scatter: squares of three numbers.
@@ -66,7 +66,7 @@ class AlignmentFit {
   const SummedRates& rates_;
   Eigen::Matrix3d imu_from_measured_;
   double floor_rad_s_ = 0.01,
-         scale_ = 1.0;  // least sigma of a window; how many times larger all are than said
+         scale_ = 1.0;  // least sigma of a window; ratio of the errors to the sigmas
   double median_error_rad_s_ = 0.0;
   std::vector<double> squares_;
 };

@@ -32,12 +32,14 @@ struct EdgeRow {
   Eigen::Vector3d known_rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in addition to the fitted one
 };
 
-// Every second, third ... where a window has more than options.most_slopes. Those that the lens does not see are left out.
+// Every second, third ... slope if a window has more than options.most_slopes. Those outside the lens's view
+// are omitted.
 std::vector<EdgeRow> edgeRows(std::span<const EdgeSlope> slopes, const LensRays& lens, std::int64_t begin_ns,
                               const EgomotionOptions& options);
 
-// (g . u - 1) / sqrt(u' V u): how much the slope along the motion differs from one over the speed, in sigmas. Divided by
-// what u makes of the slope's noise, it has no bias from noise in g (total least squares).
+// (g . u - 1) / sqrt(u' V u): difference between the slope along the motion and one over the speed, in
+// sigmas. Divided by the effect of the slope's noise on u, it has no bias from noise in g (total least
+// squares).
 struct EdgeResidual {
   double value = 0.0;
   double error = 0.0;  // g . u - 1

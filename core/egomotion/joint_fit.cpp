@@ -37,7 +37,7 @@ JointFit::JointFit(const JointInput& input, const EgomotionOptions& options, boo
   parts_.resize(windows_.size());
 }
 
-// The window's own velocity and depths, where its camera turns as `model` says.
+// The window's velocity and depths, with the camera's rotation from `model`.
 std::optional<WindowFit> JointFit::fitWindow(std::size_t k, const TurningModel& model,
                                              const WindowRates& rates) {
   const KeptSlopes::Window& window = *windows_[k];

@@ -1,5 +1,6 @@
-// Rotation and time offset from all kept edges of all windows at once (docs/maths.md, 16.4): in each window the camera turns as
-// the gyroscope says, and only its velocity and the depths are free. Not for other folders.
+// Rotation and time offset from all kept edges of all windows at once (docs/maths.md, 16.4). In each window
+// the gyroscope gives the camera's rotation, and only its velocity and the depths are free. Not for other
+// folders.
 #pragma once
 
 #include "core/base/progress.h"
@@ -26,7 +27,7 @@ struct JointInput {
   Eigen::Matrix3d imu_from_measured;
   std::int64_t start_ns;  // of the recording
   int threads;
-  const RunContext& context;  // asked for stops, and told progress
+  const RunContext& context;  // for stop requests and progress
 };
 
 class JointFit {

@@ -34,9 +34,8 @@ struct AlignmentStart {
 };
 
 struct RotationAlignment {
-  std::string failure;  // why there is none; empty where there is one
-  std::vector<std::string>
-      advice;  // what to do about it; none where the windows tell, by why they are not used
+  std::string failure;              // why there is none; empty where there is one
+  std::vector<std::string> advice;  // by the reasons for unused windows; empty if the windows suffice
   Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();

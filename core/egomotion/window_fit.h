@@ -49,7 +49,7 @@ class WindowFit {
   double curvatureOf(const EdgeResidual& residual) const;
   double scale() const { return scale_; }  // of the residuals' values, robust
 
-  // With the depths eliminated; slopes that share their neighbourhood tell little more than one.
+  // With the depths eliminated; slopes that share their neighbourhood count little more than one.
   Matrix6d covariance(double shared) const;
   double inlierShare() const;
   double medianSquare() const;

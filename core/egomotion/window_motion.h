@@ -50,7 +50,7 @@ struct WindowTime {
   std::int64_t begin_ns = 0;  // of the window
 };
 
-// `use` is Used, or says why not.
+// `use` is Used, or the reason against it.
 WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensRays& lens, WindowTime time,
                                   const EgomotionOptions& options);
 

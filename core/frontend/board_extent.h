@@ -1,5 +1,5 @@
 // Does the lattice of circles end where the board does? A session may give too few or too many rows or
-// columns, and the board is found all the same.
+// columns, and the board is detected nevertheless.
 #pragma once
 
 #include "core/data/board_observations.h"

@@ -106,9 +106,9 @@ inline int expectedCircles(const BoardMotion& motion, const BoardScene& scene, d
 // Bursts no further than this from the window's middle are fitted at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
 
-// Weight of a burst by how squarely its edge crossed the pixel: where an edge only grazes a pixel, its burst
-// is short and comes too early. `leads` is the cosine between outward normal and motion, negative if the
-// polarity says otherwise.
+// Weight of a burst by the direction in which its edge crossed the pixel: if an edge only grazes a pixel, its
+// burst is short and comes too early. `leads` is the cosine between outward normal and motion, negative if
+// the polarity contradicts it.
 inline double crossingWeight(double leads, double events, double typical_events,
                              const TrackingOptions& options) {
   const auto ramp = [](double value, double zero, double one) {

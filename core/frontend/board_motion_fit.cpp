@@ -43,7 +43,8 @@ struct FitPoint {
   double x, y, t, inverse_scale, events, lead;
 };
 
-// The priors only hold what the bursts do not see. Perspective terms are the least sure and the least needed.
+// The priors only fix what the bursts do not determine. Perspective terms are the least certain and the least
+// needed.
 NormalVector priorSigmas(const TrackingOptions& options) {
   NormalVector sigmas;
   for (int i = 0; i < kFlowTerms; ++i) {

@@ -1,5 +1,5 @@
-// A board's motion as a few points of it say it, for want of anything better: where a search has circles, or
-// where only the centres of an earlier view are left.
+// A board's motion from a few of its points, if nothing better is available: when a search has circles, or
+// when only the centres of an earlier view are left.
 #pragma once
 
 #include "core/frontend/board_motion.h"

@@ -193,7 +193,7 @@ void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trac
   WindowTrace anew =
       trackWindow({history_, scene_, options_, start_ns_}, slot, shifted(*trace.motion, *shift), window_);
   if (!anew.held() || anew.report.circles <= trace.report.circles) return;
-  // The extent's counts stay: where the board has more rows than the session says, placements change for ever.
+  // The extent's counts stay: if the board has more rows than the session states, placements change for ever.
   renumberTrack(*shift);
   trace = std::move(anew);
 }
@@ -219,7 +219,7 @@ void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
       observations_.views.end());
 }
 
-// Views of a board that no window told from its rivals are none.
+// Views of a board that no window distinguished from its rivals do not count.
 void BoardTracker::endTrack() {
   std::vector<BoardView>& views = observations_.views;
   if (!placement_watch_.isTold() && open_begin_ < views.size()) {

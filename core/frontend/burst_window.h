@@ -43,8 +43,8 @@ class BurstHistory {
   std::vector<std::vector<EdgeBurst>> spare_;  // memory of slices that were dropped, for those to come
 };
 
-// Drops bursts that stand alone: fewer than `least_support` of their kind in
-// a 3x3 neighbourhood, themselves included.
+// Drops isolated bursts: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
+// included.
 void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
 
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the
@@ -68,7 +68,7 @@ class BurstWindow {
   void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
   // The history's bursts no further than half_window_s from the middle.
   void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
-  // The same without bursts that stand alone (keepSupported).
+  // The same without isolated bursts (keepSupported).
   void fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
                      int least_support);
 

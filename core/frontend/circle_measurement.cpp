@@ -149,7 +149,7 @@ class CircleMeter {
     const CentreFit fit = fitCentre(circle, motion_, options_, points_);
     const CircleVerdict verdict = judge(circle, fit, points_.size(), options_);
     if (verdict != CircleVerdict::Measured) return verdict;
-    // The window's own scatter, not one circle's: a dozen points say little about their noise.
+    // The window's scatter, not one circle's: a dozen points do not determine their noise.
     const double noise2 = std::max(motion_.residual_rms_px * motion_.residual_rms_px, 1e-3);
     out = observation(circle, fit, motion_, noise2, slot_.start_ns);
     const double scale = circle.largest_radius_px / circle.sensor_radius_px;

@@ -17,8 +17,8 @@ constexpr double kRestToHalfCrossing = 3.5;
 // Limit for any pause: longer waits delay the windows for the slowest pixel.
 constexpr double kLongestRest_s = 0.6;
 
-// Pixels come in no order, and a sensor's are more than a processor's fast memory holds: so many events before their
-// turn they are asked for.
+// Pixels come in no order, and a sensor's do not fit into a processor's cache: they are prefetched so many
+// events ahead.
 constexpr std::size_t kFetchedAhead = 16;
 
 // The edge was out of the pixel's reach.

@@ -1,5 +1,6 @@
-// An edge that crosses a pixel fires a burst of events of one polarity. The burst's median time says when the
-// edge was in the middle of the pixel, much better than its first event does (docs/maths.md, 4).
+// An edge that crosses a pixel fires a burst of events of one polarity. The burst's median is the time at
+// which the edge was in the middle of the pixel, much more accurately than its first event
+// (docs/maths.md, 4).
 #pragma once
 
 #include "core/data/event.h"
@@ -27,8 +28,8 @@ struct EdgeBurst {
 double longestHandOut_s(const BurstOptions& options);
 
 // Turns events into bursts, in one pass and constant memory. A burst ends with an event of the other polarity
-// or with a pause that is long against its own pace. Bursts in which the edge was not in the middle of its
-// pixel are left out.
+// or with a pause that is long compared with its pace. Bursts in which the edge was not in the middle of its
+// pixel are dropped.
 class BurstExtractor {
  public:
   BurstExtractor(Resolution resolution_px, const BurstOptions& options);

@@ -1,6 +1,7 @@
 // Slopes of the times at which edges pass, from planes through the burst times of neighbouring pixels
-// (docs/maths.md, 16.1; R. Benosman et al., "Event-based visual flow", TNNLS 2014). Unlike normal_flow.h it knows no window
-// in which an edge would have to cross the neighbourhood: slow edges get as much time as fast ones.
+// (docs/maths.md, 16.1; R. Benosman et al., "Event-based visual flow", TNNLS 2014). Unlike normal_flow.h it
+// has no window in which an edge would have to cross the neighbourhood: slow edges get as much time as fast
+// ones.
 #pragma once
 
 #include "core/base/option_struct.h"

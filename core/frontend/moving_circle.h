@@ -1,5 +1,5 @@
 // A circle that moves at constant velocity through a window, fitted to burst medians (docs/maths.md, 5.3):
-// good enough to find the board's lattice; the board's own fit then knows the ellipses.
+// accurate enough to find the board's lattice; the joint fit of the board models the ellipses.
 #pragma once
 
 #include "core/frontend/burst_window.h"

@@ -13,7 +13,7 @@ namespace evical {
 struct LevelBurst {
   bool brighter;
   int events;
-  bool cut_begin;                    // events before it were taken for noise
+  bool cut_begin;                    // events before it were considered noise
   bool rested_before, rested_after;  // the edge was out of the pixel's reach
 };
 
@@ -33,7 +33,7 @@ class PixelLevel {
  private:
   static constexpr float kUnknown = -1.0f;
 
-  // Events of a whole burst that the edge had already fired where it stands.
+  // Events of a whole burst that the edge had already fired at its present place.
   std::optional<double> had(const LevelBurst& burst) const;
   void set(bool brighter, double part) { level_ = static_cast<float>(brighter ? part : 1.0 - part); }
 

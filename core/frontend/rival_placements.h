@@ -35,8 +35,8 @@ BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
 // Board circle of the rival for each circle of the present placement; -1 if the rival has none.
 std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift);
 
-// Holds a tracked board against its rivals: at every window while one of them is open, which is one that explains about as
-// many circles, now and then once the circles seen have told them all apart.
+// Compares a tracked board with its rivals: at every window while one of them is open (it explains about as
+// many circles), and now and then after the visible circles have excluded them all.
 class PlacementWatch {
  public:
   PlacementWatch(const Board& board, const GridOptions& options);

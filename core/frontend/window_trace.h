@@ -37,7 +37,7 @@ enum class TrackingEnd {
   NoFit,             // too few bursts where edges should be
   TooFewCircles,     // than make a grid
   TooFewOfExpected,  // of those that should be seen
-  Held,              // good enough to go on from
+  Held,              // good enough to continue from
 };
 
 struct WindowTrace {
@@ -63,7 +63,7 @@ enum class TraceDetail { Result, Everything };
 WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, const BoardMotion& last,
                         BurstWindow& window, TraceDetail detail = TraceDetail::Result);
 
-// The last view before that time from which the tracker would still go on; null if there is none.
+// The last view before that time from which the tracker would still continue; null if there is none.
 const BoardView* viewToTrackFrom(const BoardObservations& observations, double time_s,
                                  const TrackingOptions& options);
 

@@ -8,7 +8,7 @@ namespace evical {
 struct LensFit {
   CameraIntrinsics camera;
   double rms_px = 0.0, worst_px = 0.0;  // over the image: how far apart both see the same ray
-  bool whole_image = true;              // else rays that the model cannot see were left out
+  bool whole_image = true;              // otherwise rays that the model cannot see were omitted
 };
 
 // The camera of `model`, with so many of its coefficients (4 of radtan: without k3), that comes nearest over the whole

@@ -33,8 +33,8 @@ struct ProjectionDifference {
   int places = 0;  // compared
 };
 
-// Of `other` against `camera` at the middles of columns x rows cells, row by row: where the same rays are seen. Nothing
-// where there is no ray, or `other` does not see it. The image's size is that of `camera`.
+// Differences of `other` from `camera` at the middles of columns x rows cells, row by row, for the same rays.
+// Nothing without a ray, or if `other` does not see it. The image's size is that of `camera`.
 std::vector<std::optional<Eigen::Vector2d>> projectionDifferences(const CameraIntrinsics& camera,
                                                                   const CameraIntrinsics& other, int columns,
                                                                   int rows);

@@ -8,7 +8,7 @@ namespace {
 // Below it the series with two terms of sine and cosine are exact to double precision.
 constexpr double kSmallAngle2 = 1e-8;  // rad^2
 
-// What Rodrigues' formula and its derivative weigh skew(v) and its square with.
+// Weights of skew(v) and its square in Rodrigues' formula and its derivative.
 struct Coefficients {
   double sine;    // sin(x)/x
   double cosine;  // (1 - cos(x))/x^2

@@ -60,7 +60,7 @@ enum class RotationOrder { Rotation, Velocity, Acceleration };
 // Common values of all times in one segment. Build it once if many samples fall into the same segment.
 class So3Segment {
  public:
-  // Quaternions as Eigen stores them (x y z w), as Ceres parameter blocks hold them.
+  // Quaternions as Eigen stores them (x y z w), like Ceres parameter blocks.
   So3Segment(const double* r0_xyzw, const double* r1_xyzw, const double* r2_xyzw, const double* r3_xyzw,
              double knot_spacing_s, bool with_jacobians);
   So3Segment(const So3Spline& spline, int segment, bool with_jacobians);

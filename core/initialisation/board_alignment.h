@@ -27,7 +27,7 @@ struct BoardSight {
 struct BoardAlignment {
   RigidTransform world_from_board;
   std::vector<Eigen::Vector3d> cameras_in_body_m;
-  int views = 0;          // that tell it
+  int views = 0;          // that determine it
   double agreeing = 0.0;  // share of them near where the others put it, by how the better ones scatter
   double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
 };

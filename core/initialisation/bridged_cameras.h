@@ -15,7 +15,7 @@ namespace evical {
 struct BridgedCamera {
   MeanPose reference_from_camera;
   double time_offset_s = 0.0;  // reference_time = camera_time + time_offset_s
-  int bridges = 0;             // gaps that tell it
+  int bridges = 0;             // gaps that determine it
 };
 
 // The time offset within options.time_offset_search_s of the prior's at which the gaps agree best, or that

@@ -25,7 +25,7 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
     Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double error = (felt[k] - rotation * pairs[k].seen_rad).norm() / scale_rad;
-      // The first round knows no rotation yet.
+      // The first round has no rotation yet.
       const double weight = round == 0 ? 1.0 : cauchyWeight(error * error);
       sums += weight * felt[k] * pairs[k].seen_rad.transpose();
     }

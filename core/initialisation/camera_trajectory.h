@@ -34,7 +34,7 @@ std::vector<ImuSample> angularRatesOf(const CameraTrajectory& trajectory, std::i
 
 struct RelativePose {
   MeanPose reference_from_camera;
-  int views = 0;  // that tell it
+  int views = 0;  // that determine it
 };
 // From views at times when the reference's place is known too; nothing if fewer than `least_views`.
 std::optional<RelativePose> relativePose(const CameraTrajectory& reference,

@@ -1,4 +1,4 @@
-// The cameras that see another board than the world's, and where these boards stand.
+// Places of further boards, and the cameras that see them.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -10,9 +10,9 @@
 
 namespace evical {
 
-// `aligned`: by camera; those that see the world's board are left out of account. `body`: the reference's motion in the
+// `aligned`: by camera; those that see the world's board are ignored. `body`: the reference's motion in the
 // world, known within `gap_s` of its view times. Fills the boards and their cameras in result.state. Throws
-// CalibrationFailed where a board is never seen while the world's is.
+// CalibrationFailed if a board is never seen at the same time as the world's.
 void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_t, AlignedCamera>& aligned,
                         const CameraTrajectory& body, double gap_s, const InitialisationOptions& options,
                         Initialisation& result);

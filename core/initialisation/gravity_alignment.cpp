@@ -339,7 +339,7 @@ void Alignment::reweigh(const Solution& solution) {
     (row.position ? positions : accelerations).push_back(row.weight);
   }
   // The norm of three equal normal errors has its median at 1.54 sigma. One kind of row must not drown the
-  // other, so each sigma stays between a fifth of what its option says and ten times that.
+  // other, so each sigma stays between a fifth of its option and ten times that.
   constexpr double kMedianNorm = 1.54, kLeast = 0.2, kMost = 10.0;
   const auto within = [&](double sigma, double option) {
     return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);

@@ -1,10 +1,10 @@
 // Translations, gravity, accelerometer bias and the position spline, all linear once the rotation is known
-// (docs/maths.md, 8.5): with control points P, lever t_c = reference_from_camera.translation of camera
-// c, gravity g and bias b,
+// (docs/maths.md, 8.5): with control points P, lever t_c = reference_from_camera.translation of camera c,
+// gravity g and bias b,
 //   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.
-// Then once more with scale p''(t), since accelerations tell metres: the board's true size over the given
-// one.
+// Then once more with scale p''(t), since accelerations determine metres: the board's true size over the
+// given one.
 #pragma once
 
 #include "core/base/progress.h"

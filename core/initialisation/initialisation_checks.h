@@ -22,7 +22,7 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
 // That, and some offset within the search range at which they and the IMU overlap.
 void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
                 const InitialisationOptions& options);
-// Once the offset is known.
+// Call it once the offset is known.
 void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
                   const InitialisationOptions& options);
 

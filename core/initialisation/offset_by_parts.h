@@ -1,5 +1,5 @@
-// The time offset in parts of a recording, against one that holds for all of it: clocks that step (lost packets, a
-// resynchronisation) show in it at once, while one offset for all of it is wrong for a part and contradicted by
+// The time offset in parts of a recording, compared with one for all of it. Clocks that step (lost packets, a
+// resynchronisation) are visible at once, while a single offset is wrong for a part and contradicted by
 // circles that look like outliers.
 #pragma once
 

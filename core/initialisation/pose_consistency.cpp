@@ -86,7 +86,7 @@ PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRo
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double time_s = poses[k].time_s + hand_eye.time_offset_s;
     const Vote vote = voteOn(carried, poses, k, least_cosine, options.agreement_window_s);
-    // Beyond the gyroscope, or all alone, nobody can tell.
+    // Beyond the gyroscope, or without neighbours, nothing can be judged.
     const bool judged = gyro.covers(time_s, time_s) && vote.neighbours > 0;
     if (judged && std::max(vote.for_first, vote.for_second) < options.least_agreement * vote.neighbours) {
       ++result.dropped;

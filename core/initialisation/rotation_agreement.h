@@ -13,7 +13,7 @@ namespace evical {
 struct RotationAgreement {
   double rotated = 0.0, reflected = 0.0;
   double rest_rad = 0.0;  // residual of the best rotation
-  int pairs = 0;          // 0: none overlap, and the rest says nothing
+  int pairs = 0;          // 0: none overlap, and the other values are meaningless
 };
 RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options);

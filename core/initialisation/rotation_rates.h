@@ -16,14 +16,14 @@ namespace evical {
 struct RotationRates {
   std::vector<double> time_s;  // camera clock, the pair's middle
   std::vector<double> camera_rad_s;
-  std::vector<double> imu_before_rad_s;  // clocks taken to be the same
+  std::vector<double> imu_before_rad_s;  // for equal clocks
   std::vector<double> imu_after_rad_s;   // with the calibrated offset between camera and IMU
 
   double rmsDifferenceBefore_rad_s() const;
   double rmsDifferenceAfter_rad_s() const;
 };
 
-// Pairs outside the IMU's samples are left out. Throws Cancelled when asked to stop.
+// Pairs outside the IMU's samples are omitted. Throws Cancelled on a stop request.
 RotationRates rotationRates(const CameraData& camera, const Board& board, const CameraState& camera_state,
                             const ImuData& imu, const ImuState& imu_state, std::int64_t start_ns,
                             const InitialisationOptions& options, const RunContext& context);

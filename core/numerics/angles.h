@@ -3,7 +3,7 @@
 
 namespace evical {
 
-// Written out, since Qt's moc stumbles over <numbers> in what it reads.
+// Written out, because Qt's moc cannot parse <numbers>.
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTwoPi = 2.0 * kPi;
 inline constexpr double kDegPerRad = 180.0 / kPi;

@@ -7,7 +7,7 @@
 
 namespace evical {
 
-// As IMUs' noise densities are given: white noise of sigma s, sampled at r Hz, has s / sqrt(r) at every frequency.
+// Unit of IMUs' noise densities: white noise of sigma s, sampled at r Hz, has s / sqrt(r) at every frequency.
 struct NoiseSpectrum {
   std::vector<double> frequency_hz;  // from the first above zero up to half the rate
   std::vector<double> density;       // the samples' unit per sqrt(Hz)

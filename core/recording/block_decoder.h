@@ -27,7 +27,7 @@ struct BlockFindings {
   Occurrences outside;               // events beyond the sensor
   Occurrences untimed;               // events before the first complete time
   Occurrences unknown;               // records of no known kind
-  Occurrences wraps;                 // of the time, which goes on
+  Occurrences wraps;                 // of the time, which continues
   Occurrences imu;                   // IMU records without a known scale
   Occurrences exposure;              // events that measure grey levels and belong to no frame
   std::uint64_t rolling_frames = 0;  // whose pixels are exposed one column after the other
@@ -38,8 +38,8 @@ class BlockDecoder {
  public:
   virtual ~BlockDecoder() = default;
 
-  // Appends the events of all whole records at the front of `bytes`, which stand at `offset` in the file;
-  // returns how many bytes these records have.
+  // Appends the events of all whole records at the front of `bytes`, which are at `offset` in the file;
+  // returns the size of these records in bytes.
   virtual std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) = 0;
 
   const BlockFindings& findings() const { return findings_; }

@@ -56,7 +56,7 @@ bool BlockReader::read(Packet& packet) {
   return true;
 }
 
-// Undecoded bytes of the block before stand at the front of this one.
+// Undecoded bytes of the previous block are at the front of this one.
 bool BlockReader::decodeBlock() {
   const std::size_t left = bytes_.size();
   bytes_.resize(left + kReadBlock_bytes);
@@ -105,7 +105,7 @@ bool BlockReader::handOut(Packet& packet) {
   return true;
 }
 
-// Behind the events of their block.
+// After the events of their block.
 bool BlockReader::handOutSamples(Packet& packet) {
   std::vector<RawImuSample>& samples = decoder_->imuSamples();
   if (imu_wanted_ && !samples.empty()) {

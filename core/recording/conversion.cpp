@@ -114,7 +114,7 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
   }
 }
 
-// Formats for one camera count times from its start, so they cannot hold events with wrong timestamps.
+// Formats for one camera count times from its start, so they cannot store events with wrong timestamps.
 void sayStrays(const StampFilter<Event>& stamps, const RunContext& context) {
   if (stamps.strays() == 0) return;
   context.progress.log(

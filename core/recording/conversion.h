@@ -1,4 +1,4 @@
-// Copies a recording's events, IMU samples and, where the format holds them, frames into another format.
+// Copies a recording's events, IMU samples and, if the format supports them, frames into another format.
 #pragma once
 
 #include "core/base/progress.h"
@@ -14,8 +14,8 @@ namespace evical {
 struct ConversionRequest {
   std::filesystem::path input, output;
   std::string format;                // of recordingFormats(); empty: by the output's extension
-  std::vector<std::string> streams;  // names; all that the format holds if empty
-  Resolution resolution_px;          // of event streams whose file does not tell theirs
+  std::vector<std::string> streams;  // names; all that the format supports if empty
+  Resolution resolution_px;          // of event streams whose file does not state it
 };
 
 struct ConversionSummary {

@@ -13,7 +13,7 @@ namespace evical {
 namespace {
 
 constexpr Resolution kLargestGuess_px = {2048,
-                                         2048};  // where the file does not tell; no event sensor has more
+                                         2048};  // if the file does not state it; no event sensor has more
 constexpr std::size_t kMostNamedPixels = 8;
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr double kUnset_s = 3600.0;
 using Faults = std::vector<RecordingFault>;
 using Samples = std::vector<ImuSample>;
 
-// Lists the first few of many alike, and says how many there are.
+// Lists the first few of many similar faults, and their number.
 void appendFaults(Faults& faults, Faults alike, const char* many) {
   if (std::ssize(alike) > kMostAlikeFaults) {
     RecordingFault rest = alike[kMostAlikeFaults];

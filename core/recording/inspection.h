@@ -1,4 +1,4 @@
-// One pass over a recording: what it holds, and what is wrong with it.
+// One pass over a recording: its content, and its faults.
 #pragma once
 
 #include "core/base/progress.h"
@@ -43,7 +43,7 @@ struct StreamSummary {
   std::uint64_t without_rate = 0, without_force = 0;  // samples without a measurement of that sensor
 };
 
-// Which sensors of an IMU a stream holds. Alternating: both, but each sample has only one.
+// Sensors of an IMU in a stream. Alternating: both, but each sample has only one.
 enum class ImuStreamKind { Whole, Gyroscope, Accelerometer, Alternating };
 ImuStreamKind imuStreamKind(const StreamSummary& stream);
 ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples);  // by the values that are always 0

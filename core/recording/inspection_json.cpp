@@ -74,7 +74,7 @@ std::string inspectionJson(const Inspection& inspection, bool with_checksums) {
   }
   for (const StreamSummary& stream : inspection.streams)
     json["streams"].push_back(streamJson(stream, with_checksums));
-  // Names come from the file and may hold any bytes.
+  // Names come from the file and may contain any bytes.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

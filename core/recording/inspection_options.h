@@ -12,7 +12,7 @@ struct InspectionOptions {
   double largest_rate_rad_s = 36.0;     // beyond this (2000 deg/s are 34.9 rad/s) the rate cannot be in rad/s
   double hot_pixel_factor = 8.0;        // times the events of its neighbours, and of the mean pixel
   double hot_pixel_hz = 10.0;           // lowest rate of a hot pixel
-  int hot_pixel_events = 100;           // fewest events that tell a hot pixel from chance
+  int hot_pixel_events = 100;           // fewest events that distinguish a hot pixel from chance
   bool operator==(const InspectionOptions&) const = default;
 };
 

@@ -33,7 +33,7 @@ JoinedReader::JoinedReader(std::vector<Part> parts) {
   gatherFaults();
 }
 
-// Some of what streams say comes to be known while they are read.
+// Some properties of streams become known while they are read.
 void JoinedReader::takeStreams(const State& state) {
   const std::vector<StreamInfo>& streams = state.part.reader->streams();
   for (std::size_t i = 0; i < streams.size(); ++i) streams_[state.first_stream + i] = streams[i];

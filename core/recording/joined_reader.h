@@ -1,4 +1,4 @@
-// Several readers as one recording, for folders that hold files of several formats: pictures, events, an IMU.
+// Several readers as one recording, for folders with files of several formats: pictures, events, an IMU.
 #pragma once
 
 #include "core/recording/recording_reader.h"

@@ -19,7 +19,7 @@ class RecordingReader {
  public:
   virtual ~RecordingReader() = default;
 
-  // Everything the file holds, also what cannot be decoded; known as soon as the file is open.
+  // All streams of the file, also those that cannot be decoded; known as soon as the file is open.
   virtual const std::vector<StreamInfo>& streams() const = 0;
 
   // Selects the streams of read(), by index; all of type Events, Imu and Points if never called. Frames stay

@@ -30,7 +30,8 @@ class RecordingWriter {
   virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
 
-  // The time that is 0 in the file, once something has been written. Other than 0 only for formats that cannot hold the times.
+  // The time that is 0 in the file, once something has been written. Not 0 only for formats that cannot store
+  // the times.
   virtual std::int64_t origin_ns() const { return 0; }
 
   // Names that readers will give to the streams given at creation, in their order: not every format keeps
@@ -85,8 +86,8 @@ struct RecordingFormat {
   const char* description;  // for people
   std::unique_ptr<RecordingWriter> (*create)(const std::filesystem::path& path,
                                              const std::vector<StreamInfo>& streams);
-  bool frames = false;      // also holds frames
-  bool one_camera = false;  // can only hold the events of one camera
+  bool frames = false;      // also has frames
+  bool one_camera = false;  // supports the events of one camera only
   bool isFolder() const { return *extension == '\0'; }
 };
 std::span<const RecordingFormat> recordingFormats();

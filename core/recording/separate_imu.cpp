@@ -46,7 +46,7 @@ class JoinedHalves {
   void addForces(const std::vector<RawImuSample>& samples) {
     for (const RawImuSample& sample : samples) forces_.waiting.push_back(sample);
   }
-  // From a stream that holds both.
+  // Samples of a stream with both sensors.
   void addAlternating(const std::vector<RawImuSample>& samples) {
     for (const RawImuSample& sample : samples) {
       const bool no_rate = lacksRate(sample), no_force = lacksForce(sample);

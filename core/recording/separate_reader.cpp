@@ -225,7 +225,7 @@ std::string answerTo(const std::string& question, RecordingReader& reader) {
   return answer + stateOf(reader);
 }
 
-// Libraries' own messages at a crash are hidden: this program says what they mean.
+// Libraries' own messages at a crash are hidden: this program explains them.
 void beQuiet() {
   const int nothing = ::open("/dev/null", O_WRONLY);
   if (nothing >= 0) ::dup2(nothing, STDERR_FILENO);
@@ -244,8 +244,8 @@ void beQuiet() {
   throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
 }
 
-// Starts the server with the socket at the descriptor that it expects. A fork would inherit locks that other threads hold; a new
-// process does not.
+// Starts the server with the socket at the descriptor that it expects. A fork would inherit locks of other
+// threads; a new process does not.
 pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path, int socket) {
   std::vector<std::string> words = command;
   words.push_back(path.string());
@@ -449,7 +449,7 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
   for (Frame& frame : packet.frames) takeFrame(cursor, frame);
 }
 
-// By the system or a person: that says nothing about the file.
+// Killed by the system or a person, which is not evidence against the file.
 void SeparateReader::throwIfKilled(const End& end) const {
   if (end.kind == End::Kind::Killed)
     throw calibrationFailed(path_.string(), "the process that reads it was killed",

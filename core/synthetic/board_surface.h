@@ -17,7 +17,7 @@ class BoardSurface {
 
   bool isBent() const { return bent_; }
 
-  // Behind the plane that touches it at its origin, and how steeply it leaves it.
+  // Distance behind the plane that touches it at its origin, and the slope relative to it.
   double behind_m(const Eigen::Vector2d& p) const { return 0.5 * p.dot(curvature_1_m_ * p); }
   Eigen::Vector2d slope(const Eigen::Vector2d& p) const { return curvature_1_m_ * p; }
   const Eigen::Matrix2d& curvature_1_m() const { return curvature_1_m_; }

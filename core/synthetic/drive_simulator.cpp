@@ -48,7 +48,7 @@ Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eige
                                        (state.acceleration_in_world_m_s2 - gravity_m_s2))};
 }
 
-// spoilSamples knows scenarios of cameras.
+// spoilSamples takes scenarios of cameras.
 void spoil(const DriveScenario& drive, std::size_t imu, std::vector<ImuSample>& samples) {
   Scenario scenario;
   scenario.seed = drive.seed;

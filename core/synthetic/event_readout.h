@@ -14,8 +14,8 @@ class EventReadout {
  public:
   explicit EventReadout(const EventPixelModel& pixel);
 
-  // Events in time order, packet after packet: stamps become those of their turns, and those are left out that
-  // would have to wait too long.
+  // Events in time order, packet after packet: stamps become those of their turns, and events that would have
+  // to wait too long are dropped.
   void pass(std::vector<Event>& events);
 
  private:

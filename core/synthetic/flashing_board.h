@@ -18,7 +18,7 @@ class FlashingBoard {
     planes_ = light_.at(world_from_camera_at_end);
   }
 
-  // Reflectances at a stretch's begin and end, between which they are taken as linear.
+  // Reflectances at a stretch's begin and end, assumed linear in between.
   struct Stretch {
     SceneLight::Light begin, end;
     // At this part of the stretch.

@@ -31,7 +31,7 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
       lamp_is_weak_(4.0 * scenario.scene.lamp_flicker < std::min(model_.threshold_on, model_.threshold_off)),
       pixels_(static_cast<std::size_t>(scenario.cameras[camera].intrinsics.resolution_px.pixelCount())),
       settled_(static_cast<std::size_t>(renderer_.tileColumns() * renderer_.tileRows()), kMoving) {
-  // Log intensity is taken as linear within a step, which must be short against the blur.
+  // Log intensity is assumed linear within a step, which must be short compared with the blur.
   constexpr float kLongest_px = 0.3f, kShareOfBlur = 0.5f;
   step_travel_px_ = std::min(kLongest_px, kShareOfBlur * static_cast<float>(model_.blur_px));
   constexpr std::uint64_t kThresholdStream = 0xe0u;

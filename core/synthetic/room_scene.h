@@ -35,7 +35,7 @@ struct RoomScene {
   std::vector<RoomBox> boxes;  // that do not touch each other
 };
 
-// From the scenario's seed. Boxes for which there is no place are left out.
+// Scene from the scenario's seed. Boxes without a free place are omitted.
 RoomScene furnishedRoom(const Scenario& scenario);
 
 // The scenario's key.

@@ -211,7 +211,7 @@ struct RoomModel {
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  // from the board's middle
   int boxes = 10;
   double smallest_box_m = 0.15, largest_box_m = 0.6;  // half sides
-  double free_radius_m = 1.0;                         // around the room's middle no box stands
+  double free_radius_m = 1.0;                         // no box within it around the room's middle
   double texel_m = 0.003;                             // of the picture, whose finest structure is twice that
   double tone = 0.4;                                  // sigma of the sides' own log reflectance
   bool isThere() const { return size_m.minCoeff() > 0.0; }
@@ -241,7 +241,7 @@ struct Scenario {
   double duration_s = 30.0;
   std::int64_t start_ns = 1'700'000'000'000'000'000;
   Board board;
-  double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` says
+  double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` states
   SimulatedBow board_bow = {};
   std::vector<SimulatedBoard> further_boards = {};
   SceneModel scene;

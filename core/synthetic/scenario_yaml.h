@@ -20,8 +20,8 @@ std::string truthYaml(const Scenario& scenario);
 // Folder of frame cameras' pictures, next to the recording: with one folder for each, named by its stream.
 inline constexpr const char* kFramesFolder = "frames";
 
-// A session for the recording `recording_file` in the same folder.
-// `imu_file`: the file of the IMUs; empty if the recording holds them.
+// A session for the recording `recording_file` in the same folder. `imu_file`: the file of the IMUs; empty if
+// the recording includes them.
 std::string sessionYaml(const Scenario& scenario, const std::string& recording_file,
                         const std::string& imu_file = {});
 

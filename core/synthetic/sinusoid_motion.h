@@ -50,7 +50,7 @@ class SinusoidMotion {
 
   Scenario scenario_;
   Eigen::Vector3d board_middle_m_;
-  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_, unstopped_;  // those that stops hold up, and not
+  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_, unstopped_;  // delayed by stops, and not
   std::array<std::vector<Jerk>, kQuantities> jerks_;
   RigidTransform camera_from_imu_;  // first camera
 };

@@ -22,11 +22,11 @@ namespace {
 using aedat::AddressLayout;
 
 constexpr std::size_t kLargestAedat2Header_bytes = std::size_t{1} << 24;
-constexpr std::size_t kLooked_bytes = std::size_t{1} << 23;  // for what the header does not say
+constexpr std::size_t kLooked_bytes = std::size_t{1} << 23;  // if the header does not state it
 constexpr Resolution kDavisSizes[] = {{240, 180}, {346, 260}, {640, 480}};
 
 struct Header {
-  std::string chip;  // "Davis346blue"; empty if not said
+  std::string chip;  // "Davis346blue"; empty if unknown
   std::uint64_t size = 0;
 };
 
@@ -107,7 +107,7 @@ Look lookAt(std::string_view bytes) {
   return look;
 }
 
-// The smallest that holds all events looked at.
+// The smallest that covers all events so far.
 Resolution smallestDavis(const Resolution& reach_px) {
   for (const Resolution& size_px : kDavisSizes)
     if (reach_px.width_px <= size_px.width_px && reach_px.height_px <= size_px.height_px) return size_px;

@@ -1,6 +1,6 @@
 // AEDAT 2.0, as jAER records it: events of a DVS128 or a DAVIS, and a DAVIS's IMU samples. Its frames, which
-// stand pixel by pixel between the events, are left out.
-// Source: iniVation's "AEDAT file formats", jAER (DavisChip, IMUSample, DVS128).
+// are stored pixel by pixel between the events, are skipped. Source: iniVation's "AEDAT file formats", jAER
+// (DavisChip, IMUSample, DVS128).
 #pragma once
 
 #include "core/recording/recording_reader.h"

@@ -30,11 +30,11 @@ struct PacketHeader {
 // Nothing where the numbers contradict one another.
 std::optional<PacketHeader> decodeHeader(std::string_view bytes);
 
-// All append, from the packet's bytes behind its header; false if there are times that are none, or pictures
-// larger than their place: then at least these are left out.
+// All append, from the packet's bytes after its header; false if there are invalid times, or pictures larger
+// than their place: these are skipped.
 bool decodePolarity(const PacketHeader& header, std::string_view bytes, std::vector<Event>& events);
 bool decodeImu(const PacketHeader& header, std::string_view bytes, std::vector<RawImuSample>& samples);
-// `unusable` is the end of a sentence on frames that are whole and left out; empty otherwise.
+// `unusable` is the end of a sentence on frames that are intact and skipped; empty otherwise.
 bool decodeFrames(const PacketHeader& header, std::string_view bytes, std::vector<Frame>& frames,
                   std::string& unusable);
 

@@ -200,7 +200,7 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
   constexpr std::uint64_t kBlock_bytes = 1 << 20;
   constexpr std::uint64_t kOverlap_bytes = 20;
   const bool packed = compression_ != aedat::Compression::None;
-  // Before the magic number stands the packet's header; before a type also its size and root offset.
+  // The packet's header precedes the magic number; a type is also preceded by its size and root offset.
   const std::size_t lead = aedat::kPacketHeader_bytes + (packed ? 0 : 8);
   std::vector<std::string_view> marks{aedat::frameMagic(compression_)};
   if (!packed) marks = {"EVTS", "IMUS", "FRME", "TRIG"};
@@ -328,7 +328,7 @@ bool Aedat4Reader::handOutRest(Packet& packet) {
   return true;
 }
 
-// The file may not say how many there are.
+// The file may not state their number.
 void Aedat4Reader::countListed(std::size_t stream, std::string_view content) {
   StreamState& state = states_[stream];
   state.elements += aedat::countTriggers(content).value_or(0);

@@ -30,7 +30,7 @@ class FlatBuffer {
   const char* data() const { return bytes_.data(); }  // where positions are counted from
 
   FlatTable root() { return tableAt(0); }
-  FlatTable tableAt(std::size_t position);  // where the offset to the table stands
+  FlatTable tableAt(std::size_t position);  // place of the offset to the table
 
   // Place of a field of `size` bytes; 0 if it is absent.
   std::size_t field(const FlatTable& table, std::size_t index, std::size_t size);

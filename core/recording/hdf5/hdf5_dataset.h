@@ -42,8 +42,8 @@ class DatasetRows {
 
   std::uint64_t rows() const { return rows_; }
 
-  // Bytes of the rows from `row` to the end of its block; none if the block cannot be
-  // read: then problem() says why.
+  // Bytes of the rows from `row` to the end of its block; none if the block cannot be read: then problem()
+  // has the reason.
   std::span<const std::byte> from(std::uint64_t row);
   std::uint64_t blockEnd(std::uint64_t row) const;
   std::size_t rowBytes() const { return row_bytes_; }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kTablePacketRows = 32'768;
 constexpr std::int64_t kEarliestNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
 constexpr double kSecondsSpan_s = 1e6;                                  // no recording is 12 days long
-constexpr std::size_t kHeadRows = 2000;                                 // that tell columns apart
+constexpr std::size_t kHeadRows = 2000;                                 // that distinguish columns
 constexpr std::uint16_t kOutside_px = 65'535;
 
 std::uint16_t pixel(std::int32_t value) {

@@ -68,7 +68,7 @@ void FrameTable::checkLayout(const std::string& place) {
   chunk_bytes_ = static_cast<std::size_t>(bytes);
 }
 
-// The library takes a chunk that says it is not packed for whole, however short it is.
+// The library accepts any chunk that is marked as not packed, however short it is.
 bool FrameTable::chunksAreWhole(std::uint64_t row) const {
   const std::array<hsize_t, 4> extent{1, static_cast<hsize_t>(size_px_.height_px),
                                       static_cast<hsize_t>(size_px_.width_px), channels_};

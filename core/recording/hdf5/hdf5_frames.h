@@ -21,7 +21,7 @@ class FrameTable {
   Resolution size_px() const { return size_px_; }
   const TimeScale& timeScale() const { return time_; }
 
-  // False if the row cannot be read: then takeProblem() says why.
+  // False if the row cannot be read: then takeProblem() has the reason.
   bool load(std::uint64_t row, Frame& frame);
   std::string takeProblem() { return std::exchange(problem_, {}); }
 

@@ -106,7 +106,7 @@ class ImuText : public ImuTable {
     return first.empty() || first.front() == '#' || (lines_.number() == 1 && is_name);
   }
 
-  // Numbers apart by blanks or commas. What a disk lost stands as zeros at a line's end.
+  // Numbers separated by blanks or commas. Lost data of a disk are zeros at a line's end.
   static bool parse(std::string_view line, RawImuSample& sample) {
     if (line.find('\0') != std::string_view::npos) return false;
     std::array<double, 7> values{};

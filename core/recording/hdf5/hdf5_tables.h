@@ -1,4 +1,4 @@
-// Events and IMU samples out of the datasets that hold them, in whichever of the known arrangements.
+// Events and IMU samples of datasets in any of the known layouts.
 #pragma once
 
 #include "core/data/event.h"
@@ -15,7 +15,7 @@
 
 namespace evical::hdf5 {
 
-// From the numbers in a file to ns: whole numbers are us (ns if they are too large for that), others seconds
+// Scale of a file's numbers to ns: whole numbers are us (ns if they are too large for that), others seconds
 // (us if that would be days).
 struct TimeScale {
   double factor_ns = 1e9;       // of real numbers
@@ -31,8 +31,8 @@ class EventTable {
   virtual ~EventTable() = default;
   virtual std::uint64_t rows() const = 0;
 
-  // Appends the events from `row` on, some 10k of them, and returns the row to go on with; what cannot be
-  // read is left out, and then problem() says why.
+  // Appends the events from `row` on, some 10k of them, and returns the next row; unreadable ones are
+  // skipped, and then problem() has the reason.
   virtual std::uint64_t load(std::uint64_t row, std::vector<Event>& events) = 0;
 
   const TimeScale& timeScale() const { return time_; }

@@ -72,7 +72,7 @@ class HeaderReader {
     }
   }
 
-  // Appends the fields of a type that stands at `offset`; returns its size.
+  // Appends the fields of a type at `offset`; returns its size.
   std::size_t addType(const Literal& type, const std::string& name, std::size_t offset, int depth) {
     if (depth > kDeepestStructure) fail("the array's type is nested too deeply");
     if (type.kind == Literal::Kind::Text) return addPlain(type.text, name, offset);

@@ -40,8 +40,8 @@ class ColumnBlocks {
  public:
   ColumnBlocks(std::span<const Column> columns, std::uint64_t rows);
 
-  // Replaces the block by the next rows, at most `most`, and returns how many there are; 0 at the end, which may come before
-  // all rows have: problem() says why then.
+  // Replaces the block by the next rows, at most `most`, and returns their number; 0 at the end, which may
+  // come before all rows: then problem() has the reason.
   std::size_t next(std::size_t most);
 
   std::uint64_t rowsRead() const { return read_; }

@@ -128,7 +128,7 @@ bool isArrayFile(const std::filesystem::path& path, std::string_view first_bytes
     return std::any_of(members.begin(), members.end(),
                        [](const ZipMember& member) { return member.name.ends_with(kArrayEnd); });
   } catch (const CalibrationError&) {
-    return false;  // an archive, but of what nobody knows
+    return false;  // an archive of unknown content
   }
 }
 

@@ -1,4 +1,4 @@
-// The arrays that files and folders hold.
+// The arrays in files and folders.
 #pragma once
 
 #include "core/recording/numpy/numpy_columns.h"

@@ -313,7 +313,7 @@ class ArrayLayoutFinder {
         fmt::format("{}{} are no events without {}.", name.empty() ? "" : name + ": ", there, missing));
   }
 
-  // Four columns: their numbers tell what they are.
+  // Four columns, identified by their numbers.
   void addTable(const Array& array) {
     const std::vector<Numbers> numbers = columnsOf(array, 4);
     if (numbers.empty()) return;

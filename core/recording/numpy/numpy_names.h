@@ -14,7 +14,7 @@ enum class Part { None, X, Y, Time, Polarity, Xy, Xyp, TimeOffset, Width, Height
 struct NamedPart {
   Part part = Part::None;
   std::size_t rank = 0;                 // the usual spelling of a part first
-  std::string group;                    // what stands before: "left" of "left_x", "events" of "events/x"
+  std::string group;                    // the part before: "left" of "left_x", "events" of "events/x"
   std::optional<std::int64_t> unit_ns;  // of a time: "t_us"
 };
 

@@ -191,7 +191,7 @@ bool NumpyReader::fill(Source& source, std::vector<Event>& events) {
   return true;
 }
 
-// The file itself, or the next of numbered ones; what is in those is taken as what is in the first.
+// The file itself, or the next of numbered ones; these are read like the first.
 bool NumpyReader::openNext(Source& source) {
   if (files_.empty()) {
     if (source.next_file++ > 0) return false;

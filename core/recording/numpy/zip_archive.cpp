@@ -1,4 +1,5 @@
-// PKWARE's APPNOTE.TXT, 4.3: the end record and, for large files, zip64's before it say where the directory is.
+// PKWARE's APPNOTE.TXT, 4.3: the end record and, for large files, zip64's before it give the directory's
+// place.
 #include "core/recording/numpy/zip_archive.h"
 
 #include "core/base/error.h"
@@ -70,7 +71,7 @@ class ArchiveReader {
     return directory;
   }
 
-  // A comment may be behind it, which may hold anything.
+  // A comment with any content may follow it.
   static std::size_t findEnd(std::string_view bytes) {
     std::size_t last = std::string_view::npos;
     for (std::size_t at = bytes.rfind(kEndMagic); at != std::string_view::npos;
@@ -162,7 +163,7 @@ class ArchiveReader {
 
   std::filesystem::path path_;
   RandomAccessFile file_;  // of the directory
-  std::ifstream locals_;   // of members' own headers, which stand all over the file
+  std::ifstream locals_;   // of members' own headers, which are all over the file
 };
 
 }  // namespace

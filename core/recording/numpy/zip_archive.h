@@ -13,11 +13,11 @@ namespace evical::numpy {
 struct ZipMember {
   std::string name;
   ByteRange range;
-  bool cut = false;     // the file has fewer bytes than the directory says
+  bool cut = false;     // the file has fewer bytes than the directory states
   std::string problem;  // why it cannot be read; empty if it can
 };
 
-// Throws CalibrationError (BadInput) where the directory, which stands at the end, is missing or damaged.
+// Throws CalibrationError (BadInput) if the directory, which is at the end, is missing or damaged.
 std::vector<ZipMember> zipMembers(const std::filesystem::path& path);
 
 // Name of the first member of a file with this beginning; empty for other files than ZIP archives.

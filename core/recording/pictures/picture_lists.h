@@ -1,5 +1,5 @@
-// Which pictures a folder holds, and when they were taken: EuRoC, Kalibr, DSEC, TUM-VIE, the RPG event camera
-// data set, or pictures without times.
+// Pictures of a folder, and their times: EuRoC, Kalibr, DSEC, TUM-VIE, the RPG event camera data set, or
+// pictures without times.
 #pragma once
 
 #include "core/data/recording_fault.h"

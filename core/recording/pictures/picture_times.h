@@ -20,8 +20,8 @@ struct TimeRow {
 std::vector<TimeRow> readTimes(const std::filesystem::path& table, int unit_digits, bool two_columns,
                                PictureList& list);
 
-// Gives the pictures of the list's folder, in the order of their names, the times of the rows: the middle
-// where there are two. What has no partner is left out and said.
+// Gives the pictures of the list's folder, in the order of their names, the times of the rows: the middle if
+// there are two. Pictures or rows without a partner are skipped and reported.
 void pairWithTimes(const std::vector<TimeRow>& rows, bool two_columns, PictureList& list);
 
 // Gives pictures that have times their exposures, of a table in us.

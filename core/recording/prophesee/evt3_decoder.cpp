@@ -87,7 +87,7 @@ void Evt3Decoder::setTimeHigh(std::uint32_t high) {
   if (!has_high_) has_low_ = false;  // one from before belongs to another high
   has_high_ = true;
   high_ = high;
-  low_ = 0;  // the next word says it
+  low_ = 0;  // the next word gives it
   time_ns_ = 1000 * (wraps_us_ + (std::int64_t{high_} << 12));
 }
 

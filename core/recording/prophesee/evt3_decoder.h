@@ -30,7 +30,7 @@ class Evt3Decoder {
   // without its wraps each 16.777 s; they start anywhere in 0..16.777 s.
   void decode(std::string_view words, std::vector<Event>& events);
 
-  // Words were lost: what follows has no position until it states one. The time goes on.
+  // Words were lost: events have no position until a word states one. The time continues.
   void forgetPosition();
 
   const Evt3Counts& counts() const { return counts_; }

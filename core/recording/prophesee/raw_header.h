@@ -24,8 +24,8 @@ struct FileHeader {
 
 inline constexpr std::size_t kLargestHeader_bytes = 65536;
 
-// `start` holds the file's first bytes, as many as there are or kLargestHeader_bytes. Throws CalibrationError
-// (BadInput) with the byte where a header is cut, or an encoding that is not known.
+// `start` has the file's first bytes, as many as there are or kLargestHeader_bytes. Throws CalibrationError
+// (BadInput) with the byte if a header is cut, or an encoding is unknown.
 FileHeader parseHeader(const std::filesystem::path& path, std::string_view start);
 
 // A DAT file without any text: its two bytes, then events whose times do not decrease.

@@ -144,7 +144,7 @@ bool looksExchanged(std::string_view data) {
   };
   for (std::size_t i = 0; i < data.size() / sizeof(std::uint64_t); ++i) {
     const auto word = packedWordAt<std::uint64_t>(data, i);
-    // Masks of single events make 0 of the kind of a plain word often: times tell.
+    // Masks of single events often make 0 of the kind of a plain word: times decide.
     plain += isKnown(word) && word >> 60 == kTimeHigh;
     exchanged += isKnown(std::rotl(word, 32)) && std::rotl(word, 32) >> 60 == kTimeHigh;
   }

@@ -1,5 +1,5 @@
-// Decoders of what RAW and DAT files hold, as blocks of a file. Times are us in the files, ns here; the
-// counter's wraps are counted on.
+// Decoders of RAW and DAT files, as blocks of a file. Times are us in the files, ns here; the counter's wraps
+// are added.
 #pragma once
 
 #include "core/recording/block_decoder.h"

@@ -218,7 +218,7 @@ bool BagSource::listFromIndex(std::uint64_t index_position, std::uint32_t connec
   return state == RecordState::End && topic_of_connection_.size() == connections && found_chunks == chunks;
 }
 
-// Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
+// Only chunks with new connections need to be unpacked: the index data after a chunk list them.
 void BagSource::listByScan() {
   FileRecord record;
   std::uint64_t chunk = 0, chunk_data = 0;
@@ -302,13 +302,13 @@ bool BagSource::chunkIsWanted(std::uint64_t position) const {
                      [this](std::uint32_t id) { return wanted(id); });
 }
 
-// 0 where the index knows none.
+// 0 if the index has none.
 std::uint64_t BagSource::indexedChunkAfter(std::uint64_t position) const {
   const auto found = chunk_connections_.upper_bound(position);
   return found == chunk_connections_.end() ? 0 : found->first;
 }
 
-// From one chunk to the next, as long as the index knows both.
+// From one chunk to the next, as long as the index has both.
 void BagSource::skipUnwantedChunks() {
   while (!chunkIsWanted(position_)) {
     const std::uint64_t following = indexedChunkAfter(position_);

@@ -57,7 +57,7 @@ Unpacked unpackZstdStream(std::string_view data, std::uint64_t largest_bytes, st
     const bool stalled = room.pos == used && input.pos == consumed;
     used = room.pos;
     whole = hint == 0;
-    if (stalled && input.pos < input.size) return damaged(output);  // they hold more than declared
+    if (stalled && input.pos < input.size) return damaged(output);  // more content than declared
     if (stalled) break;
   }
   output.resize(used);
@@ -81,7 +81,7 @@ Unpacked unpackLz4(std::string_view data, std::uint64_t size_bytes, std::string&
     used += room;
     consumed += given;
     const bool stalled = room == 0 && given == 0 && hint != 0;
-    if (stalled && consumed < data.size()) return damaged(output);  // they hold more than declared
+    if (stalled && consumed < data.size()) return damaged(output);  // more content than declared
     if (stalled) break;
   }
   return finished(output, used, size_bytes);

@@ -52,7 +52,7 @@ bool isReadableImage(std::string_view encoding) {
 }
 
 // compressed_image_transport writes "bgr8; jpeg compressed bgr8", compressed_depth_image_transport "16UC1;
-// compressedDepth png", whose pictures stand behind a header of their own.
+// compressedDepth png", whose pictures follow a header of that transport.
 bool isReadablePackedImage(std::string_view format) {
   if (has(format, "compressedDepth")) return false;
   return format.empty() || has(format, "jpeg") || has(format, "jpg") || has(format, "png");

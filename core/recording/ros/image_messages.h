@@ -38,8 +38,8 @@ bool parsePackedImage(std::string_view message, Serialization serialization, Ima
 bool toFrame(const ImageMessage& image, Frame& frame);
 bool toPackedFrame(const ImageMessage& image, Frame& frame);
 
-// Both append a message; false, and nothing, where the frame has no place in one of its kind: packed ones hold JPEG and
-// PNG only. Exposures have no place in either.
+// Both append a message; false, and nothing, if the message cannot represent the frame: packed ones support
+// JPEG and PNG only. Neither has a field for exposures.
 bool encodeImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
                  std::string& message);
 bool encodePackedImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,

@@ -134,7 +134,7 @@ bool McapSource::takeSummaryRecord(const Record& record, mcap::Statistics& stati
   return true;
 }
 
-// Chunks are unpacked only where the indexes behind them don't tell, or name channels not met before.
+// Chunks are unpacked only if the indexes after them are missing, or name new channels.
 void McapSource::listByScan() {
   PendingChunk chunk;
   Record record;
@@ -345,7 +345,7 @@ void McapSource::checkSum(const mcap::ChunkHead& head, const Record& record) {
   }
 }
 
-// A record that cannot be as long as it says, or of no kind.
+// A record with an impossible length, or of no known kind.
 void McapSource::skipDamage(const Record& record) {
   const bool is_chunk = record.is(mcap::Op::Chunk);
   position_ = chunkAfter(record.position);
@@ -366,7 +366,7 @@ std::uint64_t McapSource::chunkAfter(std::uint64_t position) {
   return chunk_channels_.empty() ? scanForChunk(position + 1) : file_.size();
 }
 
-// A packed chunk's name of its compression stands at a fixed place.
+// A packed chunk has the name of its compression at a fixed place.
 std::uint64_t McapSource::scanForChunk(std::uint64_t from) {
   constexpr std::uint64_t kName = mcap::kRecordHead_bytes + 8 + 8 + 8 + 4;  // its length, behind the crc
   constexpr std::uint64_t kBlock_bytes = 1 << 20, kLongestName_bytes = 8;

@@ -40,7 +40,7 @@ class McapSource : public MessageSource {
     bool is(mcap::Op other) const { return op == static_cast<std::uint8_t>(other); }
     std::uint64_t end() const { return content + size; }
   };
-  // A chunk whose channels the indexes behind it may tell.
+  // A chunk whose channels may follow from the indexes after it.
   struct PendingChunk {
     std::uint64_t position = 0;
     std::map<std::uint16_t, std::uint64_t> messages;

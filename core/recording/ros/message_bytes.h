@@ -12,12 +12,12 @@
 
 namespace evical::ros {
 
-// Bytes with their length in front, as records of both kinds of bags hold them.
+// Bytes with their length in front, as in records of both kinds of bags.
 inline std::string sized(std::string_view bytes) {
   return numberBytes(static_cast<std::uint32_t>(bytes.size())).append(bytes);
 }
 
-// Appends to `bytes`. Times must be what a ROS time can hold.
+// Appends to `bytes`. Times must be within the range of a ROS time.
 class MessageBytes {
  public:
   MessageBytes(std::string& bytes, Serialization serialization)

@@ -15,7 +15,7 @@ namespace evical::ros {
 
 enum class Serialization {
   Ros1,  // little endian, no padding
-  Cdr,  // four bytes that tell the byte order, then each number at a multiple of its size, counted from there
+  Cdr,   // four bytes for the byte order, then each number at a multiple of its size, counted from there
 };
 
 class MessageCursor {

@@ -40,7 +40,7 @@ std::uint32_t eventsOfRos1(std::string_view bytes, std::vector<Event>& events) {
   return largest_ns;
 }
 
-// The first event stands at a multiple of 4.
+// The first event is at a multiple of 4.
 std::uint32_t eventsOfCdr(std::string_view bytes, std::vector<Event>& events) {
   const char* const begin = bytes.data();
   std::size_t position = 0;
@@ -114,7 +114,7 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
     for (int i = 0; i < 3; ++i) vector[i] = cursor.number<double>();
   };
   skip(4 + 9);  // orientation and its covariance
-  // By the convention of sensor_msgs, a covariance that begins with -1 says that this was not measured.
+  // By the convention of sensor_msgs, a covariance that begins with -1 means that this was not measured.
   const auto isMeasured = [&] {
     const bool measured = cursor.number<double>() != -1.0;
     skip(8);
@@ -141,7 +141,7 @@ bool parseEventPacket(std::string_view message, Serialization serialization, Eve
   packet.encoding = cursor.text();
   packet.big_endian = cursor.number<std::uint8_t>() != 0;
   packet.events = cursor.sequence();
-  constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;  // far beyond what ROS times hold
+  constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;  // far beyond the range of ROS times
   return cursor.wellEnded() && packet.time_base_ns >= 0 && packet.time_base_ns <= kLatest_ns;
 }
 

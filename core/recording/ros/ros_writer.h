@@ -20,8 +20,8 @@ class RosWriter : public RecordingWriter {
   std::vector<std::string> streamNames() const override;
 
  protected:
-  // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams that hold neither
-  // events, IMU samples nor frames, or events without a resolution.
+  // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams other than
+  // events, IMU samples and frames, or events without a resolution.
   RosWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
             Serialization serialization, std::int64_t seconds_end);
 

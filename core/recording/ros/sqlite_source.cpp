@@ -57,7 +57,7 @@ class SqliteSource::Database {
     if (!ok()) return;
     // A file of unknown origin must not run its code.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
-    // Files that are shorter than they say are refused but in this mode.
+    // Files that are shorter than stated are refused except in this mode.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_WRITABLE_SCHEMA, cut ? 1 : 0, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);

@@ -51,7 +51,7 @@ class SqliteSource : public MessageSource {
   std::vector<SourceTopic> topics_;
   std::vector<bool> wanted_;
   std::map<std::int64_t, std::size_t> topic_of_id_;
-  bool cut_ = false;             // shorter than its header says
+  bool cut_ = false;             // shorter than its header states
   bool by_time_ = true;          // else in the order in which messages were stored
   std::int64_t last_id_ = 0;     // of the messages read, the largest
   std::int64_t from_id_ = 0;     // where the query began

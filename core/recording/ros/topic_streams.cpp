@@ -151,8 +151,8 @@ void TopicStreams::finishLooking() {
   listed_ = true;
 }
 
-// Streams of their own, behind all topics: as of RAW files of every topic that may hold some, since they come whenever a pin
-// is pulsed, perhaps only at the end.
+// Separate streams, after all topics: like RAW files, for every topic that may have some, since they come
+// whenever a pin is pulsed, perhaps only at the end.
 void TopicStreams::listTriggers() {
   for (std::size_t i = 0, topics = streams_.size(); i < topics; ++i) {
     if (encodingOf(states_[i].encoding) != Encoding::Evt3 || streams_[i].type != StreamType::Events) continue;

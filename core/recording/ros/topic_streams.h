@@ -37,8 +37,8 @@ class TopicStreams {
   void select(const std::string& path, const std::vector<std::size_t>& streams);
   bool selected(std::size_t stream) const { return stream != kNone && states_[stream].selected; }
 
-  // Replaces the packet by what the message holds, sorted; false if that is nothing. `place` is for people:
-  // where in the file the message is.
+  // Replaces the packet by the message's content, sorted; false if that is nothing. `place` is for messages:
+  // the place of the message in the file.
   bool decode(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
               const std::string& place, Packet& packet);
   // Rest of a message in which time ran far back; call before the next message.

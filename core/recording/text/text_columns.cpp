@@ -66,7 +66,7 @@ TextStyle styleOf(std::string_view line) {
   return all && std::any_of(cells.begin(), cells.end(), hasDecimalComma) ? comma : style;
 }
 
-// The first lines of a table: rows of numbers, and what stands above them.
+// The first lines of a table: rows of numbers, and the lines above them.
 class TableHead {
  public:
   // `line` has its number in the file. False if the text is not a table.

@@ -177,7 +177,7 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Ra
   }
 }
 
-// A packet holds the points of one time.
+// A packet has the points of one time.
 void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points) {
   if (source.next_point) points.push_back(*source.next_point);
   source.next_point.reset();
