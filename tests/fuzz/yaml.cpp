@@ -1,6 +1,7 @@
-// The readers of YAML files, all with the same bytes: sessions, intrinsics,
-// results, scenarios with their boards.
+// Readers of text files, all with the same bytes: sessions, intrinsics, other programs' lenses, results, scenarios with their
+// boards.
 #include "core/base/error.h"
+#include "core/foreign/lens_files.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
@@ -28,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     evical::sessionYaml(session, path.parent_path());
   });
   mayFail([&] { evical::readIntrinsicsFile(path, "left", "events"); });
+  mayFail([&] { evical::readLensFile(path); });
   mayFail([&] { evical::readResultYaml(path); });
   mayFail([&] {
     const evical::Scenario scenario = evical::readScenario(path);

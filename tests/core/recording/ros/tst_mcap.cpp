@@ -260,7 +260,7 @@ void TestMcap::corruptChunk_losesNoOther() {
 void TestMcap::lyingSizes_takeNoMemory() {
   for (const std::string_view name : {"lz4", "zstd"}) {
     std::string bytes = fileBytes(write(name == "lz4" ? McapCompression::Lz4 : McapCompression::Zstd,
-                                          someEvents(1000), someSamples(10)));
+                                        someEvents(1000), someSamples(10)));
     const std::size_t compression = bytes.find(name);
     bytes[compression - 4 - 4 - 1] = 0x10;  // the highest byte of the uncompressed size
     const Contents contents = readAll(folder_.write("lie.mcap", bytes));
