@@ -38,14 +38,14 @@ constexpr std::tuple kDetectionFields{
     Field{"history_s", &DetectionOptions::history_s, 2.0, within(0.0, 30.0), "s",
           "How far back a found board is tracked backwards in time."},
     Field{"least_window_bursts", &DetectionOptions::least_window_bursts, 60, within(1, 100000), "",
-          "A window with fewer edge bursts is not looked at."}};
+          "A window with fewer edge bursts is not looked at."},
+    Field{"smallest_radius_px", &DetectionOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
+          "Smallest circle looked for.", Level::Common},
+    Field{"largest_radius_px", &DetectionOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
+          "Largest circle looked for.", Level::Common}};
 constexpr auto kDetectionDefaults = defaultsOf<DetectionOptions, kDetectionFields>();
 
 constexpr std::tuple kRingVoteFields{
-    Field{"smallest_radius_px", &RingVoteOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
-          "Smallest circle looked for.", Level::Common},
-    Field{"largest_radius_px", &RingVoteOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
-          "Largest circle looked for.", Level::Common},
     Field{"radius_step", &RingVoteOptions::radius_step, 1.12, within(1.02, 1.5), "",
           "Ratio of neighbouring radii."},
     Field{"ring_half_width_px", &RingVoteOptions::ring_half_width_px, 0.75, within(0.3, 3.0), "px",
@@ -179,15 +179,15 @@ DetectionOptions::DetectionOptions() : DetectionOptions(kDetectionDefaults) {}
 const OptionTable<DetectionOptions>& DetectionOptions::table() {
   static const OptionTable<DetectionOptions> table(
       kDetectionFields, Ordered{&DetectionOptions::shortest_window_s, &DetectionOptions::longest_window_s},
-      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::longest_search_interval_s});
+      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::longest_search_interval_s},
+      Ordered{&DetectionOptions::smallest_radius_px, &DetectionOptions::largest_radius_px});
   return table;
 }
 
 RingVoteOptions::RingVoteOptions() : RingVoteOptions(kRingVoteDefaults) {}
 
 const OptionTable<RingVoteOptions>& RingVoteOptions::table() {
-  static const OptionTable<RingVoteOptions> table(
-      kRingVoteFields, Ordered{&RingVoteOptions::smallest_radius_px, &RingVoteOptions::largest_radius_px});
+  static const OptionTable<RingVoteOptions> table(kRingVoteFields);
   return table;
 }
 

@@ -20,10 +20,6 @@ constexpr std::tuple kNormalFlowFields{
           "Pixels that a cluster must have."},
     Field{"largest_pair_angle_deg", &NormalFlowOptions::largest_pair_angle_deg, 30.0, within(1.0, 90.0),
           "deg", "Between the directions of two arcs of a circle, and the line that joins them."},
-    Field{"smallest_radius_px", &NormalFlowOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
-          "Smallest circle looked for.", Level::Common},
-    Field{"largest_radius_px", &NormalFlowOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
-          "Largest circle looked for.", Level::Common},
     Field{"window_travel_px", &NormalFlowOptions::window_travel_px, 3.5, within(0.5, 20.0), "px",
           "Edges should travel about this far in a searched window."}};
 constexpr auto kNormalFlowDefaults = defaultsOf<NormalFlowOptions, kNormalFlowFields>();
@@ -33,9 +29,7 @@ constexpr auto kNormalFlowDefaults = defaultsOf<NormalFlowOptions, kNormalFlowFi
 NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kNormalFlowDefaults) {}
 
 const OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
-  static const OptionTable<NormalFlowOptions> table(
-      kNormalFlowFields,
-      Ordered{&NormalFlowOptions::smallest_radius_px, &NormalFlowOptions::largest_radius_px});
+  static const OptionTable<NormalFlowOptions> table(kNormalFlowFields);
   return table;
 }
 

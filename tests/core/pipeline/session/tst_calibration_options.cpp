@@ -102,8 +102,7 @@ class TestCalibrationOptions : public QObject {
     add("detection.shortest_window_s", "0.1", "detection.longest_window_s", "0.005");
     add("detection.search_interval_s", "2", "detection.longest_search_interval_s", "1");
     add("bursts.shortest_gap_s", "0.1", "bursts.longest_gap_s", "0.05");
-    add("ring_vote.smallest_radius_px", "90", "ring_vote.largest_radius_px", "80");
-    add("normal_flow.smallest_radius_px", "90", "normal_flow.largest_radius_px", "80");
+    add("detection.smallest_radius_px", "90", "detection.largest_radius_px", "80");
     add("moving_circle.last_gate_px", "3", "moving_circle.first_gate_px", "2");
     add("grid.shortest_step_radii", "6", "grid.longest_step_radii", "5");
     add("tracking.last_gate_px", "3.5", "tracking.first_gate_px", "3");
