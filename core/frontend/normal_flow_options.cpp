@@ -13,7 +13,7 @@ constexpr std::tuple kNormalFlowFields{
     Field{"least_plane_inliers", &NormalFlowOptions::least_plane_inliers, 0.5, within(0.2, 1.0), "",
           "Part of the neighbourhood that must lie on the plane."},
     Field{"fastest_px_s", &NormalFlowOptions::fastest_px_s, 4000.0, within(10.0, 1e6), "px/s",
-          "Faster edges are noise.", Level::Common},
+          "Faster edges are noise."},
     Field{"dilation_px", &NormalFlowOptions::dilation_px, 1, within(0, 5), "px",
           "Flow within twice this and one more pixel belongs to one cluster."},
     Field{"least_cluster_px", &NormalFlowOptions::least_cluster_px, 10, within(3, 10000), "px",
