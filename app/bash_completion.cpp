@@ -67,7 +67,7 @@ std::string caseOf(const CLI::App& command) {
 
 std::string settings() {
   std::string text = "  local settings=\"";
-  for (const OptionRow& row : optionRows()) text += fmt::format("\n    {}=", row.name);
+  for (const OptionRow& row : documentedOptions()) text += fmt::format("\n    {}=", row.name);
   return text + "\"\n";
 }
 

@@ -75,6 +75,10 @@ Argument& Argument::excludes(const Argument& other) {
   return *this;
 }
 
+void Argument::hide() {
+  option_->group("");
+}
+
 bool Argument::isGiven() const {
   return option_->count() > 0;
 }

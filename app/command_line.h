@@ -39,6 +39,7 @@ class Argument {
   Argument& defaultText(const std::string& text);
   Argument& needs(const Argument& other);
   Argument& excludes(const Argument& other);
+  void hide();  // from help
   bool isGiven() const;
 
  private:

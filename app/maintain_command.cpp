@@ -60,10 +60,9 @@ MaintainInput inputFrom(const MaintainArguments& arguments) {
   for (const std::string& setting : arguments.settings) {
     const auto [name, value] = splitAtEquals("--set", setting);
     setOption(options, name, value);
-    if (!name.starts_with("maintain."))
-      throw badInput("--set " + name,
-                     "has no effect here: `evical maintain` takes the options of the group maintain",
-                     "Remove it; `evical options maintain` lists those that it takes");
+    if (!nameInTables(name).starts_with("maintain."))
+      throw badInput("--set " + name, "has no effect here: only options of the group maintain have",
+                     "Remove it; `evical options --all` lists those that it takes");
   }
   validate(options);
   const std::vector<std::filesystem::path> logs(arguments.logs.begin(), arguments.logs.end());

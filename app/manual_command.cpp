@@ -55,10 +55,10 @@ std::string synopsisOf(const std::string& program, const CLI::App& app) {
   return text + " [OPTIONS]" + arguments;
 }
 
-// Every option of a calibration, as `evical options --all` has them.
+// The options of a calibration, as `evical options --all` has them.
 ManualSection calibrationOptions() {
   ManualSection section{"Options of a calibration", "For --set and for the part options of a session.", {}};
-  for (const OptionRow& row : optionRows()) {
+  for (const OptionRow& row : documentedOptions()) {
     const std::string range =
         row.choices.empty() ? "" : fmt::format(" One of {}.", fmt::join(row.choices, ", "));
     section.entries.push_back({row.name, row.default_value, sentence(row.help) + range});

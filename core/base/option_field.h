@@ -3,7 +3,7 @@
 //
 //   constexpr std::tuple kFields{
 //       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, within(1, 5), "px", "Half width."},
-//       Switch{"quick", &NormalFlowOptions::quick, false, "Fits fewer planes.", Level::Common}};
+//       Switch{"quick", &NormalFlowOptions::quick, false, "Fits fewer planes.", Level::Public}};
 //   constexpr auto kDefaults = defaultsOf<NormalFlowOptions>(kFields);  // a missing row does not compile
 //   NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kDefaults) {}
 //   const OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
@@ -12,6 +12,7 @@
 //   }
 #pragma once
 
+#include "core/base/option_row.h"
 #include "core/base/option_struct.h"
 
 #include <array>
@@ -20,9 +21,6 @@
 #include <type_traits>
 
 namespace evical {
-
-// Common options are what people turn, and are shown first; the others are for those who know the method.
-enum class Level { Expert, Common };
 
 template <class Value>
 struct Range {
@@ -41,11 +39,12 @@ struct Field {
   Range<Value> range;
   const char* unit;
   const char* help;
-  Level level = Level::Expert;
+  Level level = Level::Tuning;
+  Applies applies = Applies::Always;
 };
 template <class Options, class Value>
 Field(const char*, Value Options::*, std::type_identity_t<Value>, Range<std::type_identity_t<Value>>,
-      const char*, const char*, Level = Level::Expert) -> Field<Options, Value>;
+      const char*, const char*, Level = Level::Tuning, Applies = Applies::Always) -> Field<Options, Value>;
 
 // On or off.
 template <class Options>
@@ -54,10 +53,12 @@ struct Switch {
   bool Options::*member;
   bool initial;
   const char* help;
-  Level level = Level::Expert;
+  Level level = Level::Tuning;
+  Applies applies = Applies::Always;
 };
 template <class Options>
-Switch(const char*, bool Options::*, bool, const char*, Level = Level::Expert) -> Switch<Options>;
+Switch(const char*, bool Options::*, bool, const char*, Level = Level::Tuning, Applies = Applies::Always)
+    -> Switch<Options>;
 
 // One of a few words; enumerator i is written as choices[i].
 template <class Options, class Enum, std::size_t Count>
@@ -67,11 +68,12 @@ struct Choice {
   Enum initial;
   std::array<const char*, Count> choices;
   const char* help;
-  Level level = Level::Expert;
+  Level level = Level::Tuning;
+  Applies applies = Applies::Always;
 };
 template <class Options, class Enum, std::size_t Count>
 Choice(const char*, Enum Options::*, std::type_identity_t<Enum>, std::array<const char*, Count>, const char*,
-       Level = Level::Expert) -> Choice<Options, Enum, Count>;
+       Level = Level::Tuning, Applies = Applies::Always) -> Choice<Options, Enum, Count>;
 
 // A relation between two options: the one is never above the other.
 template <class Options, class Value>

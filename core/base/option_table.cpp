@@ -55,6 +55,11 @@ void checkRange(const std::string& name, Number value, Number minimum, Number ma
 
 }  // namespace
 
+std::string fullName(const OptionRow& row, const std::string& group) {
+  if (group.empty()) return row.name;
+  return fmt::format("{}{}.{}", row.level == Level::Tuning ? kTuning : "", group, row.name);
+}
+
 std::string numberText(double value) {
   return fmt::format("{}", value);
 }

@@ -21,6 +21,7 @@ namespace evical {
 
 namespace detail {
 
+std::string fullName(const OptionRow& row, const std::string& group);
 std::string numberText(double value);
 std::string numberText(std::int64_t value);
 
@@ -94,9 +95,11 @@ class OptionTable {
   template <class Fields, class... Values>
   explicit OptionTable(const Fields& fields, const Ordered<Options, Values>&... orders);
 
-  bool has(std::string_view name) const;
+  // Without group and "tuning."; null: there is no such option.
+  const OptionRow* find(std::string_view name) const;
 
-  // `group` precedes names here and in messages ("grid" gives "grid.least_sine"); empty for none.
+  // `group` precedes names here and in messages ("grid" gives "grid.least_circles"), and "tuning." those of tuning;
+  // empty for none.
   std::vector<OptionRow> rows(const Options& options, const std::string& group) const;
 
   // Throws CalibrationError (BadInput) that names the option, and what is wrong or the nearest known name. A
@@ -141,7 +144,8 @@ void OptionTable<Options>::add(const FieldOfTable& field) {
   entry.row.name = field.name;
   entry.row.default_value = detail::textOf(field, field.initial);
   entry.row.help = field.help;
-  entry.row.expert = field.level == Level::Expert;
+  entry.row.level = field.level;
+  if (field.applies != Applies::Always) entry.row.applies = {field.applies};
   detail::describe(field, entry.row);
   entry.text = [field](const Options& options) { return detail::textOf(field, options.*field.member); };
   entry.set = [field](Options& options, const std::string& full_name, std::string_view text) {
@@ -169,10 +173,10 @@ void OptionTable<Options>::addOrder(const Fields& fields, const Ordered<Options,
 }
 
 template <class Options>
-bool OptionTable<Options>::has(std::string_view name) const {
+const OptionRow* OptionTable<Options>::find(std::string_view name) const {
   for (const Entry& entry : entries_)
-    if (entry.row.name == name) return true;
-  return false;
+    if (entry.row.name == name) return &entry.row;
+  return nullptr;
 }
 
 template <class Options>
@@ -180,7 +184,7 @@ OptionRow OptionTable<Options>::rowOf(const Entry& entry, const Options& options
                                       const std::string& group) const {
   OptionRow row = entry.row;
   row.value = entry.text(options);
-  if (!group.empty()) row.name = group + "." + row.name;
+  row.name = detail::fullName(row, group);
   return row;
 }
 
@@ -195,13 +199,12 @@ std::vector<OptionRow> OptionTable<Options>::rows(const Options& options, const 
 template <class Options>
 void OptionTable<Options>::set(Options& options, const std::string& group, std::string_view name,
                                std::string_view text) const {
-  const std::string full_name = group.empty() ? std::string(name) : group + "." + std::string(name);
   std::vector<std::string> names;
   for (const Entry& entry : entries_) {
-    if (entry.row.name == name) return entry.set(options, full_name, text);
+    if (entry.row.name == name) return entry.set(options, detail::fullName(entry.row, group), text);
     names.push_back(entry.row.name);
   }
-  throw badInput(full_name, "no such option", nameAdvice(name, names));
+  throw badInput(group + "." + std::string(name), "no such option", nameAdvice(name, names));
 }
 
 template <class Options>

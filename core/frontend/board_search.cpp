@@ -28,8 +28,8 @@ CandidateSource otherThan(CandidateSource source) {
 
 std::vector<CircleCandidate> findCandidates(const BurstWindow& window, CandidateSource source,
                                             const FrontEndOptions& options) {
-  if (source == CandidateSource::NormalFlow) return pairArcs(window, options.normal_flow);
-  return voteForCircles(window, options.ring_vote);
+  if (source == CandidateSource::NormalFlow) return pairArcs(window, options);
+  return voteForCircles(window, options);
 }
 
 // A fitted placement: how many circles it explains, and how many of those in view it does not.
@@ -172,7 +172,7 @@ FlowAround flowAround(const BurstHistory& history, std::int64_t middle_ns,
                       const FrontEndOptions& options) {
   Searcher searcher(history, middle_ns, scene, options);
   const double half_s = half_window_s.value_or(searcher.halfWindow_s(1.0, CandidateSource::NormalFlow));
-  return {half_s, findArcs(searcher.windowOf(half_s), options.normal_flow)};
+  return {half_s, findArcs(searcher.windowOf(half_s), options)};
 }
 
 }  // namespace evical

@@ -91,7 +91,7 @@ std::optional<CircleCandidate> fitCircle(const std::vector<const NormalFlow*>& f
 }
 
 std::optional<CircleCandidate> circleOf(const EventCluster& leading, const EventCluster& trailing,
-                                        const NormalFlowField& field, const NormalFlowOptions& options) {
+                                        const NormalFlowField& field, const FrontEndOptions& options) {
   std::vector<const NormalFlow*> flows;
   for (const EventCluster* cluster : {&leading, &trailing}) {
     for (const std::uint32_t i : cluster->flows) flows.push_back(&field[i]);
@@ -101,8 +101,8 @@ std::optional<CircleCandidate> circleOf(const EventCluster& leading, const Event
   if (!(velocity.norm() > 1e-6)) return std::nullopt;
   const Eigen::Vector2d middle = 0.5 * (leading.centroid_px + trailing.centroid_px);
   std::optional<CircleCandidate> circle = fitCircle(flows, middle, velocity);
-  if (!circle || circle->radius_px < options.smallest_radius_px ||
-      circle->radius_px > options.largest_radius_px)
+  if (!circle || circle->radius_px < options.detection.smallest_radius_px ||
+      circle->radius_px > options.detection.largest_radius_px)
     return std::nullopt;
   return circle;
 }
@@ -119,11 +119,11 @@ struct Partner {
   }
 };
 
-bool moveAlike(const EventCluster& leading, const EventCluster& trailing, const NormalFlowOptions& options) {
-  const double cosine = std::cos(options.largest_pair_angle_deg * kRadPerDeg);
+bool moveAlike(const EventCluster& leading, const EventCluster& trailing, const FrontEndOptions& options) {
+  const double cosine = std::cos(options.normal_flow.largest_pair_angle_deg * kRadPerDeg);
   const Eigen::Vector2d line = leading.centroid_px - trailing.centroid_px;
   const double length = line.norm();
-  return length > 0.0 && length <= 2.0 * options.largest_radius_px &&
+  return length > 0.0 && length <= 2.0 * options.detection.largest_radius_px &&
          leading.direction.dot(trailing.direction) >= cosine &&
          leading.direction.dot(line) >= cosine * length && trailing.direction.dot(line) >= cosine * length;
 }
@@ -131,7 +131,7 @@ bool moveAlike(const EventCluster& leading, const EventCluster& trailing, const 
 }  // namespace
 
 std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, const NormalFlowField& field,
-                                  const NormalFlowOptions& options) {
+                                  const FrontEndOptions& options) {
   constexpr int kRounds = 3;
   std::vector<ArcPair> pairs;
   std::vector<bool> paired(clusters.size(), false);
@@ -159,15 +159,16 @@ std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, con
   return pairs;
 }
 
-NormalFlowStages findArcs(const BurstWindow& window, const NormalFlowOptions& options) {
+NormalFlowStages findArcs(const BurstWindow& window, const FrontEndOptions& options) {
   NormalFlowStages stages;
-  stages.flow = estimateNormalFlow(ActiveEventSurface(window, options.plane_radius_px), options);
-  stages.clusters = clusterFlow(stages.flow, window.resolution_px(), options);
+  stages.flow = estimateNormalFlow(ActiveEventSurface(window, options.normal_flow.plane_radius_px),
+                                   options.normal_flow);
+  stages.clusters = clusterFlow(stages.flow, window.resolution_px(), options.normal_flow);
   stages.pairs = pairClusters(stages.clusters, stages.flow, options);
   return stages;
 }
 
-std::vector<CircleCandidate> pairArcs(const BurstWindow& window, const NormalFlowOptions& options) {
+std::vector<CircleCandidate> pairArcs(const BurstWindow& window, const FrontEndOptions& options) {
   std::vector<CircleCandidate> candidates;
   for (const ArcPair& pair : findArcs(window, options).pairs) candidates.push_back(pair.circle);
   std::sort(candidates.begin(), candidates.end(),

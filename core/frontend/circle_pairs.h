@@ -3,6 +3,7 @@
 
 #include "core/frontend/circle_candidate.h"
 #include "core/frontend/event_clusters.h"
+#include "core/frontend/front_end_options.h"
 
 #include <cstddef>
 #include <vector>
@@ -24,11 +25,11 @@ struct NormalFlowStages {
 // Pairs arcs that move alike, one behind the other. Nearest first, mutually; arcs of
 // a clear kind before others.
 std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, const NormalFlowField& field,
-                                  const NormalFlowOptions& options);
+                                  const FrontEndOptions& options);
 
-NormalFlowStages findArcs(const BurstWindow& window, const NormalFlowOptions& options);
+NormalFlowStages findArcs(const BurstWindow& window, const FrontEndOptions& options);
 
 // The circles of all pairs, best first.
-std::vector<CircleCandidate> pairArcs(const BurstWindow& window, const NormalFlowOptions& options);
+std::vector<CircleCandidate> pairArcs(const BurstWindow& window, const FrontEndOptions& options);
 
 }  // namespace evical

@@ -20,15 +20,15 @@ constexpr auto kBurstDefaults = defaultsOf<BurstOptions, kBurstFields>();
 constexpr std::tuple kDetectionFields{
     Choice{"method", &DetectionOptions::method, CandidateSource::NormalFlow,
            std::array{"ring_vote", "normal_flow"},
-           "Where circle candidates come from when nothing is tracked.", Level::Common},
+           "Where circle candidates come from when nothing is tracked.", Level::Public},
     Switch{"try_both", &DetectionOptions::try_both, true,
-           "Where the method's source does not show the board, try the other."},
+           "Where the method's source does not show the board, try the other.", Level::Expert},
     Field{"window_travel_px", &DetectionOptions::window_travel_px, 2.5, within(0.5, 20.0), "px",
-          "Windows are laid so that the board's edges travel about this far in one.", Level::Common},
+          "Windows are laid so that the board's edges travel about this far in one.", Level::Expert},
     Field{"shortest_window_s", &DetectionOptions::shortest_window_s, 0.005, within(1e-3, 0.1), "s",
-          "No window is shorter.", Level::Common},
+          "No window is shorter.", Level::Expert},
     Field{"longest_window_s", &DetectionOptions::longest_window_s, 0.05, within(5e-3, 0.2), "s",
-          "No window is longer.", Level::Common},
+          "No window is longer.", Level::Expert},
     Field{"search_interval_s", &DetectionOptions::search_interval_s, 0.05, within(0.0, 2.0), "s",
           "While the board is lost, search the whole image this often."},
     Field{"longest_search_interval_s", &DetectionOptions::longest_search_interval_s, 0.5, within(0.0, 10.0),
@@ -38,14 +38,14 @@ constexpr std::tuple kDetectionFields{
     Field{"history_s", &DetectionOptions::history_s, 2.0, within(0.0, 30.0), "s",
           "How far back a found board is tracked backwards in time."},
     Field{"least_window_bursts", &DetectionOptions::least_window_bursts, 60, within(1, 100000), "",
-          "A window with fewer edge bursts is not looked at."}};
+          "A window with fewer edge bursts is not looked at."},
+    Field{"smallest_radius_px", &DetectionOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
+          "Smallest circle looked for.", Level::Expert},
+    Field{"largest_radius_px", &DetectionOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
+          "Largest circle looked for.", Level::Expert}};
 constexpr auto kDetectionDefaults = defaultsOf<DetectionOptions, kDetectionFields>();
 
 constexpr std::tuple kRingVoteFields{
-    Field{"smallest_radius_px", &RingVoteOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
-          "Smallest circle looked for.", Level::Common},
-    Field{"largest_radius_px", &RingVoteOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
-          "Largest circle looked for.", Level::Common},
     Field{"radius_step", &RingVoteOptions::radius_step, 1.12, within(1.02, 1.5), "",
           "Ratio of neighbouring radii."},
     Field{"ring_half_width_px", &RingVoteOptions::ring_half_width_px, 0.75, within(0.3, 3.0), "px",
@@ -90,9 +90,9 @@ constexpr std::tuple kGridFields{
     Field{"least_sine", &GridOptions::least_sine, 0.6, within(0.1, 1.0), "",
           "Of the angle between a lattice's two directions."},
     Field{"least_partial", &GridOptions::least_partial, 0.4, within(0.1, 1.0), "",
-          "Part of the circles that makes a partial grid.", Level::Common},
+          "Part of the circles that makes a partial grid.", Level::Expert},
     Field{"least_circles", &GridOptions::least_circles, 6, within(4, 1000), "",
-          "A grid with fewer circles is none.", Level::Common},
+          "A grid with fewer circles is none.", Level::Expert},
     Field{"ambiguity_margin", &GridOptions::ambiguity_margin, 2, within(0, 100), "",
           "An incomplete grid needs this many circles more than its runner-up placement."},
     Field{"least_rival_overlap", &GridOptions::least_rival_overlap, 0.5, within(0.1, 1.0), "",
@@ -179,15 +179,15 @@ DetectionOptions::DetectionOptions() : DetectionOptions(kDetectionDefaults) {}
 const OptionTable<DetectionOptions>& DetectionOptions::table() {
   static const OptionTable<DetectionOptions> table(
       kDetectionFields, Ordered{&DetectionOptions::shortest_window_s, &DetectionOptions::longest_window_s},
-      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::longest_search_interval_s});
+      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::longest_search_interval_s},
+      Ordered{&DetectionOptions::smallest_radius_px, &DetectionOptions::largest_radius_px});
   return table;
 }
 
 RingVoteOptions::RingVoteOptions() : RingVoteOptions(kRingVoteDefaults) {}
 
 const OptionTable<RingVoteOptions>& RingVoteOptions::table() {
-  static const OptionTable<RingVoteOptions> table(
-      kRingVoteFields, Ordered{&RingVoteOptions::smallest_radius_px, &RingVoteOptions::largest_radius_px});
+  static const OptionTable<RingVoteOptions> table(kRingVoteFields);
   return table;
 }
 

@@ -32,6 +32,8 @@ struct DetectionOptions {
   double longest_search_interval_s;
   double history_s;
   int least_window_bursts;
+  double smallest_radius_px;
+  double largest_radius_px;
 
   DetectionOptions();  // the defaults
   constexpr explicit DetectionOptions(NoDefaults) {}
@@ -41,8 +43,6 @@ struct DetectionOptions {
 
 // Candidates from a ring vote (docs/maths.md, 5.1).
 struct RingVoteOptions {
-  double smallest_radius_px;
-  double largest_radius_px;
   double radius_step;
   double ring_half_width_px;
   double least_score;

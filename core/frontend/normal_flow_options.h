@@ -13,8 +13,6 @@ struct NormalFlowOptions {
   int dilation_px;
   int least_cluster_px;
   double largest_pair_angle_deg;
-  double smallest_radius_px;
-  double largest_radius_px;
   double window_travel_px;
 
   NormalFlowOptions();  // the defaults

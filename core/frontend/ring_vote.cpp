@@ -130,12 +130,13 @@ void collectPeaks(const PyramidLevel& level, const BestVotes& best, double least
 
 }  // namespace
 
-std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const RingVoteOptions& options) {
+std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const FrontEndOptions& all) {
+  const RingVoteOptions& options = all.ring_vote;
   std::vector<CircleCandidate> candidates;
   const Resolution resolution = window.resolution_px();
   const double largest_px =
-      std::min(options.largest_radius_px, 0.25 * std::min(resolution.width_px, resolution.height_px));
-  double radius_px = options.smallest_radius_px;
+      std::min(all.detection.largest_radius_px, 0.25 * std::min(resolution.width_px, resolution.height_px));
+  double radius_px = all.detection.smallest_radius_px;
   for (int shift = 0; radius_px <= largest_px; ++shift) {
     const double size = 1 << shift;
     const double level_end_px = std::min(kLevelRadius_px * size, largest_px);

@@ -5,13 +5,13 @@
 
 #include "core/frontend/burst_window.h"
 #include "core/frontend/circle_candidate.h"
-#include "core/frontend/detection_options.h"
+#include "core/frontend/front_end_options.h"
 
 #include <vector>
 
 namespace evical {
 
 // Best candidates first, by the largest radius the image allows.
-std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const RingVoteOptions& options);
+std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const FrontEndOptions& all);
 
 }  // namespace evical

@@ -50,7 +50,7 @@ void StageImageWriter::windowSearched(const BoardSearch& search, std::int64_t mi
     window.assign({}, middle_ns);
   const std::filesystem::path path = numbered(directory_, "search", number);
   if (search.source == CandidateSource::NormalFlow) {
-    const NormalFlowStages arcs = findArcs(window, options_.normal_flow);
+    const NormalFlowStages arcs = findArcs(window, options_);
     writePng(path, drawSearch(window, search, *scene_, &arcs));
   } else {
     writePng(path, drawSearch(window, search, *scene_));

@@ -12,14 +12,14 @@ constexpr std::tuple kIntrinsicsFields{
            "Lens model; automatic takes equidistant only where it explains the views clearly better, and "
            "double sphere "
            "where neither of both fits.",
-           Level::Common},
+           Level::Public},
     Field{"equidistant_gain", &IntrinsicsOptions::equidistant_gain, 0.85, within(0.1, 1.0), "",
           "Clearly better: residuals smaller than this times those of radial-tangential."},
     Field{"double_sphere_gain", &IntrinsicsOptions::double_sphere_gain, 0.85, within(0.1, 1.0), "",
           "The same of double sphere against the better of both, where circles that a model leaves out count "
           "too."},
     Field{"radtan_coefficients", &IntrinsicsOptions::radtan_coefficients, 4, within(4, 5), "",
-          "4: k1 k2 p1 p2; 5: k3 as well, for strong distortion.", Level::Common},
+          "4: k1 k2 p1 p2; 5: k3 as well, for strong distortion.", Level::Public},
     Field{"first_look_period_s", &IntrinsicsOptions::first_look_period_s, 1.2, within(0.1, 60.0), "s",
           "Slices of the recording are looked at so far apart for a first, rough lens."},
     Field{"first_look_length_s", &IntrinsicsOptions::first_look_length_s, 0.2, within(0.1, 2.0), "s",
@@ -29,9 +29,9 @@ constexpr std::tuple kIntrinsicsFields{
     Field{"first_look_projection_px", &IntrinsicsOptions::first_look_projection_px, 0.2, within(1e-3, 100.0),
           "px", "It ends before that when the projection is known so well, RMS over the image."},
     Field{"least_views", &IntrinsicsOptions::least_views, 10, within(3, 1000), "",
-          "With fewer views nothing is said.", Level::Common},
+          "With fewer views nothing is said.", Level::Expert},
     Field{"most_views", &IntrinsicsOptions::most_views, 80, within(3, 1000), "",
-          "Views that are taken, spread over image and tilt.", Level::Common},
+          "Views that are taken, spread over image and tilt.", Level::Expert},
     Field{"least_view_spacing_s", &IntrinsicsOptions::least_view_spacing_s, 0.1, within(0.0, 10.0), "s",
           "Views nearer in time say the same again."},
     Field{"least_circles", &IntrinsicsOptions::least_circles, 0.5, within(0.1, 1.0), "",
@@ -58,9 +58,9 @@ constexpr std::tuple kIntrinsicsFields{
     Field{"settled_px", &IntrinsicsOptions::settled_px, 0.01, within(1e-4, 1.0), "px",
           "Passes end when one more would move the projection, RMS over the image, by less."},
     Field{"needed_focal_length", &IntrinsicsOptions::needed_focal_length, 0.005, within(1e-5, 1.0), "",
-          "Relative sigma of the focal length beyond which the result is doubtful.", Level::Common},
+          "Relative sigma of the focal length beyond which the result is doubtful.", Level::Public},
     Field{"needed_projection_px", &IntrinsicsOptions::needed_projection_px, 0.5, within(1e-3, 100.0), "px",
-          "Projection uncertainty, RMS over the image, beyond which the result is doubtful.", Level::Common},
+          "Projection uncertainty, RMS over the image, beyond which the result is doubtful.", Level::Public},
     Field{"least_tilt_deg", &IntrinsicsOptions::least_tilt_deg, 12.0, within(0.0, 80.0), "deg",
           "Without any views tilted more than this the focal length is not observable."}};
 constexpr auto kIntrinsicsDefaults = defaultsOf<IntrinsicsOptions, kIntrinsicsFields>();

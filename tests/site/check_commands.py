@@ -22,8 +22,8 @@ def options_in(help_text):
     return set(re.findall(r"(?<![\w-])--?[A-Za-z][\w-]*", help_text))
 
 
-settings = set(re.findall(r"^([a-z_]+\.[a-z0-9_.]+) ", output(program, "options", "--all"), re.MULTILINE))
-groups = {setting.split(".")[0] for setting in settings}
+settings = set(re.findall(r"^([a-z_]+\.[a-z0-9_.]+) ", output(program, "options", "--tuning"), re.MULTILINE))
+groups = {"tuning"} | {setting.removeprefix("tuning.").split(".")[0] for setting in settings}
 short_names = {".".join([parts[0], parts[2]]) for parts in (setting.split(".") for setting in settings) if len(parts) == 3}
 commands = re.findall(r"^  ([a-z]+) ", output(program, "--help").split("Subcommands:")[1], re.MULTILINE)
 options = {command: options_in(output(program, command, "--help")) for command in commands}

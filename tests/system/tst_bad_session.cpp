@@ -108,10 +108,10 @@ void TestBadSession::options_thatExcludeEachOther_areRefused_data() {
                                           "detection.longest_window_s=0.005"}
                            << "detection.shortest_window_s \\(0.1 s\\) is above detection.longest_window_s "
                               "\\(0.005 s\\). Set .* at most 0.005 s, or .* at least 0.1 s";
-  QTest::newRow("polarity cosines") << QStringList{"tracking.least_polarity_cosine=0.9",
-                                                   "tracking.full_polarity_cosine=0.1"}
-                                    << "tracking.least_polarity_cosine \\(0.9\\) is above "
-                                       "tracking.full_polarity_cosine \\(0.1\\)";
+  QTest::newRow("polarity cosines") << QStringList{"tuning.tracking.least_polarity_cosine=0.9",
+                                                   "tuning.tracking.full_polarity_cosine=0.1"}
+                                    << "tuning.tracking.least_polarity_cosine \\(0.9\\) is above "
+                                       "tuning.tracking.full_polarity_cosine \\(0.1\\)";
   QTest::newRow("one against a default") << QStringList{"detection.shortest_window_s=0.1"}
                                          << "detection.shortest_window_s \\(0.1 s\\) is above "
                                             "detection.longest_window_s \\(0.05 s\\)";
@@ -135,9 +135,9 @@ void TestBadSession::options_thatExcludeEachOther_areRefused() {
 
 void TestBadSession::options_thatExcludeEachOtherOnTheWay_areTaken() {
   SessionCase test;
-  const Outcome outcome =
-      test.calibrate({"--set", "bursts.shortest_gap_s=0.1", "--set", "bursts.longest_gap_s=0.05", "--set",
-                      "bursts.shortest_gap_s=0.004", "--set", "bursts.longest_gap_s=0.15"});
+  const Outcome outcome = test.calibrate(
+      {"--set", "tuning.bursts.shortest_gap_s=0.1", "--set", "tuning.bursts.longest_gap_s=0.05", "--set",
+       "tuning.bursts.shortest_gap_s=0.004", "--set", "tuning.bursts.longest_gap_s=0.15"});
   VERIFY_OUTCOME(outcome, 0);
 }
 

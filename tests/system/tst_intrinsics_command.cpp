@@ -98,8 +98,8 @@ class TestIntrinsicsCommand : public QObject {
   }
 
   void firstLook_isAsLongAsWanted() {
-    const Outcome outcome = run("intrinsics", {"--set", "intrinsics.first_look_slices=5", "--set",
-                                               "intrinsics.first_look_projection_px=0.001"});
+    const Outcome outcome = run("intrinsics", {"--set", "tuning.intrinsics.first_look_slices=5", "--set",
+                                               "tuning.intrinsics.first_look_projection_px=0.001"});
     VERIFY_OUTCOME(outcome, 0);
     QVERIFY(readFile(result() + "/log.txt").contains("first look: 5 slices"));
   }

@@ -111,7 +111,7 @@ class TestCalibrationDocument : public QObject {
     document.open(evical::ui::test::simulatedSession());
     for (const char* value : {"9", "10", "11"}) document.setOption("grid.least_circles", value);
     QCOMPARE(document.undoStack().count(), 1);
-    document.setOption("bursts.least_events", "3");
+    document.setOption("tuning.bursts.least_events", "3");
     QCOMPARE(document.undoStack().count(), 2);
   }
 
@@ -139,7 +139,8 @@ class TestCalibrationDocument : public QObject {
     session.options.front_end.tracking.least_polarity_cosine = 0.9;
     const std::vector<SessionProblem> problems = sessionProblems(session);
     QCOMPARE(problems.size(), std::size_t(1));
-    QVERIFY2(problems[0].text.contains("tracking.full_polarity_cosine (0.7)"), qPrintable(problems[0].text));
+    QVERIFY2(problems[0].text.contains("tuning.tracking.full_polarity_cosine (0.7)"),
+             qPrintable(problems[0].text));
   }
 
   void run_isOutdatedByAChange_andNotByItsUndo() {

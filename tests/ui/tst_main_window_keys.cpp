@@ -109,7 +109,7 @@ class TestMainWindowKeys : public QObject {
     Opened test(copyOfSimulatedSession(scratch_.path()));
     test.press(Qt::Key_P, Qt::ControlModifier);
     auto* const field =
-        test.child<OptionForm>()->editor("detection.longest_window_s")->findChild<QLineEdit*>();
+        test.child<OptionForm>()->editor("optimisation.verdict.needed_rotation_deg")->findChild<QLineEdit*>();
     const QString before = field->text();
     field->setFocus();
     field->selectAll();
@@ -120,13 +120,13 @@ class TestMainWindowKeys : public QObject {
     field->selectAll();
     QTest::keyClicks(field, "0.07");
     QTest::keyClick(field, Qt::Key_Return);
-    QCOMPARE(test.document().session().options.front_end.detection.longest_window_s, 0.07);
+    QCOMPARE(test.document().session().options.optimisation.needed_rotation_deg, 0.07);
     QVERIFY(field->hasFocus());
     pressKey(Qt::Key_Z, Qt::ControlModifier);
     QCOMPARE(field->text(), before);
     QVERIFY(!test.document().undoStack().canUndo());
     pressKey(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
-    QCOMPARE(test.document().session().options.front_end.detection.longest_window_s, 0.07);
+    QCOMPARE(test.document().session().options.optimisation.needed_rotation_deg, 0.07);
     QCOMPARE(field->text(), QString("0.07"));
   }
 

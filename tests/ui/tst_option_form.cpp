@@ -29,14 +29,14 @@ struct OptionFormFixture {
 
   OptionFormFixture() {
     form.resize(340, 700);
-    form.setRows(optionRows(options));
+    form.setRows(documentedOptions(options));
     QObject::connect(&form, &OptionForm::edited, &form, [this](const QString& name, const QString& value) {
       try {
         CalibrationOptions changed = options;
         setOption(changed, name.toStdString(), value.toStdString());
         validate(changed);
         options = changed;
-        form.setRows(optionRows(options));
+        form.setRows(documentedOptions(options));
       } catch (const CalibrationError& error) {
         form.showRefusal(name, error);
       }
@@ -68,7 +68,7 @@ class TestOptionForm : public QObject {
   void everyOption_hasAnEditorWithHelpUnitAndRange() {
     OptionFormFixture test;
     test.form.showExpert(true);
-    const std::vector<OptionRow> rows = optionRows();
+    const std::vector<OptionRow> rows = documentedOptions();
     for (const OptionRow& row : rows) {
       const QString name = QString::fromStdString(row.name);
       QVERIFY2(test.form.editor(name), qPrintable(name));
@@ -123,10 +123,11 @@ class TestOptionForm : public QObject {
     OptionFormFixture test;
     auto* const whole = test.form.editor("intrinsics.radtan_coefficients")->findChild<OptionSlider*>();
     QCOMPARE(whole->maximum() - whole->minimum(), 1);
-    auto* const powers = test.form.editor("normal_flow.fastest_px_s")->findChild<OptionSlider*>();
-    powers->setValue(powers->maximum() / 2);  // the geometric middle of 10 and 1 000 000
-    QVERIFY(std::abs(test.options.front_end.normal_flow.fastest_px_s / 3160.0 - 1.0) < 0.01);
-    for (const OptionRow& row : optionRows()) {
+    auto* const powers =
+        test.form.editor("optimisation.priors.smooth_rotation_rad_s2")->findChild<OptionSlider*>();
+    powers->setValue(powers->maximum() / 2);  // the geometric middle of 0.1 and 1 000 000
+    QVERIFY(std::abs(test.options.optimisation.smooth_rotation_rad_s2 / 316.0 - 1.0) < 0.01);
+    for (const OptionRow& row : documentedOptions()) {
       if (const auto* const slider =
               test.form.editor(QString::fromStdString(row.name))->findChild<OptionSlider*>())
         QVERIFY2(slider->minimum() < slider->maximum(), row.name.c_str());
@@ -136,7 +137,7 @@ class TestOptionForm : public QObject {
   // Every position of every slider is a value that the option takes.
   void slider_endsAreWithinTheRange() {
     OptionFormFixture test;
-    for (const OptionRow& row : optionRows()) {
+    for (const OptionRow& row : documentedOptions()) {
       auto* const slider = test.form.editor(QString::fromStdString(row.name))->findChild<OptionSlider*>();
       if (slider == nullptr) continue;
       for (const int position : {slider->maximum(), slider->minimum()}) {
@@ -146,7 +147,7 @@ class TestOptionForm : public QObject {
                  row.name.c_str());
       }
       test.options = {};
-      test.form.setRows(optionRows(test.options));
+      test.form.setRows(documentedOptions(test.options));
     }
   }
 
@@ -203,9 +204,9 @@ class TestOptionForm : public QObject {
   void expertOptions_areShownWhenAskedFor() {
     OptionFormFixture test;
     QStringList common, all;
-    for (const OptionRow& row : optionRows()) {
+    for (const OptionRow& row : documentedOptions()) {
       all << QString::fromStdString(row.name);
-      if (!row.expert) common << all.last();
+      if (row.level == Level::Public) common << all.last();
     }
     QCOMPARE(test.form.shownOptions(), common);
     auto* const button = test.form.findChild<QToolButton*>("expert");
@@ -218,14 +219,14 @@ class TestOptionForm : public QObject {
 
   void expertOption_thatIsChangedOrSearchedFor_isShown() {
     OptionFormFixture test;
-    QVERIFY(!test.form.shownOptions().contains("tracking.gate_ratio"));
-    test.search()->setText("gate_ratio");
-    QCOMPARE(test.form.shownOptions(), QStringList{"tracking.gate_ratio"});
+    QVERIFY(!test.form.shownOptions().contains("grid.least_partial"));
+    test.search()->setText("least_partial");
+    QCOMPARE(test.form.shownOptions(), QStringList{"grid.least_partial"});
     test.search()->clear();
-    QVERIFY(!test.form.shownOptions().contains("tracking.gate_ratio"));
-    setOption(test.options, "tracking.gate_ratio", "0.5");
-    test.form.setRows(optionRows(test.options));
-    QVERIFY(test.form.shownOptions().contains("tracking.gate_ratio"));
+    QVERIFY(!test.form.shownOptions().contains("grid.least_partial"));
+    setOption(test.options, "grid.least_partial", "0.5");
+    test.form.setRows(documentedOptions(test.options));
+    QVERIFY(test.form.shownOptions().contains("grid.least_partial"));
   }
 
   void reset_bringsTheDefaultBack() {
@@ -242,7 +243,7 @@ class TestOptionForm : public QObject {
   void switchesAndChoices_areBoxes() {
     OptionFormFixture test;
     int switches = 0, choices = 0;
-    for (const OptionRow& row : optionRows()) {
+    for (const OptionRow& row : documentedOptions()) {
       OptionEditor* const editor = test.form.editor(QString::fromStdString(row.name));
       if (row.choices == std::vector<std::string>{"false", "true"}) {
         ++switches;
@@ -264,13 +265,13 @@ class TestOptionForm : public QObject {
     test.search()->setText("zzz nothing has this");
     QVERIFY(test.form.shownOptions().isEmpty());
     test.search()->clear();
-    QCOMPARE(test.form.shownOptions().size(), static_cast<qsizetype>(optionRows().size()));
+    QCOMPARE(test.form.shownOptions().size(), static_cast<qsizetype>(documentedOptions().size()));
   }
 
   void rowsFromElsewhere_areShown() {
     OptionFormFixture test;
     setOption(test.options, "grid.least_circles", "11");
-    test.form.setRows(optionRows(test.options));
+    test.form.setRows(documentedOptions(test.options));
     QCOMPARE(test.field("grid.least_circles")->text(), QString("11"));
     QCOMPARE(test.edited.count(), 0);
   }

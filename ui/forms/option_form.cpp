@@ -162,8 +162,9 @@ void OptionForm::filter() {
     group->filter(search_->text().trimmed(), only_changed_->isChecked(), expert_->isChecked());
     any = any || group->anyShown();
   }
-  const auto count = std::count_if(editors_.begin(), editors_.end(),
-                                   [](const auto& editor) { return editor.second->row().expert; });
+  const auto count = std::count_if(editors_.begin(), editors_.end(), [](const auto& editor) {
+    return editor.second->row().level == Level::Expert;
+  });
   expert_->setText(expert_->isChecked() ? tr("Hide expert options")
                                         : tr("Show expert options (%1)").arg(count));
   expert_->setIcon(icon(expert_->isChecked() ? "up" : "down"));

@@ -48,7 +48,8 @@ void OptionGroup::filter(const QString& search, bool only_changed, bool with_exp
   any_shown_ = false;
   searching_ = !search.isEmpty() || only_changed;
   for (OptionEditor* const editor : editors_) {
-    const bool folded = editor->row().expert && !with_expert && !searching_ && !editor->isChanged();
+    const bool folded =
+        editor->row().level == Level::Expert && !with_expert && !searching_ && !editor->isChanged();
     const bool shown = !folded && editor->matches(search) && (!only_changed || editor->isChanged());
     editor->setVisible(shown);
     editor->highlight(search);

@@ -209,17 +209,24 @@ void MainWindow::wireDocument() {
 
 void MainWindow::wireParameters() {
   CalibrationDocument& document = workbench_.document;
-  const auto show = [this] {
+  const auto types = std::make_shared<StreamTypes>();
+  const auto show = [this, types] {
     const Session& session = workbench_.document.session();
-    const std::vector<OptionRow> rows = optionRows(session.options);
+    const std::vector<OptionRow> rows = documentedOptions(session.options);
     std::map<QString, QString> idle;
     for (const OptionRow& row : rows)
-      if (const std::string why = whyIdle(session, row.name); !why.empty())
+      if (const std::string why = whyIdle(session, row, *types); !why.empty())
         idle[QString::fromStdString(row.name)] = QString::fromStdString(why);
     parameters_->setRows(rows);
     parameters_->setIdle(workbench_.document.hasSession() ? idle : std::map<QString, QString>());
   };
   connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
+  connect(&workbench_.inspection, &InspectionJob::inspected, parameters_,
+          [types, show](const QString&, const std::shared_ptr<const Inspection>& inspection) {
+            for (const StreamSummary& stream : inspection->streams)
+              (*types)[stream.info.name] = stream.info.type;
+            show();
+          });
   connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
   connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
     try {

@@ -86,7 +86,7 @@ void checkOptions(const Session& first, const Session& session) {
     for (const OptionRow& row : differingOptions(of.options))
       for (const char* const group : {"intrinsics.", "initialisation.", "optimisation.model.",
                                       "optimisation.priors.", "optimisation.verdict."})
-        if (row.name.starts_with(group)) rows[row.name] = row.value;
+        if (nameInTables(row.name).starts_with(group)) rows[row.name] = row.value;
     return rows;
   };
   const std::map<std::string, std::string> own = rowsOf(session), other = rowsOf(first);

@@ -6,6 +6,8 @@
 #include "core/maintenance/maintenance_options.h"
 #include "core/pipeline/session/check_options.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 #include <type_traits>
 
@@ -20,48 +22,55 @@ auto& partOf(Options& options) {
 
 // Visits a copy of shared options and stores it if the visitor changed it.
 template <class Options, class Visitor>
-void visitShared(const char* name, const char* help, const SharedOptions<Options>& shared, Visitor&& visit) {
-  visit(name, help, *shared);
+void visitShared(const char* name, Applies applies, const char* help, const SharedOptions<Options>& shared,
+                 Visitor&& visit) {
+  visit(name, applies, help, *shared);
 }
 template <class Options, class Visitor>
-void visitShared(const char* name, const char* help, SharedOptions<Options>& shared, Visitor&& visit) {
+void visitShared(const char* name, Applies applies, const char* help, SharedOptions<Options>& shared,
+                 Visitor&& visit) {
   Options options = *shared;
-  visit(name, help, options);
+  visit(name, applies, help, options);
   if (options != *shared) shared = options;
 }
 
-// The one list of groups: visit(name, help, options of the group).
+// The one list of groups: visit(name, what all of it needs, help, options of the group).
 template <class Options, class Visitor>
 void forEachGroup(Options& all, Visitor&& visit) {
+  using enum Applies;
   auto& front_end = all.front_end;
-  visit("detection", "The front end as a whole", front_end.detection);
-  visit("bursts", "Edge timing: events of one edge at one pixel", front_end.bursts);
-  visit("ring_vote", "Circle candidates", front_end.ring_vote);
-  visit("normal_flow", "Circle candidates the published way", front_end.normal_flow);
-  visit("moving_circle", "Moving circles, one by one", front_end.moving_circle);
-  visit("grid", "Circles to board", front_end.grid);
-  visit("tracking", "All circles of a window together, and from window to window", front_end.tracking);
-  visit("extent", "Does the board have the rows and columns that the session says?", front_end.extent);
-  visit("frames", "Frame cameras: how their pictures are searched for the board", all.frames);
-  visit("blink", "Blinking boards before event cameras: how the blink is noticed and the flashes added up",
-        all.blink);
-  visit("intrinsics", "Camera intrinsics, where the session gives none", all.intrinsics);
-  visit("initialisation", "From single views to a first trajectory", all.initialisation);
-  visit("optimisation.model", "Batch optimisation: what is estimated, and how measurements are taken",
+  visit("detection", WithEvents, "The front end as a whole", front_end.detection);
+  visit("bursts", WithEvents, "Edge timing: events of one edge at one pixel", front_end.bursts);
+  visit("ring_vote", WithRingVotes, "Circle candidates", front_end.ring_vote);
+  visit("normal_flow", WithNormalFlow, "Circle candidates the published way", front_end.normal_flow);
+  visit("moving_circle", WithEvents, "Moving circles, one by one", front_end.moving_circle);
+  visit("grid", WithEvents, "Circles to board", front_end.grid);
+  visit("tracking", WithEvents, "All circles of a window together, and from window to window",
+        front_end.tracking);
+  visit("extent", WithEvents, "Does the board have the rows and columns that the session says?",
+        front_end.extent);
+  visit("frames", WithFrames, "Frame cameras: how their pictures are searched for the board", all.frames);
+  visit("blink", WithBlinkingBoard,
+        "Blinking boards before event cameras: how the blink is noticed and the flashes added up", all.blink);
+  visit("intrinsics", WithUnknownLens, "Camera intrinsics, where the session gives none", all.intrinsics);
+  visit("initialisation", Always, "From single views to a first trajectory", all.initialisation);
+  visit("optimisation.model", Always, "Batch optimisation: what is estimated, and how measurements are taken",
         partOf<ModelOptions>(all.optimisation));
-  visit("optimisation.priors", "Batch optimisation: how weakly what a recording may leave open is held",
+  visit("optimisation.priors", Always,
+        "Batch optimisation: how weakly what a recording may leave open is held",
         partOf<PriorOptions>(all.optimisation));
-  visit("optimisation.solver", "Batch optimisation: how it is solved",
+  visit("optimisation.solver", Always, "Batch optimisation: how it is solved",
         partOf<SolverOptions>(all.optimisation));
-  visit("optimisation.verdict", "Uncertainty, and what makes a result doubtful",
+  visit("optimisation.verdict", Always, "Uncertainty, and what makes a result doubtful",
         partOf<VerdictOptions>(all.optimisation));
-  visit("report", "What is worked out for the report only", all.report);
-  visitShared("check", "Whether an old calibration still holds", all.check, visit);
-  visitShared("edge_slopes", "Without a board: the speed of edges in the scene", all.edge_slopes, visit);
-  visitShared("egomotion", "Without a board: how the camera turns, compared with the gyroscope",
-              all.egomotion, visit);
-  visitShared("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain,
-              visit);
+  visit("report", Always, "What is worked out for the report only", all.report);
+  visitShared("check", InCheck, "Whether an old calibration still holds", all.check, visit);
+  visitShared("edge_slopes", InCheckWithoutBoard, "Without a board: the speed of edges in the scene",
+              all.edge_slopes, visit);
+  visitShared("egomotion", InCheckWithoutBoard,
+              "Without a board: how the camera turns, compared with the gyroscope", all.egomotion, visit);
+  visitShared("maintain", InMaintain, "Logs of IMUs over time: what has changed since the calibration",
+              all.maintain, visit);
 }
 
 template <class Options>
@@ -75,6 +84,17 @@ std::vector<std::string> fullNames() {
   return names;
 }
 
+// A name has "tuning." if and only if its option is for tuning.
+void checkLevel(std::string_view full_name, const OptionRow& row) {
+  const std::string name(nameInTables(full_name));
+  const bool tuning = row.level == Level::Tuning;
+  if (tuning == full_name.starts_with(kTuning)) return;
+  if (tuning)
+    throw badInput(name, "is for tuning: it may change with any version",
+                   fmt::format("Write {}{}", kTuning, name));
+  throw badInput(std::string(full_name), "is not for tuning", "Write " + name);
+}
+
 }  // namespace
 
 CalibrationOptions::CalibrationOptions() = default;
@@ -83,31 +103,35 @@ bool CalibrationOptions::operator==(const CalibrationOptions&) const = default;
 
 std::vector<OptionSection> optionSections(const CalibrationOptions& options) {
   std::vector<OptionSection> sections;
-  forEachGroup(options, [&](const char* group, const char* help, const auto& group_options) {
+  forEachGroup(options, [&](const char* group, Applies applies, const char* help, const auto& group_options) {
     sections.push_back({group, help, tableOf(group_options).rows(group_options, group)});
+    for (OptionRow& row : sections.back().rows) row.applies.insert(row.applies.begin(), applies);
   });
   return sections;
 }
 
 void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value) {
-  const std::size_t dot = full_name.rfind('.');
+  const std::string_view in_tables = nameInTables(full_name);
+  const std::size_t dot = in_tables.rfind('.');
   if (dot == std::string_view::npos)
     throw badInput(std::string(full_name), "is not the name of an option",
                    "Options are named group.option; " + nameAdvice(full_name, fullNames()));
-  const std::string group(full_name.substr(0, dot));
-  const std::string_view name = full_name.substr(dot + 1);
+  const std::string group(in_tables.substr(0, dot));
+  const std::string_view name = in_tables.substr(dot + 1);
   bool found = false;
-  forEachGroup(options, [&](const std::string& known, const char*, auto& group_options) {
-    const bool part_of_it = known.starts_with(group + ".") && tableOf(group_options).has(name);
+  forEachGroup(options, [&](const std::string& known, Applies, const char*, auto& group_options) {
+    const OptionRow* const row = tableOf(group_options).find(name);
+    const bool part_of_it = known.starts_with(group + ".") && row;
     if (found || (known != group && !part_of_it)) return;
     found = true;
+    if (row) checkLevel(full_name, *row);
     tableOf(group_options).set(group_options, known, name, value);
   });
   if (!found) throw badInput(std::string(full_name), "no such option", nameAdvice(full_name, fullNames()));
 }
 
 void validate(const CalibrationOptions& options) {
-  forEachGroup(options, [](const char* group, const char*, const auto& group_options) {
+  forEachGroup(options, [](const char* group, Applies, const char*, const auto& group_options) {
     tableOf(group_options).checkOrder(group_options, group);
   });
 }
@@ -117,6 +141,12 @@ std::vector<OptionRow> optionRows(const CalibrationOptions& options) {
   for (OptionSection& section : optionSections(options))
     rows.insert(rows.end(), std::make_move_iterator(section.rows.begin()),
                 std::make_move_iterator(section.rows.end()));
+  return rows;
+}
+
+std::vector<OptionRow> documentedOptions(const CalibrationOptions& options) {
+  std::vector<OptionRow> rows = optionRows(options);
+  std::erase_if(rows, [](const OptionRow& row) { return row.level == Level::Tuning; });
   return rows;
 }
 

@@ -47,16 +47,18 @@ struct OptionSection {
 };
 std::vector<OptionSection> optionSections(const CalibrationOptions& options = {});
 
-// By full name, "group.option". Where a group is part of a larger one, its own name may be left out:
-// "optimisation.threads" is "optimisation.solver.threads". Throws CalibrationError (BadInput) that names the
+// By full name, "group.option" or "tuning.group.option". Where a group is part of a larger one, its own name may be left
+// out: "optimisation.threads" is "optimisation.solver.threads". Throws CalibrationError (BadInput) that names the
 // option, the value, and the bound or the nearest known name.
 void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value);
 
 // Once all are set: throws OptionConflict that names two options of which one excludes the other's value.
 void validate(const CalibrationOptions& options);
 
-// With full names, in the order of the groups: all options, and those that aren't at their default.
+// With full names, in the order of the groups: all options, those that people are told of (not those of tuning), and
+// those that aren't at their default.
 std::vector<OptionRow> optionRows(const CalibrationOptions& options = {});
+std::vector<OptionRow> documentedOptions(const CalibrationOptions& options = {});
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);
 
 }  // namespace evical

@@ -1,8 +1,6 @@
 #include "core/pipeline/session/idle_options.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 namespace evical {
 namespace {
@@ -19,64 +17,82 @@ bool everyLensIsGiven(const Session& session) {
                      [](const SessionCamera& camera) { return camera.intrinsics.has_value(); });
 }
 
-const DetectionOptions& detection(const Session& session) {
-  return session.options.front_end.detection;
+// Empty where one of the cameras gives this type, or may give it.
+std::string without(StreamType type, const Session& session, const StreamTypes& types) {
+  if (session.cameras.empty()) return {};
+  for (const SessionCamera& camera : session.cameras) {
+    const auto found = types.find(camera.stream);
+    if (found == types.end() || found->second == type) return {};
+  }
+  return type == StreamType::Frames ? "no camera gives frames" : "no camera gives events";
 }
 
-const OptimisationOptions& optimisation(const Session& session) {
-  return session.options.optimisation;
+std::string where(bool idle, const char* reason) {
+  return idle ? reason : "";
 }
 
-bool onlyBy(const Session& session, CandidateSource source) {
-  return detection(session).method == source && !detection(session).try_both;
+std::string whereOfImus(const Session& session, bool idle, const char* reason) {
+  return session.imus.empty() ? "there is no IMU" : where(idle, reason);
 }
 
-struct Rule {
-  std::string_view part;  // of the option's name
-  bool (*holds)(const Session& session);
-  const char* reason;
-};
+// The candidates of one source, of which the other one is looked for first, or alone.
+std::string withoutCandidates(CandidateSource source, const Session& session, const StreamTypes& types,
+                              const char* alone, const char* fallback) {
+  const DetectionOptions& detection = session.options.front_end.detection;
+  if (std::string reason = without(StreamType::Events, session, types); !reason.empty()) return reason;
+  return where(detection.method != source, detection.try_both ? fallback : alone);
+}
 
-// The first that fits is said.
-constexpr std::array kRules = {
-    Rule{"ring_vote.", [](const Session& s) { return onlyBy(s, CandidateSource::NormalFlow); },
-         "circles are looked for by normal flow alone"},
-    Rule{"ring_vote.", [](const Session& s) { return detection(s).method == CandidateSource::NormalFlow; },
-         "ring votes are used only where normal flow finds no board"},
-    Rule{"normal_flow.", [](const Session& s) { return onlyBy(s, CandidateSource::RingVote); },
-         "circles are looked for by ring votes alone"},
-    Rule{"normal_flow.", [](const Session& s) { return detection(s).method == CandidateSource::RingVote; },
-         "normal flow is used only where ring votes find no board"},
-    Rule{"check.", [](const Session&) { return true; }, "only a check of an earlier result takes it"},
-    Rule{"maintain.", [](const Session&) { return true; }, "only a look at logs of IMUs takes it"},
-    Rule{"egomotion.", [](const Session&) { return true; }, "only a check without a board uses it"},
-    Rule{"edge_slopes.", [](const Session&) { return true; }, "only a check without a board uses it"},
-    Rule{"blink.", [](const Session& s) { return !s.board_blinks; },
-         "the board does not blink, as far as the session says"},
-    Rule{"intrinsics.", everyLensIsGiven, "every camera's lens is given"},
-    Rule{"frames.tag_border", [](const Session& s) { return !hasBoard(s, BoardType::AprilGrid); },
-         "no board is an AprilGrid"},
-    Rule{"frames.markers", [](const Session& s) { return !hasBoard(s, BoardType::Charuco); },
-         "no board is a ChArUco board"},
-    Rule{"priors.smooth_", [](const Session& s) { return !s.imus.empty(); },
-         "an IMU tells how smooth the motion is"},
-    Rule{"gyroscope_rotation_sigma", [](const Session& s) { return !optimisation(s).gyroscope_rotation; },
-         "turns of gyroscopes are not estimated"},
-    Rule{"gravity_norm_sigma", [](const Session& s) { return !optimisation(s).free_gravity_norm; },
-         "gravity's norm is not estimated"},
-    Rule{"_random_walk", [](const Session& s) { return optimisation(s).bias_model != BiasModel::Linear; },
-         "biases are constant"},
-    Rule{"gyroscope", [](const Session& s) { return s.imus.empty(); }, "there is no IMU"},
-    Rule{"acceler", [](const Session& s) { return s.imus.empty(); }, "there is no IMU"},
-    Rule{"gravity", [](const Session& s) { return s.imus.empty(); }, "there is no IMU"},
-    Rule{"imu_", [](const Session& s) { return s.imus.empty(); }, "there is no IMU"},
-};
+std::string whyNot(Applies applies, const Session& session, const StreamTypes& types) {
+  const OptimisationOptions& optimisation = session.options.optimisation;
+  switch (applies) {
+    case Applies::Always:
+      return {};
+    case Applies::WithImu:
+      return whereOfImus(session, false, "");
+    case Applies::WithoutImu:
+      return where(!session.imus.empty(), "there is an IMU");
+    case Applies::WithEvents:
+      return without(StreamType::Events, session, types);
+    case Applies::WithFrames:  // and pictures of flashes
+      return session.board_blinks ? "" : without(StreamType::Frames, session, types);
+    case Applies::WithRingVotes:
+      return withoutCandidates(CandidateSource::RingVote, session, types,
+                               "circles are looked for by normal flow alone",
+                               "ring votes are used only where normal flow finds no board");
+    case Applies::WithNormalFlow:
+      return withoutCandidates(CandidateSource::NormalFlow, session, types,
+                               "circles are looked for by ring votes alone",
+                               "normal flow is used only where ring votes find no board");
+    case Applies::WithAprilGrid:
+      return where(!hasBoard(session, BoardType::AprilGrid), "no board is an AprilGrid");
+    case Applies::WithCharuco:
+      return where(!hasBoard(session, BoardType::Charuco), "no board is a ChArUco board");
+    case Applies::WithBlinkingBoard:
+      return where(!session.board_blinks, "the board does not blink, as far as the session says");
+    case Applies::WithUnknownLens:
+      return where(everyLensIsGiven(session), "every camera's lens is given");
+    case Applies::WithFreeGyroscopeTurns:
+      return whereOfImus(session, !optimisation.gyroscope_rotation, "turns of gyroscopes are not estimated");
+    case Applies::WithFreeGravityNorm:
+      return whereOfImus(session, !optimisation.free_gravity_norm, "gravity's norm is not estimated");
+    case Applies::WithLinearBiases:
+      return whereOfImus(session, optimisation.bias_model != BiasModel::Linear, "biases are constant");
+    case Applies::InCheck:
+      return "only a check of an earlier result takes it";
+    case Applies::InCheckWithoutBoard:
+      return "only a check without a board uses it";
+    case Applies::InMaintain:
+      return "only a look at logs of IMUs takes it";
+  }
+  return {};
+}
 
 }  // namespace
 
-std::string whyIdle(const Session& session, const std::string& option) {
-  for (const Rule& rule : kRules)
-    if (option.find(rule.part) != std::string::npos && rule.holds(session)) return rule.reason;
+std::string whyIdle(const Session& session, const OptionRow& option, const StreamTypes& types) {
+  for (const Applies applies : option.applies)
+    if (std::string reason = whyNot(applies, session, types); !reason.empty()) return reason;
   return {};
 }
 

@@ -1,12 +1,14 @@
-// All options as pages for people, from their tables.
+// Options as pages for people, those of tuning left out, from their tables.
 #pragma once
+
+#include "core/base/option_row.h"
 
 #include <string>
 
 namespace evical {
 
-// Terminal text: what people usually turn, or all.
-std::string optionText(bool with_expert);
+// Terminal text of the options of this level and of those above it.
+std::string optionText(Level least);
 
 // docs/options.md.
 std::string optionMarkdown();

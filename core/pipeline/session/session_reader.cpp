@@ -163,7 +163,7 @@ std::vector<std::string> groupNames() {
   return names;
 }
 
-// Both `grid: {least_sine: 0.5}` and `grid.least_sine: 0.5`.
+// Both `grid: {least_circles: 7}` and `grid.least_circles: 7`, and below `tuning` likewise.
 void setOptions(const YamlNode& map, const std::string& group, CalibrationOptions& options) {
   for (const std::string& key : map.keys()) {
     const YamlNode value = map[key];
@@ -173,7 +173,7 @@ void setOptions(const YamlNode& map, const std::string& group, CalibrationOption
       continue;
     }
     const std::vector<std::string> groups = groupNames();
-    if (std::find(groups.begin(), groups.end(), name) == groups.end())
+    if (name + "." != kTuning && std::find(groups.begin(), groups.end(), nameInTables(name)) == groups.end())
       throw value.error("no such group of options", nameAdvice(name, groups));
     setOptions(value, name, options);
   }

@@ -26,8 +26,9 @@ struct SampleOptions {
   bool operator==(const SampleOptions&) const = default;
 };
 constexpr std::tuple kSampleFields{
-    Field{"radius_px", &SampleOptions::radius_px, 2, within(1, 5), "px", "Radius.", Level::Common},
-    Field{"error_s", &SampleOptions::error_s, 1e-3, within(1e-5, 1e-1), "s", "Error."},
+    Field{"radius_px", &SampleOptions::radius_px, 2, within(1, 5), "px", "Radius.", Level::Public,
+          Applies::WithImu},
+    Field{"error_s", &SampleOptions::error_s, 1e-3, within(1e-5, 1e-1), "s", "Error.", Level::Expert},
     Switch{"quick", &SampleOptions::quick, false, "Quick."},
     Choice{"method", &SampleOptions::method, Method::RingVote, std::array{"ring_vote", "normal_flow"},
            "Method."},
@@ -104,8 +105,10 @@ class TestOptionTable : public QObject {
     QCOMPARE(rows[0].minimum, std::string("1"));
     QCOMPARE(rows[0].maximum, std::string("5"));
     QCOMPARE(rows[0].unit, std::string("px"));
-    QVERIFY(!rows[0].expert);
-    QVERIFY(rows[1].expert);
+    QVERIFY(rows[0].level == Level::Public && rows[0].applies == std::vector{Applies::WithImu});
+    QVERIFY(rows[1].level == Level::Expert && rows[1].applies.empty());
+    QVERIFY(rows[2].level == Level::Tuning);
+    QCOMPARE(rows[2].name, std::string("tuning.g.quick"));
     QCOMPARE(rows[2].value, std::string("true"));
     QVERIFY((rows[3].choices == std::vector<std::string>{"ring_vote", "normal_flow"}));
   }
@@ -137,10 +140,11 @@ class TestOptionTable : public QObject {
       QFAIL("must throw");
     } catch (const OptionConflict& conflict) {
       QVERIFY(conflict.kind() == ErrorKind::BadInput);
-      QCOMPARE(conflict.lower(), std::string("g.first"));
-      QCOMPARE(conflict.upper(), std::string("g.last"));
-      QCOMPARE(conflict.problem(), std::string("g.first (7 px) is above g.last (1 px)"));
-      QCOMPARE(conflict.advice(), std::string("Set g.first to at most 1 px, or g.last to at least 7 px"));
+      QCOMPARE(conflict.lower(), std::string("tuning.g.first"));
+      QCOMPARE(conflict.upper(), std::string("tuning.g.last"));
+      QCOMPARE(conflict.problem(), std::string("tuning.g.first (7 px) is above tuning.g.last (1 px)"));
+      QCOMPARE(conflict.advice(),
+               std::string("Set tuning.g.first to at most 1 px, or tuning.g.last to at least 7 px"));
     }
   }
 

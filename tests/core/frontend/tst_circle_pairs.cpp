@@ -41,7 +41,7 @@ NormalFlowField arcsOf(std::vector<EventCluster>& clusters) {
 
 std::vector<ArcPair> pair(std::vector<EventCluster> clusters) {
   const NormalFlowField field = arcsOf(clusters);
-  return pairClusters(clusters, field, NormalFlowOptions{});
+  return pairClusters(clusters, field, FrontEndOptions{});
 }
 
 class TestCirclePairs : public QObject {
@@ -84,7 +84,7 @@ void TestCirclePairs::circles_areFound() {
   for (const SyntheticCircle& circle : circles) addBursts(circle, half_window_s, shade, 0.1, random, bursts);
   addRandomBursts(300, half_window_s, random, bursts);
   const SyntheticWindow synthetic(bursts, shade);
-  const std::vector<CircleCandidate> found = pairArcs(synthetic.window, NormalFlowOptions{});
+  const std::vector<CircleCandidate> found = pairArcs(synthetic.window, FrontEndOptions{});
   for (const SyntheticCircle& circle : circles) {
     const auto hit = std::find_if(found.begin(), found.end(), [&](const CircleCandidate& candidate) {
       return (candidate.centre_px - circle.centre_px).norm() < 1.0;
@@ -158,7 +158,7 @@ void TestCirclePairs::noise_givesFewCandidates() {
   std::vector<EdgeBurst> bursts;
   addRandomBursts(20000, 0.02, random, bursts);  // 20 % of the pixels
   const SyntheticWindow synthetic(bursts);
-  QVERIFY(pairArcs(synthetic.window, NormalFlowOptions{}).size() < 10u);
+  QVERIFY(pairArcs(synthetic.window, FrontEndOptions{}).size() < 10u);
 }
 
 }  // namespace

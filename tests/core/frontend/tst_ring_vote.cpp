@@ -39,7 +39,7 @@ void TestRingVote::circle_isFoundAtItsPlace() {
   addBursts(circle, kRingVoteHalfWindow_s, shade, 0.15, random, bursts);
   addRandomBursts(100, kRingVoteHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, shade);
-  const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, RingVoteOptions{});
+  const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, FrontEndOptions{});
   QVERIFY(!candidates.empty());
   const CircleCandidate& best = candidates.front();
   // What the moving-circle fit's first gate forgives.
@@ -56,7 +56,7 @@ void TestRingVote::wrongShade_pointsBackwards() {
   std::vector<EdgeBurst> bursts;
   addBursts(circle, kRingVoteHalfWindow_s, CircleShade::Bright, 0.1, random, bursts);
   const SyntheticWindow synthetic(bursts, CircleShade::Dark);
-  const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, RingVoteOptions{});
+  const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, FrontEndOptions{});
   QVERIFY(!candidates.empty());
   QVERIFY(candidates.front().direction.x() < -0.9);
 }
@@ -67,7 +67,7 @@ void TestRingVote::noise_givesFewCandidates() {
   addRandomBursts(2000, kRingVoteHalfWindow_s, random, bursts);  // 2 % of the pixels
   keepSupported(kDavis_px, RingVoteOptions{}.least_support, bursts);
   const SyntheticWindow synthetic(bursts);
-  QVERIFY(voteForCircles(synthetic.window, RingVoteOptions{}).size() < 20u);
+  QVERIFY(voteForCircles(synthetic.window, FrontEndOptions{}).size() < 20u);
 }
 
 void TestRingVote::unsupportedBursts_areDropped() {

@@ -129,7 +129,7 @@ void TestStageDrawing::search_isDrawnWhateverItsOutcome() {
   search.motion = MovingBoard().motionAt(0.0);
   search.motion->ideal_from_board(2, 2) = 1e-9;  // whatever a failed search may leave behind
   QVERIFY(!drawSearch(synthetic.window, search, scene()).rgb.empty());
-  const NormalFlowStages arcs = findArcs(synthetic.window, NormalFlowOptions{});
+  const NormalFlowStages arcs = findArcs(synthetic.window, FrontEndOptions{});
   QVERIFY(!drawSearch(synthetic.window, search, scene(), &arcs).rgb.empty());
 }
 

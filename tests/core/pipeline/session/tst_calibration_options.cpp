@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
+#include <tuple>
 
 using namespace evical;
 
@@ -42,7 +44,9 @@ class TestCalibrationOptions : public QObject {
     std::set<std::string> names, groups;
     for (const OptionRow& row : optionRows()) {
       QVERIFY2(names.insert(row.name).second, row.name.c_str());
-      groups.insert(row.name.substr(0, row.name.rfind('.')));
+      const std::string name(nameInTables(row.name));
+      groups.insert(name.substr(0, name.rfind('.')));
+      QCOMPARE(name != row.name, row.level == Level::Tuning);
     }
     std::set<std::string> known;
     for (const OptionSection& section : optionSections()) known.insert(section.name);
@@ -78,16 +82,36 @@ class TestCalibrationOptions : public QObject {
   void namesInPartsOfAGroup_areUniqueInTheWhole() {
     std::set<std::string> names;
     for (const OptionRow& row : optionRows())
-      if (row.name.starts_with("optimisation."))
+      if (nameInTables(row.name).starts_with("optimisation."))
         QVERIFY2(names.insert(row.name.substr(row.name.rfind('.'))).second, row.name.c_str());
     QVERIFY(names.size() > 40);
   }
 
-  void someOptionsAreForEveryone_mostForExperts() {
-    const std::vector<OptionRow> rows = optionRows();
-    const auto common =
-        std::count_if(rows.begin(), rows.end(), [](const OptionRow& row) { return !row.expert; });
-    QVERIFY2(common >= 24 && common <= 48, std::to_string(common).c_str());
+  void someOptionsAreForEveryone_someForExperts_mostForTuning() {
+    std::map<Level, int> counts;
+    for (const OptionRow& row : optionRows()) ++counts[row.level];
+    for (const auto& [level, least, most] :
+         {std::tuple(Level::Public, 24, 48), std::tuple(Level::Expert, 50, 80)})
+      QVERIFY2(counts[level] >= least && counts[level] <= most, std::to_string(counts[level]).c_str());
+    QCOMPARE(documentedOptions().size(),
+             static_cast<std::size_t>(counts[Level::Public] + counts[Level::Expert]));
+  }
+
+  void tuning_isSetByItsPrefixOnly() {
+    CalibrationOptions options;
+    setOption(options, "tuning.optimisation.max_rounds", "3");  // a middle part left out
+    QCOMPARE(options.optimisation.max_rounds, 3);
+    QCOMPARE(differingOptions(options)[0].name, std::string("tuning.optimisation.solver.max_rounds"));
+    for (const auto& [name, other] : {std::pair("grid.least_sine", "tuning.grid.least_sine"),
+                                      std::pair("optimisation.max_rounds", "tuning.optimisation.max_rounds"),
+                                      std::pair("tuning.grid.least_circles", "Write grid.least_circles")}) {
+      try {
+        setOption(options, name, "9");
+        QFAIL("must throw");
+      } catch (const CalibrationError& error) {
+        QVERIFY2(QString(error.advice().c_str()).contains(other), error.what());
+      }
+    }
   }
 
   void optionsThatExcludeEachOther_areRefused_data() {
@@ -100,20 +124,21 @@ class TestCalibrationOptions : public QObject {
       QTest::newRow(lower) << lower << lower_value << upper << upper_value;
     };
     add("detection.shortest_window_s", "0.1", "detection.longest_window_s", "0.005");
-    add("detection.search_interval_s", "2", "detection.longest_search_interval_s", "1");
-    add("bursts.shortest_gap_s", "0.1", "bursts.longest_gap_s", "0.05");
-    add("ring_vote.smallest_radius_px", "90", "ring_vote.largest_radius_px", "80");
-    add("normal_flow.smallest_radius_px", "90", "normal_flow.largest_radius_px", "80");
-    add("moving_circle.last_gate_px", "3", "moving_circle.first_gate_px", "2");
-    add("grid.shortest_step_radii", "6", "grid.longest_step_radii", "5");
-    add("tracking.last_gate_px", "3.5", "tracking.first_gate_px", "3");
-    add("tracking.least_polarity_cosine", "0.9", "tracking.full_polarity_cosine", "0.1");
-    add("tracking.least_event_part", "0.9", "tracking.full_event_part", "0.1");
-    add("intrinsics.first_look_length_s", "2", "intrinsics.first_look_period_s", "1");
+    add("tuning.detection.search_interval_s", "2", "tuning.detection.longest_search_interval_s", "1");
+    add("tuning.bursts.shortest_gap_s", "0.1", "tuning.bursts.longest_gap_s", "0.05");
+    add("detection.smallest_radius_px", "90", "detection.largest_radius_px", "80");
+    add("tuning.moving_circle.last_gate_px", "3", "tuning.moving_circle.first_gate_px", "2");
+    add("tuning.grid.shortest_step_radii", "6", "tuning.grid.longest_step_radii", "5");
+    add("tuning.tracking.last_gate_px", "3.5", "tuning.tracking.first_gate_px", "3");
+    add("tuning.tracking.least_polarity_cosine", "0.9", "tuning.tracking.full_polarity_cosine", "0.1");
+    add("tuning.tracking.least_event_part", "0.9", "tuning.tracking.full_event_part", "0.1");
+    add("tuning.intrinsics.first_look_length_s", "2", "tuning.intrinsics.first_look_period_s", "1");
     add("intrinsics.least_views", "90", "intrinsics.most_views", "80");
-    add("initialisation.pair_gap_s", "0.4", "initialisation.longest_pair_s", "0.3");
-    add("initialisation.least_acceleration_m_s2", "50", "initialisation.largest_acceleration_m_s2", "40");
-    add("initialisation.least_rotation_rate_rad_s", "5", "initialisation.largest_rotation_rate_rad_s", "4");
+    add("tuning.initialisation.pair_gap_s", "0.4", "tuning.initialisation.longest_pair_s", "0.3");
+    add("tuning.initialisation.least_acceleration_m_s2", "50",
+        "tuning.initialisation.largest_acceleration_m_s2", "40");
+    add("tuning.initialisation.least_rotation_rate_rad_s", "5",
+        "tuning.initialisation.largest_rotation_rate_rad_s", "4");
   }
   void optionsThatExcludeEachOther_areRefused() {
     QFETCH(QString, lower);
@@ -165,18 +190,22 @@ class TestCalibrationOptions : public QObject {
   }
 
   void text_namesWhatPeopleTurn_andTheRestIfAsked() {
-    const std::string common = optionText(false), all = optionText(true);
-    for (const OptionRow& row : optionRows()) {
-      QVERIFY2((common.find(row.name + " ") != std::string::npos) == !row.expert, row.name.c_str());
-      QVERIFY2(all.find(row.name + " ") != std::string::npos, row.name.c_str());
+    for (const Level least : {Level::Public, Level::Expert, Level::Tuning}) {
+      const std::string text = optionText(least);
+      for (const OptionRow& row : optionRows())
+        QVERIFY2((text.find(row.name + " ") != std::string::npos) == (row.level >= least), row.name.c_str());
     }
-    QVERIFY(common.find("evical options --all") != std::string::npos);
+    QVERIFY(optionText(Level::Public).find("evical options --all") != std::string::npos);
   }
 
-  void markdown_namesEveryOption() {
-    const std::string text = optionMarkdown();
-    for (const OptionRow& row : optionRows())
+  void pages_nameEveryOption_butThoseOfTuning() {
+    const std::string text = optionMarkdown(), yaml = optionYaml();
+    for (const OptionRow& row : documentedOptions())
       QVERIFY2(text.find("`" + row.name + "`") != std::string::npos, row.name.c_str());
+    QVERIFY(std::count(text.begin(), text.end(), '\n') <= 150);
+    for (const std::string& page : {text, yaml})
+      for (const char* const tuned : {"tuning", "least_sine", "egomotion"})
+        QVERIFY2(page.find(tuned) == std::string::npos, tuned);
   }
 };
 

@@ -4,7 +4,19 @@
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 
+#include <algorithm>
+
 using namespace evical;
+
+namespace {
+
+std::string whyIdle(const Session& session, const std::string& name, const StreamTypes& types = {}) {
+  const std::vector<OptionRow> rows = optionRows();
+  const auto row = std::ranges::find(rows, name, &OptionRow::name);
+  return row == rows.end() ? "no such option" : evical::whyIdle(session, *row, types);
+}
+
+}  // namespace
 
 class TestIdleOptions : public QObject {
   Q_OBJECT
@@ -12,15 +24,15 @@ class TestIdleOptions : public QObject {
  private slots:
   void searches_areIdle_whereTheOtherOneIsUsed() {
     Session session = test::simulatePass(0.5).session;
-    QCOMPARE(whyIdle(session, "ring_vote.least_score"),
+    QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
              std::string("ring votes are used only where normal flow finds no board"));
     session.options.front_end.detection.try_both = false;
-    QCOMPARE(whyIdle(session, "ring_vote.least_score"),
+    QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
              std::string("circles are looked for by normal flow alone"));
-    QVERIFY(whyIdle(session, "normal_flow.fastest_px_s").empty());
+    QVERIFY(whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
     session.options.front_end.detection.method = CandidateSource::RingVote;
-    QVERIFY(whyIdle(session, "ring_vote.least_score").empty());
-    QVERIFY(!whyIdle(session, "normal_flow.fastest_px_s").empty());
+    QVERIFY(whyIdle(session, "tuning.ring_vote.least_score").empty());
+    QVERIFY(!whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
   }
 
   void intrinsics_areIdle_whereTheyAreGiven() {
@@ -34,10 +46,23 @@ class TestIdleOptions : public QObject {
     Session session = test::simulatePass(0.5).session;
     for (const OptionRow& row : optionRows())
       for (const char* const group : {"check.", "maintain.", "egomotion.", "edge_slopes.", "blink."})
-        if (row.name.starts_with(group)) QVERIFY2(!whyIdle(session, row.name).empty(), row.name.c_str());
+        if (nameInTables(row.name).starts_with(group))
+          QVERIFY2(!whyIdle(session, row.name).empty(), row.name.c_str());
     session.board_blinks = true;
     for (const OptionRow& row : optionRows())
-      if (row.name.starts_with("blink.")) QVERIFY2(whyIdle(session, row.name).empty(), row.name.c_str());
+      if (nameInTables(row.name).starts_with("blink."))
+        QVERIFY2(whyIdle(session, row.name).empty(), row.name.c_str());
+  }
+
+  void streams_decideAboutFramesAndEvents() {
+    const Session session = test::simulatePass(0.5).session;
+    const std::string stream = session.cameras.front().stream;
+    QVERIFY(whyIdle(session, "frames.rate_hz").empty() && whyIdle(session, "grid.least_circles").empty());
+    const StreamTypes events{{stream, StreamType::Events}}, frames{{stream, StreamType::Frames}};
+    QCOMPARE(whyIdle(session, "frames.rate_hz", events), std::string("no camera gives frames"));
+    QVERIFY(whyIdle(session, "grid.least_circles", events).empty());
+    QCOMPARE(whyIdle(session, "grid.least_circles", frames), std::string("no camera gives events"));
+    QVERIFY(whyIdle(session, "frames.rate_hz", frames).empty());
   }
 
   void imus_decideAboutTheirs() {
@@ -61,7 +86,7 @@ class TestIdleOptions : public QObject {
           "optimisation.model.gyroscope_random_walk", "optimisation.priors.smooth_rotation_rad_s2"})
       QVERIFY2(!whyIdle(session, name).empty(), name);
     for (const char* const name :
-         {"detection.method", "tracking.first_gate_px", "optimisation.solver.threads"})
+         {"detection.method", "tuning.tracking.first_gate_px", "optimisation.solver.threads"})
       QVERIFY2(whyIdle(session, name).empty(), name);
   }
 };

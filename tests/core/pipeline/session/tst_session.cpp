@@ -44,7 +44,7 @@ prior:
   time_offset_search_s: 0.5
 options:
   grid: {least_circles: 7}
-  bursts.least_events: 3
+  tuning.bursts.least_events: 3
 )";
 
 const char* const kSessionCamchain = R"(cam0:
@@ -134,15 +134,26 @@ class TestSession : public QObject {
   }
   void optionInAGroupOfGroups_isReadInEveryForm() {
     QFETCH(QString, text);
-    const Session session = sessionWith("bursts.least_events: 3", text);
+    const Session session = sessionWith("tuning.bursts.least_events: 3", text);
     QCOMPARE(session.options.optimisation.threads, 7);
     QVERIFY(sessionYaml(session, folder()).find("optimisation.solver.threads: 7") != std::string::npos);
   }
 
+  void tuning_isReadInEveryForm_andWritten() {
+    for (const char* const text : {"tuning.bursts.least_events: 4", "tuning: {bursts.least_events: 4}",
+                                   "tuning: {bursts: {least_events: 4}}"}) {
+      const Session session = sessionWith("tuning.bursts.least_events: 3", text);
+      QCOMPARE(session.options.front_end.bursts.least_events, 4);
+      QVERIFY(sessionYaml(session, folder()).find("\n  tuning.bursts.least_events: 4\n") !=
+              std::string::npos);
+    }
+  }
+
   void everyDefault_canBeRead() {
     std::string defaults = optionYaml();
-    const Session session = sessionWith("options:\n  grid: {least_circles: 7}\n  bursts.least_events: 3\n",
-                                        QString::fromStdString(defaults));
+    const Session session =
+        sessionWith("options:\n  grid: {least_circles: 7}\n  tuning.bursts.least_events: 3\n",
+                    QString::fromStdString(defaults));
     QCOMPARE(differingOptions(session.options).size(), std::size_t(0));
   }
 
@@ -619,9 +630,12 @@ correlation:
     row("option's value", "least_circles: 7", "least_circles: 1",
         {"options.grid.least_circles", "least of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
-    row("part of a group", "bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
+    row("part of a group", "tuning.bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
         {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
-    row("options that exclude each other", "bursts.least_events: 3", "detection: {shortest_window_s: 0.1}",
+    row("tuning without its name", "tuning.bursts.least_events: 3", "bursts: {least_events: 3}",
+        {"options.bursts.least_events (line 32)", "Write tuning.bursts.least_events"});
+    row("options that exclude each other", "tuning.bursts.least_events: 3",
+        "detection: {shortest_window_s: 0.1}",
         {"options (line 30)", "detection.shortest_window_s (0.1 s) is above", "longest_window_s (0.05 s)"});
     row("prior", "time_offset_search_s: 0.5", "time_offset_search_s: 90",
         {"prior.time_offset_search_s", "60 s"});
