@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints every figure of the README: all scenarios of config/scenarios, seeds, what is spoilt one thing at a time, centres,
+# Prints every figure of docs/accuracy.md: all scenarios of config/scenarios, seeds, what is spoilt one thing at a time, centres,
 # intrinsics, starts, then the costs of the hot paths and of reading files. Takes some hours on two cores. Fails where a wrong result
 # is called ok, or the errors over sigmas of twenty seeds leave 0.7 to 1.4, or a benchmark misses its targets.
 set -uo pipefail

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What MkDocs needs for docs/ (mkdocs.yml, hooks): one text stands in one place, so pages take parts of other documents,
-    [its title](../README.md#a-section) <!-- include -->
-    [its title](../README.md#a-section) <!-- include from "First words of a line" to "First words of a later line" -->
-notebooks become pages, and files of the repository that pages link to are on the site, too."""
+"""Hooks of MkDocs for docs/ (mkdocs.yml). Pages include CHANGELOG.md, CONTRIBUTING.md and sections of the window's user guide,
+    [its title](../resources/user_guide.md#a-section) <!-- include -->
+notebooks become pages, and files of the repository that pages link to are copied to the site."""
 import logging
 import os
 import re
@@ -14,8 +13,7 @@ from mkdocs.structure.files import File
 
 log = logging.getLogger("mkdocs.plugins.docs_site")
 
-INCLUDE = re.compile(r'^\[[^\]\n]*\]\((?P<path>[^)#\n]+)(?:#(?P<anchor>[^)\n]+))?\) '
-                     r'<!-- include(?: from "(?P<begin>[^\n]*?)" to "(?P<end>[^\n]*?)")? -->$', re.MULTILINE)
+INCLUDE = re.compile(r"^\[[^\]\n]*\]\((?P<path>[^)#\n]+)(?:#(?P<anchor>[^)\n]+))?\) <!-- include -->$", re.MULTILINE)
 # Code first: what looks like a link there is none.
 LINK_OR_CODE = re.compile(r"^```.*?^```|^ {4}[^\n]*|``[^\n]+?``|`[^`\n]*`|(?P<text>!?\[[^\[\]]*\])\((?P<target>[^()\s]+)\)",
                           re.MULTILINE | re.DOTALL)
@@ -56,16 +54,6 @@ def section(text, anchor):
     return None
 
 
-def between(text, begin, end):
-    """Lines from the one that begins with these words to before the other; None: not there."""
-    lines = text.split("\n")
-    first = next((i for i, line in enumerate(lines) if line.startswith(begin)), None)
-    if first is None:
-        return None
-    last = next((i for i, line in enumerate(lines) if i > first and line.startswith(end)), None)
-    return None if last is None else "\n".join(lines[first:last])
-
-
 def root(config):
     return os.path.dirname(config["config_file_path"])
 
@@ -79,8 +67,6 @@ def included(config, page_path, match):
     """The text, and which file of the repository it is of."""
     path = os.path.normpath(os.path.join(os.path.dirname(page_path), match["path"]))
     text = section(read(config, path), match["anchor"]) if os.path.isfile(os.path.join(root(config), path)) else None
-    if text is not None and match["begin"]:
-        text = between(text, match["begin"], match["end"])
     if text is None:
         log.warning("%s: there is no such text: %s", page_path, match.group(0))
     return text or "", path

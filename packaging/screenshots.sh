@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of README, tour and documentation site, of the demo recording. Without a display. With a folder as
+# Makes the pictures of README and documentation site, of the demo recording. Without a display. With a folder as
 # argument: every screen, light and dark, there.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -105,7 +105,7 @@ class ScratchFolder {
   QTemporaryDir directory_;
 };
 
-inline std::string fileContent(const std::filesystem::path& path) {
+inline std::string fileBytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }

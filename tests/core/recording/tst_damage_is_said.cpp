@@ -51,7 +51,7 @@ class TestDamageIsSaid : public QObject {
 
 void TestDamageIsSaid::aedat4_everyBitOfTheDescription() {
   write(*createAedat4(folder_ / "whole.aedat4", kStreams, false));
-  const std::string whole = fileContent(folder_ / "whole.aedat4");
+  const std::string whole = fileBytes(folder_ / "whole.aedat4");
   const std::size_t begin = whole.find("<dv"), end = whole.find("</dv>");
   for (std::size_t at = begin; at < end; ++at) {
     for (const int bit : {0, 1, 5}) {
@@ -65,7 +65,7 @@ void TestDamageIsSaid::aedat4_everyBitOfTheDescription() {
 
 void TestDamageIsSaid::aedat4_falseType_isThatOfThePackets() {
   write(*createAedat4(folder_ / "whole.aedat4", kStreams, false));
-  std::string bytes = fileContent(folder_ / "whole.aedat4");
+  std::string bytes = fileBytes(folder_ / "whole.aedat4");
   bytes[bytes.find("EVTS")] = 'G';
   bytes[bytes.find("IMUS")] = 'M';
   const Contents contents = readAll(folder_.write("type.aedat4", bytes));
@@ -78,7 +78,7 @@ void TestDamageIsSaid::aedat4_falseType_isThatOfThePackets() {
 
 void TestDamageIsSaid::hdf5_zeroTail() {
   write(*createDsec(folder_ / "whole.h5", kStreams));
-  const std::string whole = fileContent(folder_ / "whole.h5");
+  const std::string whole = fileBytes(folder_ / "whole.h5");
   for (std::size_t count = 64; count < whole.size(); count += 64) {
     std::string bytes = whole;
     bytes.replace(bytes.size() - count, count, std::string(count, '\0'));
@@ -89,7 +89,7 @@ void TestDamageIsSaid::hdf5_zeroTail() {
 // One letter of a dataset's name: the IMU's other two are left over.
 void TestDamageIsSaid::hdf5_lostName() {
   write(*createDsec(folder_ / "whole.h5", kStreams));
-  const std::string whole = fileContent(folder_ / "whole.h5");
+  const std::string whole = fileBytes(folder_ / "whole.h5");
   for (const std::string& name : {std::string("omega"), std::string("accel")}) {
     std::string bytes = whole;
     for (std::size_t at = bytes.find(name); at != std::string::npos; at = bytes.find(name, at + 1))

@@ -186,7 +186,7 @@ void TestRosbag::pythonBags_areRead() {
 }
 
 void TestRosbag::withoutIndex_everythingIsRead() {
-  std::string bytes = fileContent(makeBag(true, 50'000));
+  std::string bytes = fileBytes(makeBag(true, 50'000));
   const std::size_t field = bytes.find("index_pos=") + 10;
   bytes.replace(field, 8, 8, '\0');
   writeFile(path("no_index.bag"), bytes);
@@ -203,7 +203,7 @@ void TestRosbag::withoutIndex_everythingIsRead() {
 void TestRosbag::truncation_givesWhatIsWhole() {
   QFETCH(bool, lz4);
   const Recording written = sampleRecording(80'000);
-  const std::string bytes = fileContent(makeBag(lz4, 80'000));
+  const std::string bytes = fileBytes(makeBag(lz4, 80'000));
   std::size_t most = 0;
   for (std::size_t size = 13; size < bytes.size(); size += 1 + bytes.size() / 80) {
     writeFile(path("cut.bag"), bytes.substr(0, size));
@@ -219,7 +219,7 @@ void TestRosbag::truncation_givesWhatIsWhole() {
 
 void TestRosbag::corruption_neverCrashes() {
   QFETCH(bool, lz4);
-  const std::string bytes = fileContent(makeBag(lz4, 30'000));
+  const std::string bytes = fileBytes(makeBag(lz4, 30'000));
   std::mt19937 random(7);
   for (int i = 0; i < 150; ++i) {
     std::string broken = bytes;
@@ -251,7 +251,7 @@ void TestRosbag::lyingLengths_areRefused_data() {
 void TestRosbag::lyingLengths_areRefused() {
   QFETCH(bool, before_name);
   QFETCH(QByteArray, name);
-  std::string bytes = fileContent(makeBag(false, 10'000));
+  std::string bytes = fileBytes(makeBag(false, 10'000));
   const std::size_t found = bytes.find(name.toStdString());
   QVERIFY(found != std::string::npos);
   const std::size_t at = found + static_cast<std::size_t>(before_name ? 0 : name.size());

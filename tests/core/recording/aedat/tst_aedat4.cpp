@@ -339,7 +339,7 @@ void TestAedat4::damagedTable_isNotNeeded() {
   const auto writer = createAedat4(path, {{"events", StreamType::Events, "", {64, 48}}}, false);
   writer->write(0, someEvents(5000));
   writer->finish();
-  std::string bytes = fileContent(path);
+  std::string bytes = fileBytes(path);
   bytes.replace(bytes.size() - 20, 20, std::string(20, '\xEE'));
   const Contents contents = readAll(folder_.write("table.aedat4", bytes));
   QCOMPARE(contents.eventCount(), 5000u);

@@ -322,7 +322,7 @@ void TestHdf5::missingDatasets_areBadInput() {
 }
 
 void TestHdf5::unknownFilter_isNamed() {
-  std::string bytes = fileContent(writeSample(1'000));
+  std::string bytes = fileBytes(writeSample(1'000));
   // The filter's number stands in the description of every dataset, as the id 32001 before the name "blosc".
   const std::string id("\x01\x7D", 2);
   for (std::size_t at = bytes.find(id); at != std::string::npos; at = bytes.find(id, at + 1))
@@ -336,7 +336,7 @@ void TestHdf5::unknownFilter_isNamed() {
 }
 
 void TestHdf5::cutAnywhere_isBadInputOrStated() {
-  const std::string whole = fileContent(writeSample(10'000));
+  const std::string whole = fileBytes(writeSample(10'000));
   for (std::size_t length = 0; length < whole.size(); length += 101) {
     try {
       const Contents contents = readAll(folder_.write("cut.h5", whole.substr(0, length)));
@@ -364,7 +364,7 @@ for k, v in dict(x=(i % 64).astype('u2'), y=(i % 48).astype('u2'), p=(i % 2).ast
                                       compression.toStdString() + R"(', chunks=(65536,))
 print(f['events/t'].id.get_chunk_info(1).byte_offset))",
                                   folder_.path());
-  std::string bytes = fileContent(folder_ / "chunk.h5");
+  std::string bytes = fileBytes(folder_ / "chunk.h5");
   bytes.replace(place.trimmed().toUInt() + 8, 64, std::string(64, '\xFF'));
   const Contents contents = readAll(folder_.write("chunk_damaged.h5", bytes));
   QCOMPARE(contents.eventCount(), 200'000u - 65'536u);
@@ -396,7 +396,7 @@ void TestHdf5::foundByTheFuzzer_isRefused() {
 }
 
 void TestHdf5::damageAnywhere_neverCrashes() {
-  const std::string whole = fileContent(writeSample(2'000));
+  const std::string whole = fileBytes(writeSample(2'000));
   for (std::size_t at = 0; at < whole.size(); at += 97) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x55);

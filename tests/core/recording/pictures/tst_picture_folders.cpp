@@ -123,7 +123,7 @@ void TestPictureFolders::oneEurocCamera_isARecording() {
 
 void TestPictureFolders::eurocLists_sayBadLines() {
   addEurocCamera("cam0", 2);
-  std::string list = fileContent(*scratch_ / "cam0/data.csv");
+  std::string list = fileBytes(*scratch_ / "cam0/data.csv");
   scratch_->write("cam0/data.csv", list + "no time,a.png\r\n1403636\r\n");
   const Contents contents = readEverything(*scratch_ / "cam0");
   QCOMPARE(contents.frameCount(), 2u);

@@ -175,7 +175,7 @@ void TestMcap::writer_refusesTimesThatRosCannotHold() {
 void TestMcap::truncation_givesWhatIsWhole() {
   QFETCH(McapCompression, compression);
   const std::vector<Event> events = someEvents(200'000);
-  const std::string whole = fileContent(write(compression, events, someSamples(2000)));
+  const std::string whole = fileBytes(write(compression, events, someSamples(2000)));
   std::size_t most = 0;
   const std::size_t step = whole.size() / 40 + 1;
   for (std::size_t size = 8; size < whole.size(); size += step) {
@@ -203,7 +203,7 @@ void TestMcap::truncationAtEveryByte_ofAPlainFile_isSurvived() {
 
 void TestMcap::corruption_isSurvived() {
   QFETCH(McapCompression, compression);
-  const std::string whole = fileContent(write(compression, someEvents(20'000), someSamples(100)));
+  const std::string whole = fileBytes(write(compression, someEvents(20'000), someSamples(100)));
   std::mt19937 random(7);
   for (int i = 0; i < 60; ++i) {
     std::string damaged = whole;
@@ -248,7 +248,7 @@ void TestMcap::missingSchema_isSaid() {
 
 void TestMcap::corruptChunk_losesNoOther() {
   const std::vector<Event> events = someEvents(300'000);
-  std::string bytes = fileContent(write(McapCompression::Zstd, events, someSamples(10)));
+  std::string bytes = fileBytes(write(McapCompression::Zstd, events, someSamples(10)));
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   bytes[bytes.size() / 2 + 100] = static_cast<char>(bytes[bytes.size() / 2 + 100] ^ 0x55);
   const Contents contents = readAll(folder_.write("damaged.mcap", bytes));
@@ -259,7 +259,7 @@ void TestMcap::corruptChunk_losesNoOther() {
 // A chunk that says it holds 2^60 bytes.
 void TestMcap::lyingSizes_takeNoMemory() {
   for (const std::string_view name : {"lz4", "zstd"}) {
-    std::string bytes = fileContent(write(name == "lz4" ? McapCompression::Lz4 : McapCompression::Zstd,
+    std::string bytes = fileBytes(write(name == "lz4" ? McapCompression::Lz4 : McapCompression::Zstd,
                                           someEvents(1000), someSamples(10)));
     const std::size_t compression = bytes.find(name);
     bytes[compression - 4 - 4 - 1] = 0x10;  // the highest byte of the uncompressed size

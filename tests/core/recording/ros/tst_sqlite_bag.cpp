@@ -120,7 +120,7 @@ void TestSqliteBag::filePackedWithZstd_isRead() {
   const std::filesystem::path folder = makeFolder("packed");
   std::string packed;
   for (const char* name : {"p_0.db3", "p_1.db3"}) {
-    const std::string plain = fileContent(fill(name, name[2] == '0' ? 0 : 30, 30));
+    const std::string plain = fileBytes(fill(name, name[2] == '0' ? 0 : 30, 30));
     ros::packZstd(plain, packed);
     std::ofstream(folder / (std::string(name) + ".zstd"), std::ios::binary) << packed;
   }
@@ -161,14 +161,14 @@ void TestSqliteBag::missingFile_isSaid() {
 
 void TestSqliteBag::otherDatabase_isRefused() {
   writeSqliteBag(folder_ / "other.db3", {}, {});
-  std::string bytes = fileContent(folder_ / "other.db3");
+  std::string bytes = fileBytes(folder_ / "other.db3");
   for (std::size_t at = bytes.find("messages"); at != std::string::npos; at = bytes.find("messages"))
     bytes.replace(at, 8, "passages");
   QVERIFY_EXCEPTION_THROWN(openRecording(folder_.write("other.db3", bytes)), CalibrationError);
 }
 
 void TestSqliteBag::truncation_isSurvived() {
-  const std::string whole = fileContent(fill("whole.db3", 0, 300));
+  const std::string whole = fileBytes(fill("whole.db3", 0, 300));
   std::size_t most = 0;
   for (std::size_t part = 1; part < 20; ++part) {
     const std::filesystem::path path =
@@ -184,7 +184,7 @@ void TestSqliteBag::truncation_isSurvived() {
 }
 
 void TestSqliteBag::corruption_isSurvived() {
-  const std::string whole = fileContent(fill("whole.db3", 0, 100));
+  const std::string whole = fileBytes(fill("whole.db3", 0, 100));
   std::mt19937 random(7);
   std::size_t read = 0;
   for (int i = 0; i < 60; ++i) {
@@ -205,7 +205,7 @@ void TestSqliteBag::pageOutOfPlace_endsTheReading() {
   std::vector<RosMessage> messages = messagesFrom(0, 200);
   for (const bool with_index : {true, false}) {
     writeSqliteBag(folder_ / "whole.db3", kSqliteBagTopics, messages, with_index);
-    const std::string whole = fileContent(folder_ / "whole.db3");
+    const std::string whole = fileBytes(folder_ / "whole.db3");
     for (std::size_t at = 4 * kPage_bytes; at + kPage_bytes < whole.size(); at += kPage_bytes + 1021) {
       const std::string twice = whole.substr(0, at + kPage_bytes) + whole.substr(at);
       std::size_t events = 0;
