@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace evical {
 namespace {
 
@@ -80,7 +82,8 @@ ExportedFiles exportM3ed(const NamedResult& result) {
   lines.insert(lines.end(), notes.begin(), notes.end());
   const std::string text = readMe(rig, lines);
   const auto fill = [&](const Hdf5Sink& sink) { std::for_each(datasets.begin(), datasets.end(), sink); };
-  exported.files.push_back({"calibration.h5", hdf5Content(fill, text)});
+  exported.files.push_back(
+      {"calibration.h5", wholeText([&](const TextSink& sink) { writeHdf5(fill, text, sink); })});
   exported.files.push_back({"README.txt", text});
   return exported;
 }

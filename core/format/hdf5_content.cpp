@@ -185,12 +185,12 @@ Hdf5Dataset datasetOf(hid_t dataset, const std::string& path, const std::string&
 // Closed as it is used: by one thread at a time.
 class OpenedFile {
  public:
-  OpenedFile(std::string content, const std::string& file) : file_(file) {
+  OpenedFile(std::string_view content, const std::string& file) : file_(file) {
     const InLibrary library;
     const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     require(H5Pset_fapl_core(*access, kStep_bytes, false));
-    // The library asks for what it may change.
-    require(H5Pset_file_image(*access, content.data(), content.size()));
+    // The library asks for what it may change, and copies it.
+    require(H5Pset_file_image(*access, const_cast<char*>(content.data()), content.size()));
     const hid_t opened = H5Fopen(nameInMemory().c_str(), H5F_ACC_RDONLY, *access);
     if (opened < 0) throw badInput(file, "is no HDF5 file, or is cut off", "Export again");
     handle_ = held(opened, H5Fclose);
@@ -217,7 +217,8 @@ class OpenedFile {
 
 }  // namespace
 
-std::string hdf5Content(const std::function<void(const Hdf5Sink& add)>& fill, const std::string& comment) {
+void writeHdf5(const std::function<void(const Hdf5Sink& add)>& fill, const std::string& comment,
+               const TextSink& sink) {
   const InLibrary library;
   const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   require(H5Pset_fapl_core(*access, kStep_bytes, false));  // in memory
@@ -225,14 +226,14 @@ std::string hdf5Content(const std::function<void(const Hdf5Sink& add)>& fill, co
   fill([&](const Hdf5Dataset& dataset) { writeDataset(*file, dataset); });
   writeComment(*file, comment);
   require(H5Fflush(*file, H5F_SCOPE_GLOBAL));
+  void* memory = nullptr;  // where it is, not copied: it may be large
+  require(H5Fget_vfd_handle(*file, H5P_DEFAULT, &memory));
   const ssize_t size = H5Fget_file_image(*file, nullptr, 0);
-  std::string content(static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
-  if (size <= 0 || H5Fget_file_image(*file, content.data(), content.size()) != size)
-    throw calibrationFailed("HDF5", "the file cannot be made");
-  return content;
+  require(size > 0 ? 0 : -1);
+  sink({*static_cast<const char**>(memory), static_cast<std::size_t>(size)});
 }
 
-Hdf5Source hdf5Source(const std::string& content, const std::string& file) {
+Hdf5Source hdf5Source(std::string_view content, const std::string& file) {
   const auto opened = std::make_shared<const OpenedFile>(content, file);
   return [opened](const std::string& path) { return opened->dataset(path); };
 }

@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -59,28 +59,22 @@ inline constexpr int kWidth = 0;
 template <class T, std::size_t Size>
 inline constexpr int kWidth<std::array<T, Size>> = static_cast<int>(Size);
 template <class T, int Rows, int Cols>
-inline constexpr int kWidth<Eigen::Matrix<T, Rows, Cols>> = Rows > 0 && Cols > 0 ? Rows* Cols : 0;
+inline constexpr int kWidth<Eigen::Matrix<T, Rows, Cols>> = Rows == Eigen::Dynamic ? 0 : Rows* Cols;
 template <>
 inline constexpr int kWidth<Eigen::Quaterniond> = 4;
 
 template <class T>
-inline constexpr bool kIsNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
-template <class T>
-concept Listed = requires(T& value) {
-  value.push_back(value.front());
-}
-&&!std::is_same_v<T, std::string>;
-template <class T>
-concept Optional = requires(T& value) {
-  value.emplace();
+inline constexpr bool kIsOptional = requires(T& value) {
   value.has_value();
-}
-&&!Listed<T>;
+};
 template <class T>
-concept DynamicMatrix = requires(T& value) {
-  value.resize(value.rows(), value.cols());
-}
-&&kWidth<T> == 0;
+inline constexpr bool kIsMatrix = requires(T& value) {
+  value.cols();
+};
+template <class T>
+inline constexpr bool kIsSized = kIsOptional<T> || kIsMatrix<T> || requires(T& value) {
+  value.emplace_back();
+};
 
 // As what a column holds numbers or texts.
 template <class T>
@@ -115,8 +109,8 @@ class Writer {
 class Reader {
  public:
   static constexpr bool kReads = true;
-  // No list claims to be longer than `most`.
-  Reader(const Hdf5Source& source, std::size_t most) : source_(source), most_(most) {}
+  Reader(const Hdf5Source& source, std::size_t most)
+      : source_(source), left_(static_cast<std::int64_t>(most)) {}
 
   // False where there is none.
   template <class T>
@@ -129,121 +123,79 @@ class Reader {
     return true;
   }
 
-  // Of lists, or of matrices' columns by so many rows.
-  void checkSizes(const std::vector<std::int64_t>& sizes, std::int64_t rows = 1) const {
-    std::int64_t left = static_cast<std::int64_t>(most_) / std::max<std::int64_t>(rows, 1);
-    for (const std::int64_t size : sizes)
-      if (rows < 0 || size < 0 || (left -= std::min(size, left + 1)) < 0) throw damaged();
+  // All lists and matrices together are no longer than `most`.
+  template <class T>
+  void resize(T& value, std::int64_t rows, std::int64_t columns) {
+    if (rows < 0 || columns < 0 || (columns > 0 && rows > left_ / columns)) throw damaged();
+    left_ -= rows * columns;
+    if constexpr (kIsMatrix<T>) {
+      if (T::ColsAtCompileTime != Eigen::Dynamic && columns != T::ColsAtCompileTime) throw damaged();
+      value.resize(rows, columns);
+    } else if constexpr (!kIsOptional<T>) {
+      value.resize(static_cast<std::size_t>(rows));
+    } else {
+      if (rows > 1) throw damaged();
+      value.reset();
+      if (rows == 1) value.emplace();
+    }
   }
 
  private:
   template <class T>
   static T valueOf(const Stored<T>& stored) {
-    if constexpr (std::is_same_v<T, std::string> || std::is_floating_point_v<T>) {
-      return stored;
-    } else if constexpr (std::is_enum_v<T>) {
+    if constexpr (std::is_enum_v<T>) {
       if (stored < 0 || stored > static_cast<std::int64_t>(kLast<T>)) throw damaged();
-      return static_cast<T>(stored);
     } else if constexpr (std::is_same_v<T, bool>) {
       if (stored < 0 || stored > 1) throw damaged();
-      return stored == 1;
-    } else {
+    } else if constexpr (std::is_integral_v<T>) {
       if (!std::in_range<T>(stored)) throw damaged();
-      return static_cast<T>(stored);
     }
+    return static_cast<T>(stored);
   }
 
   const Hdf5Source& source_;
-  std::size_t most_;
+  std::int64_t left_;
 };
 
-template <class Io, class T>
-bool visit(Io& io, const std::string& path, const std::vector<T*>& values);
-
-template <class Io>
-bool visitSizes(Io& io, const std::string& path, std::vector<std::int64_t>& sizes) {
-  std::vector<std::int64_t*> each;
-  for (std::int64_t& size : sizes) each.push_back(&size);
-  return io.column(path, 1, each);
-}
-
-// The numbers of all of them, in the order in which Eigen has them.
+// What there is in one that holds several, or perhaps one.
 template <class T>
-auto numbersOf(const std::vector<T*>& values) {
-  if constexpr (std::is_same_v<std::remove_const_t<T>, Eigen::Quaterniond>) {
-    std::vector<decltype(&values.front()->coeffs())> coefficients;
-    for (T* const value : values) coefficients.push_back(&value->coeffs());
-    return numbersOf(coefficients);
-  } else {
-    std::vector<decltype(values.front()->data())> numbers;
-    for (T* const value : values)
-      for (decltype(value->size()) k = 0; k < value->size(); ++k) numbers.push_back(value->data() + k);
-    return numbers;
-  }
-}
-
-template <class Io, class T>
-bool visitMatrices(Io& io, const std::string& path, const std::vector<T*>& values) {
-  std::vector<std::int64_t> rows, columns;
-  for (const T* value : values) {
-    rows.push_back(value->rows());
-    columns.push_back(value->cols());
-  }
-  if (!visitSizes(io, path + "/rows", rows) || !visitSizes(io, path + "/columns", columns)) return false;
-  if constexpr (Io::kReads)
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      io.checkSizes({columns[k]}, rows[k]);
-      if (T::ColsAtCompileTime > 0 && columns[k] != T::ColsAtCompileTime) throw damaged();
-      values[k]->resize(rows[k], columns[k]);
-    }
-  const auto numbers = numbersOf(values);
-  return numbers.empty() || io.column(path + "/values", 1, numbers);
+auto spanOf(T& value) {
+  if constexpr (kIsOptional<T>)
+    return std::span(value ? &*value : nullptr, value ? 1 : 0);
+  else if constexpr (std::is_same_v<std::remove_const_t<T>, Eigen::Quaterniond>)
+    return std::span(value.coeffs().data(), 4);
+  else
+    return std::span(value.data(), static_cast<std::size_t>(value.size()));
 }
 
 template <class T>
 auto itemsOf(const std::vector<T*>& values) {
-  if constexpr (Optional<std::remove_const_t<T>>) {
-    std::vector<decltype(&**values.front())> items;
-    for (T* const value : values)
-      if (value->has_value()) items.push_back(&**value);
-    return items;
-  } else {
-    std::vector<decltype(&values.front()->front())> items;
-    for (T* const value : values)
-      for (auto& item : *value) items.push_back(&item);
-    return items;
-  }
+  std::vector<decltype(spanOf(*values.front()).data())> items;
+  for (T* const value : values)
+    for (auto& item : spanOf(*value)) items.push_back(&item);
+  return items;
 }
 
-// Lists, and optional values as lists of one or none.
 template <class Io, class T>
-bool visitLists(Io& io, const std::string& path, const std::vector<T*>& values) {
-  constexpr bool kOptional = Optional<std::remove_const_t<T>>;
-  std::vector<std::int64_t> sizes;
-  for (const T* value : values) {
-    if constexpr (kOptional)
-      sizes.push_back(value->has_value() ? 1 : 0);
-    else
-      sizes.push_back(static_cast<std::int64_t>(value->size()));
-  }
-  if (!visitSizes(io, path + "/count", sizes)) return false;
-  if constexpr (Io::kReads) {
-    io.checkSizes(sizes);
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if constexpr (!kOptional)
-        values[k]->resize(static_cast<std::size_t>(sizes[k]));
-      else if (sizes[k] > 1)
-        throw damaged();
-      else if (sizes[k] == 1)
-        values[k]->emplace();
-      else
-        values[k]->reset();
+bool visit(Io& io, const std::string& path, const std::vector<T*>& values);
+
+template <class Io, class T>
+bool visitSized(Io& io, const std::string& path, const std::vector<T*>& values) {
+  std::vector<std::int64_t> rows, columns(values.size(), 1);
+  for (T* const value : values) {
+    rows.push_back(static_cast<std::int64_t>(spanOf(*value).size()));
+    if constexpr (kIsMatrix<T>) {
+      rows.back() = value->rows();
+      columns[rows.size() - 1] = value->cols();
     }
   }
+  if (!io.column(path + "/count", 1, itemsOf(std::vector{&rows}))) return false;
+  if (kIsMatrix<T> && !io.column(path + "/columns", 1, itemsOf(std::vector{&columns}))) return false;
+  if constexpr (Io::kReads)
+    for (std::size_t k = 0; k < values.size(); ++k) io.resize(*values[k], rows[k], columns[k]);
   const auto items = itemsOf(values);
-  using Item = std::remove_cvref_t<decltype(*items.front())>;
   if (items.empty()) return true;
-  if constexpr (requires { Fields<Item>::kAll; })
+  if constexpr (requires { Fields<std::remove_cvref_t<decltype(*items.front())>>::kAll; })
     return visit(io, path, items);
   else if (!visit(io, path + "/values", items))
     throw damaged();
@@ -256,14 +208,13 @@ bool visit(Io& io, const std::string& path, const std::vector<T*>& values) {
   using Value = std::remove_const_t<T>;
   if constexpr (kLeftOut<Value>) {
     return true;
-  } else if constexpr (kIsNumber<Value> || std::is_same_v<Value, std::string>) {
+  } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value> ||
+                       std::is_same_v<Value, std::string>) {
     return io.column(path, 1, values);
   } else if constexpr (kWidth<Value> > 0) {
-    return io.column(path, static_cast<std::size_t>(kWidth<Value>), numbersOf(values));
-  } else if constexpr (DynamicMatrix<Value>) {
-    return visitMatrices(io, path, values);
-  } else if constexpr (Listed<Value> || Optional<Value>) {
-    return visitLists(io, path, values);
+    return io.column(path, static_cast<std::size_t>(kWidth<Value>), itemsOf(values));
+  } else if constexpr (kIsSized<Value>) {
+    return visitSized(io, path, values);
   } else {
     const auto field = [&](const auto& named) {
       std::vector<decltype(&(values.front()->*named.second))> members;
@@ -278,14 +229,14 @@ bool visit(Io& io, const std::string& path, const std::vector<T*>& values) {
 
 template <class T>
 void write(const std::string& path, const T& value, const Hdf5Sink& sink) {
-  const Writer writer(sink);
+  Writer writer(sink);
   visit(writer, path, std::vector{&value});
 }
 
-// Throws CalibrationError (BadInput) where this is no such value; `most`: no list claims to be longer.
+// Throws CalibrationError (BadInput) where this is no such value, or its lists are longer than `most` together.
 template <class T>
 void read(const std::string& path, T& value, const Hdf5Source& source, std::size_t most) {
-  const Reader reader(source, most);
+  Reader reader(source, most);
   visit(reader, path, std::vector{&value});
 }
 

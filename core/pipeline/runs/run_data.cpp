@@ -124,10 +124,11 @@ unsigned long sumOf(std::string_view bytes) {
 
 template <class T>
 void addPart(const std::string& name, const T& value, const TextSink& sink) {
-  const std::string bytes =
-      hdf5Content([&](const Hdf5Sink& add) { columns::write(name, value, add); }, "Of a run: " + name);
-  sink(Part{name, bytes.size(), sumOf(bytes)}.line());
-  sink(bytes);
+  const auto fill = [&](const Hdf5Sink& add) { columns::write(name, value, add); };
+  writeHdf5(fill, "Of a run: " + name, [&](std::string_view bytes) {
+    sink(Part{name, bytes.size(), sumOf(bytes)}.line());
+    sink(bytes);
+  });
 }
 
 // Those before the place at which the file is cut off or damaged.
@@ -141,7 +142,7 @@ std::map<std::string, Hdf5Source> partsOf(std::string_view content) {
     line >> part.name >> part.size >> std::hex >> part.sum;
     content.remove_prefix(end + 1);
     if (!line || part.size > content.size()) break;
-    const std::string bytes(content.substr(0, part.size));
+    const std::string_view bytes = content.substr(0, part.size);
     content.remove_prefix(part.size);
     if (sumOf(bytes) == part.sum)
       parts[part.name] = hdf5Source(bytes, "run.data");
