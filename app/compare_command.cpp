@@ -1,26 +1,15 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/output.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "core/report/truth_comparison.h"
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 
 namespace evical {
-
-namespace {
-
-// People name folders.
-std::filesystem::path fileIn(const std::filesystem::path& path, const char* name) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored) ? path / name : path;
-}
-
-}  // namespace
 
 void addCompareCommand(Command& app, int& exit_code) {
   struct Arguments {
@@ -31,8 +20,9 @@ void addCompareCommand(Command& app, int& exit_code) {
   command.option("RESULT", arguments->result, "result.yaml, or the folder of a run").required();
   command.option("TRUTH", arguments->truth, "truth.yaml, or the folder that has it").required();
   command.action([arguments, &exit_code] {
-    print("{}", comparisonTable(compareWithTruth(readResultYaml(fileIn(arguments->result, "result.yaml")),
-                                                 readResultYaml(fileIn(arguments->truth, "truth.yaml")))));
+    print("{}",
+          comparisonTable(compareWithTruth(readResultYaml(resultFileOf(arguments->result)),
+                                           readResultYaml(resultFileOf(arguments->truth, "truth.yaml")))));
     exit_code = kDone;
   });
 }

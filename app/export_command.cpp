@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/export/export_target.h"
 #include "core/export/read_back.h"
+#include "core/pipeline/runs/saved_run.h"
 
 #include <fmt/format.h>
 
@@ -100,9 +101,7 @@ int writeAndCheck(const ExportArguments& arguments, const NamedResult& result, c
 int run(const ExportArguments& arguments) {
   const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
   namedTargets(arguments.targets);
-  std::error_code ignored;
-  const bool folder = std::filesystem::is_directory(arguments.result, ignored);
-  const NamedResult result = readResultYaml(folder ? arguments.result / "result.yaml" : arguments.result);
+  const NamedResult result = readResultYaml(resultFileOf(arguments.result));
   return arguments.checked.empty() ? writeAndCheck(arguments, result, stop)
                                    : checkEarlier(arguments, result, stop);
 }

@@ -21,11 +21,11 @@ rm -rf "$seeds"
 ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/evical_fuzz_seeds" "$seeds"
 /usr/bin/python3 tests/fuzz/hdf5_seeds.py "$seeds/hdf5"
 cp tests/fuzz/seeds/hdf5/*.h5 "$seeds/hdf5"
-mkdir -p "$seeds/yaml" "$seeds/calibrate"
+mkdir -p "$seeds/yaml" "$seeds/calibrate" "$seeds/run_data"
 for kind in $(seq 0 11); do  # a lie of each kind, of a second's size in the middle
   printf "\\x$(printf %02x "$kind")\\x60\\xa0\\x06\\x01\\x02" >"$seeds/calibrate/$kind"
 done
-cp -r tests/fuzz/seeds/detections tests/fuzz/seeds/run_data "$seeds"
+cp -r tests/fuzz/seeds/detections "$seeds"
 cp tests/fuzz/seeds/yaml/*.yaml config/*.yaml config/scenarios/*.yaml "$seeds/yaml"
 while IFS= read -r -d '' file; do
   case "$(head -c 8 "$file" | tr -d '\0')" in

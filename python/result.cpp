@@ -42,13 +42,11 @@ std::shared_ptr<const Result> resultOf(const Session& session, const Calibration
 }
 
 std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const bool folder = std::filesystem::is_directory(path, ignored);
-  const std::filesystem::path file = folder ? path / "result.yaml" : path;
+  const std::filesystem::path file = resultFileOf(path);
   auto result = std::make_shared<Result>();
   result->named = readResultYaml(file);
   // A file under another name was copied away from what stood beside it.
-  if (file.filename() == "result.yaml")
+  if (file.filename() == kResultFile)
     addRunData(file.parent_path() / "run.data", *result);
   else
     result->missing.push_back("the trajectory: only result.yaml in its folder has run.data beside it");

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace evical {
 namespace {
 
@@ -79,7 +81,9 @@ ExportedFiles exportM3ed(const NamedResult& result) {
       "GROUP/calib."};
   lines.insert(lines.end(), notes.begin(), notes.end());
   const std::string text = readMe(rig, lines);
-  exported.files.push_back({"calibration.h5", hdf5Content(datasets, text)});
+  const auto fill = [&](const Hdf5Sink& sink) { std::for_each(datasets.begin(), datasets.end(), sink); };
+  exported.files.push_back(
+      {"calibration.h5", wholeText([&](const TextSink& sink) { writeHdf5(fill, text, sink); })});
   exported.files.push_back({"README.txt", text});
   return exported;
 }

@@ -28,23 +28,18 @@ constexpr std::array kCameraKeys = {"/calib/camera_name",
 
 class Groups {
  public:
-  explicit Groups(const std::filesystem::path& path) : file_(path.string()) {
-    std::vector<std::string> paths = {std::string("/ovc/imu") + kPlace};
-    for (const char* const group : kCameraGroups)
-      for (const char* const key : kCameraKeys) paths.push_back(std::string(group) + key);
-    datasets_ = hdf5Datasets(textOf(path), file_, paths);
-  }
+  explicit Groups(const std::filesystem::path& path)
+      : file_(path.string()), datasets_(hdf5Source(textOf(path), file_)) {}
 
   bool has(const std::string& group) const {
-    return std::any_of(datasets_.begin(), datasets_.end(),
-                       [&](const Hdf5Dataset& each) { return each.path.starts_with(group + "/"); });
+    return std::any_of(kCameraKeys.begin(), kCameraKeys.end(),
+                       [&](const char* key) { return datasets_(group + key).has_value(); });
   }
 
   template <class Data>
   Data get(const std::string& path, const std::vector<std::size_t>& shape) const {
-    const auto found = std::find_if(datasets_.begin(), datasets_.end(),
-                                    [&](const Hdf5Dataset& each) { return each.path == path; });
-    if (found == datasets_.end()) throw badInput(place(path), "is missing", "Export again");
+    const std::optional<Hdf5Dataset> found = datasets_(path);
+    if (!found) throw badInput(place(path), "is missing", "Export again");
     const auto* const data = std::get_if<Data>(&found->data);
     if (data == nullptr || found->shape != shape) throw badInput(place(path), "is of another type or shape");
     return *data;
@@ -63,7 +58,7 @@ class Groups {
   std::string place(const std::string& path) const { return file_ + ": " + path; }
 
   std::string file_;
-  std::vector<Hdf5Dataset> datasets_;
+  Hdf5Source datasets_;
 };
 
 ReadCamera m3edCameraOf(const Groups& groups, const std::string& group) {

@@ -5,13 +5,15 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <functional>
 #include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
 
 namespace evical {
 namespace {
 
-constexpr std::size_t kStep_bytes = 16384;  // of a file in memory
+constexpr std::size_t kStep_bytes = 1 << 20;  // of a file in memory
 
 // Closes itself.
 using Handle = std::unique_ptr<const hid_t, std::function<void(const hid_t*)>>;
@@ -36,6 +38,16 @@ Handle textType() {
   return type;
 }
 
+hid_t narrowest(const std::vector<std::int64_t>& integers) {
+  const auto holdsAll = [&]<class Number>(Number) {
+    return std::ranges::all_of(integers, [](std::int64_t each) { return std::in_range<Number>(each); });
+  };
+  return holdsAll(std::int8_t{})    ? H5T_STD_I8LE
+         : holdsAll(std::int16_t{}) ? H5T_STD_I16LE
+         : holdsAll(std::int32_t{}) ? H5T_STD_I32LE
+                                    : H5T_STD_I64LE;
+}
+
 void writeDataset(hid_t file, const Hdf5Dataset& dataset) {
   const Handle links = held(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   require(H5Pset_create_intermediate_group(*links, 1));
@@ -51,15 +63,20 @@ void writeDataset(hid_t file, const Hdf5Dataset& dataset) {
         H5Dcreate2(file, dataset.path.c_str(), stored, *space, *links, *creation, H5P_DEFAULT), H5Dclose);
     require(H5Dwrite(*written, own, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
   };
-  if (const auto* const text = std::get_if<std::string>(&dataset.data)) {
+  const auto writeTexts = [&](std::span<const std::string> texts) {
     const Handle type = textType();
-    const char* const characters = text->c_str();
-    write(*type, *type, static_cast<const void*>(&characters));
-  } else if (const auto* const integers = std::get_if<std::vector<std::int64_t>>(&dataset.data)) {
-    write(H5T_STD_I64LE, H5T_NATIVE_INT64, integers->data());
-  } else {
+    std::vector<const char*> characters;
+    for (const std::string& text : texts) characters.push_back(text.c_str());
+    write(*type, *type, static_cast<const void*>(characters.data()));
+  };
+  if (const auto* const text = std::get_if<std::string>(&dataset.data))
+    writeTexts({text, 1});
+  else if (const auto* const texts = std::get_if<std::vector<std::string>>(&dataset.data))
+    writeTexts(*texts);
+  else if (const auto* const integers = std::get_if<std::vector<std::int64_t>>(&dataset.data))
+    write(dataset.narrow ? narrowest(*integers) : H5T_STD_I64LE, H5T_NATIVE_INT64, integers->data());
+  else
     write(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, std::get<std::vector<double>>(dataset.data).data());
-  }
 }
 
 void writeComment(hid_t file, const std::string& comment) {
@@ -77,44 +94,58 @@ void closeNothingAtExit() {
   static_cast<void>(once);
 }
 
-// Keeps the library from printing its errors, in this thread, for as long as it lives.
-class Quiet {
+// One thread in the library at a time, for not every build of it is safe for several; and it prints no errors.
+class InLibrary {
  public:
-  Quiet() {
+  InLibrary() : lock_(mutex()) {
     closeNothingAtExit();
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  ~InLibrary() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  InLibrary(const InLibrary&) = delete;
+  InLibrary& operator=(const InLibrary&) = delete;
 
  private:
+  static std::recursive_mutex& mutex() {
+    static std::recursive_mutex only;
+    return only;
+  }
+
+  std::lock_guard<std::recursive_mutex> lock_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };
 
-// What a file claims is not trusted: the numbers of a calibration are few.
-std::size_t sizeOf(const std::vector<hsize_t>& shape, const std::string& place) {
-  constexpr hsize_t kMost = 100'000;
+// A name for each: those of one name are one file to the library.
+std::string nameInMemory() {
+  static int made = 0;
+  return "in memory " + std::to_string(++made);
+}
+
+// What a file claims is not trusted: it has few numbers, or holds as many as it claims.
+std::size_t sizeOf(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, const std::string& place) {
+  constexpr hsize_t kFew = 100'000;
+  const hsize_t most = std::max(kFew, H5Dget_storage_size(dataset) / std::max<hsize_t>(H5Tget_size(type), 1));
   hsize_t size = 1;
   for (const hsize_t each : shape) {
-    if (each == 0 || each > kMost || size > kMost)
-      throw badInput(place, "is of no size that a calibration has");
+    if (each == 0 || each > most / size) throw badInput(place, "is not of the size that it claims");
     size *= each;
   }
   return static_cast<std::size_t>(size);
 }
 
-std::string textOf(hid_t dataset, hid_t type, const std::string& place) {
-  char* characters = nullptr;
+std::vector<std::string> textsOf(hid_t dataset, hid_t type, std::size_t size, const std::string& place) {
+  std::vector<char*> characters(size, nullptr);
   if (H5Tis_variable_str(type) <= 0 ||
-      H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<void*>(&characters)) < 0 ||
-      characters == nullptr)
+      H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<void*>(characters.data())) < 0)
     throw badInput(place, "is no text of any length");
-  std::string text = characters;
-  H5free_memory(characters);
-  return text;
+  std::vector<std::string> texts;
+  for (char* const each : characters) {
+    texts.emplace_back(each == nullptr ? "" : each);
+    H5free_memory(each);
+  }
+  return texts;
 }
 
 template <class Number>
@@ -132,56 +163,79 @@ Hdf5Dataset datasetOf(hid_t dataset, const std::string& path, const std::string&
   if (dimensions < 0 || dimensions > kMostDimensions) throw badInput(place, "has no shape");
   std::vector<hsize_t> shape(static_cast<std::size_t>(dimensions));
   H5Sget_simple_extent_dims(*space, shape.data(), nullptr);
-  const std::size_t size = sizeOf(shape, place);
+  const std::size_t size = sizeOf(dataset, *type, shape, place);
   Hdf5Dataset found{path, {shape.begin(), shape.end()}, {}};
   const H5T_class_t kind = H5Tget_class(*type);
-  if (kind == H5T_STRING && shape.empty()) {
-    found.data = textOf(dataset, *type, place);
-  } else if (kind == H5T_INTEGER && H5Tget_size(*type) == sizeof(std::int64_t)) {
+  if (kind == H5T_STRING) {
+    std::vector<std::string> texts = textsOf(dataset, *type, size, place);
+    if (shape.empty())
+      found.data = std::move(texts.front());
+    else
+      found.data = std::move(texts);
+  } else if (kind == H5T_INTEGER && H5Tget_size(*type) <= sizeof(std::int64_t)) {
     found.data = numbersOf<std::int64_t>(dataset, H5T_NATIVE_INT64, size, place);
   } else if (kind == H5T_FLOAT && H5Tget_size(*type) == sizeof(double)) {
     found.data = numbersOf<double>(dataset, H5T_NATIVE_DOUBLE, size, place);
   } else {
-    throw badInput(place, "is neither float64 nor int64 nor text");
+    throw badInput(place, "is neither float64 nor integers nor text");
   }
   return found;
 }
+
+// Closed as it is used: by one thread at a time.
+class OpenedFile {
+ public:
+  OpenedFile(std::string_view content, const std::string& file) : file_(file) {
+    const InLibrary library;
+    const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    require(H5Pset_fapl_core(*access, kStep_bytes, false));
+    // The library asks for what it may change, and copies it.
+    require(H5Pset_file_image(*access, const_cast<char*>(content.data()), content.size()));
+    const hid_t opened = H5Fopen(nameInMemory().c_str(), H5F_ACC_RDONLY, *access);
+    if (opened < 0) throw badInput(file, "is no HDF5 file, or is cut off", "Export again");
+    handle_ = held(opened, H5Fclose);
+  }
+  ~OpenedFile() {
+    const InLibrary library;
+    handle_.reset();
+  }
+  OpenedFile(const OpenedFile&) = delete;
+  OpenedFile& operator=(const OpenedFile&) = delete;
+
+  std::optional<Hdf5Dataset> dataset(const std::string& path) const {
+    const InLibrary library;
+    const hid_t dataset = H5Dopen2(*handle_, path.c_str(), H5P_DEFAULT);
+    if (dataset < 0) return std::nullopt;
+    const Handle held_dataset = held(dataset, H5Dclose);
+    return datasetOf(dataset, path, file_ + ": " + path);
+  }
+
+ private:
+  std::string file_;
+  Handle handle_;
+};
 
 }  // namespace
 
-std::string hdf5Content(std::span<const Hdf5Dataset> datasets, const std::string& comment) {
-  const Quiet quiet;
+void writeHdf5(const std::function<void(const Hdf5Sink& add)>& fill, const std::string& comment,
+               const TextSink& sink) {
+  const InLibrary library;
   const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   require(H5Pset_fapl_core(*access, kStep_bytes, false));  // in memory
-  const Handle file = held(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, *access), H5Fclose);
-  for (const Hdf5Dataset& dataset : datasets) writeDataset(*file, dataset);
+  const Handle file = held(H5Fcreate(nameInMemory().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, *access), H5Fclose);
+  fill([&](const Hdf5Dataset& dataset) { writeDataset(*file, dataset); });
   writeComment(*file, comment);
   require(H5Fflush(*file, H5F_SCOPE_GLOBAL));
+  void* memory = nullptr;  // where it is, not copied: it may be large
+  require(H5Fget_vfd_handle(*file, H5P_DEFAULT, &memory));
   const ssize_t size = H5Fget_file_image(*file, nullptr, 0);
-  std::string content(static_cast<std::size_t>(std::max<ssize_t>(size, 0)), '\0');
-  if (size <= 0 || H5Fget_file_image(*file, content.data(), content.size()) != size)
-    throw calibrationFailed("HDF5", "the file cannot be made");
-  return content;
+  require(size > 0 ? 0 : -1);
+  sink({*static_cast<const char**>(memory), static_cast<std::size_t>(size)});
 }
 
-std::vector<Hdf5Dataset> hdf5Datasets(const std::string& content, const std::string& file,
-                                      std::span<const std::string> paths) {
-  const Quiet quiet;
-  const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  require(H5Pset_fapl_core(*access, kStep_bytes, false));
-  std::string own = content;  // the library asks for what it may change
-  require(H5Pset_file_image(*access, own.data(), own.size()));
-  const hid_t opened = H5Fopen("in memory", H5F_ACC_RDONLY, *access);
-  if (opened < 0) throw badInput(file, "is no HDF5 file, or is cut off", "Export again");
-  const Handle held_file = held(opened, H5Fclose);
-  std::vector<Hdf5Dataset> found;
-  for (const std::string& path : paths) {
-    const hid_t dataset = H5Dopen2(opened, path.c_str(), H5P_DEFAULT);
-    if (dataset < 0) continue;
-    const Handle held_dataset = held(dataset, H5Dclose);
-    found.push_back(datasetOf(dataset, path, file + ": " + path));
-  }
-  return found;
+Hdf5Source hdf5Source(std::string_view content, const std::string& file) {
+  const auto opened = std::make_shared<const OpenedFile>(content, file);
+  return [opened](const std::string& path) { return opened->dataset(path); };
 }
 
 }  // namespace evical

@@ -189,7 +189,7 @@ void RunHistory::open(const std::filesystem::path& path, const std::function<voi
 void RunHistory::openNumbers(const std::filesystem::path& folder,
                              const std::function<void(const NamedResult&)>& done) {
   work(tr("This run cannot be compared with"), [folder, done]() -> Done {
-    return [done, named = readResultYaml(folder / "result.yaml")] { done(named); };
+    return [done, named = readResultYaml(resultFileOf(folder))] { done(named); };
   });
 }
 

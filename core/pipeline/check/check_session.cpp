@@ -14,27 +14,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace evical {
 namespace {
 
-bool isFolder(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored);
-}
 NamedResult resultIn(const std::filesystem::path& path) {
-  const std::filesystem::path file = isFolder(path) ? path / kResultFile : path;
-  if (!isThere(file))
-    throw badInput(file.string(), "is not there", "Give the folder of a calibration, or its result.yaml");
-  NamedResult before = readResultYaml(file);
-  if (before.result->status == CalibrationStatus::Failed)
-    throw badInput(file.string(), "the calibration failed: " + before.result->reason,
-                   "Calibrate first: there is nothing to be checked");
+  NamedResult before = readOldResult(path, "checked");
   if (before.result->state.cameras.empty())
-    throw badInput(file.string(), "has no cameras", "Give the result of a calibration");
+    throw badInput(resultFileOf(path).string(), "has no cameras", "Give the result of a calibration");
   return before;
 }
 
@@ -102,23 +92,21 @@ Session sessionFor(const CheckPaths& paths) {
   if (!paths.session.empty()) {
     session = readSessionOfRun(paths.session);
   } else {
-    const std::filesystem::path kept =
-        (isFolder(paths.result) ? paths.result : paths.result.parent_path()) / kSessionFile;
-    if (!isThere(kept))
+    std::optional<Session> kept = sessionOfOldResult(paths.result);
+    if (!kept)
       throw badInput(paths.result.string(),
                      "there is no run_session.yaml beside it, which says board and sensors",
                      "Give the session of the new recording by --session");
-    session = readSessionOfRun(kept);
+    session = std::move(*kept);
   }
   setRecording(paths.recording, session);
   return session;
 }
 
 bool isSameBoard(const std::filesystem::path& result, const Session& session) {
-  const std::filesystem::path kept = (isFolder(result) ? result : result.parent_path()) / kSessionFile;
-  if (!isThere(kept)) return false;
   try {
-    return readSessionOfRun(kept).board == session.board;
+    const std::optional<Session> kept = sessionOfOldResult(result);
+    return kept && kept->board == session.board;
   } catch (const CalibrationError&) {
     return false;  // which nobody asked for
   }

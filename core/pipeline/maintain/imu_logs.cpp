@@ -2,15 +2,11 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
-#include "core/base/time.h"
-#include "core/data/unfit_samples.h"
 #include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace evical {
@@ -28,38 +24,27 @@ std::optional<std::size_t> onlyOne(const std::vector<std::size_t>& found) {
 
 }  // namespace
 
-std::int64_t ImuLogs::Source::time_ns() const {
-  return finished ? std::numeric_limits<std::int64_t>::max() : next.samples.front().time_ns;
-}
-
 ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResult& before,
                  const ImuLogSettings& settings, const ImuReadings& readings, std::stop_token stop)
-    : before_(before), settings_(settings), readings_(readings), stop_(std::move(stop)) {
+    : before_(before), settings_(settings), readings_(readings), streams_(stop) {
   const std::vector<std::string> names = namesOf(before);
   for (const auto& [name, stream] : settings.streams)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw badInput("--imu " + name + "=" + stream, "the old result has no IMU of this name",
                      names.empty() ? "It has no IMUs at all" : nameAdvice(name, names));
   std::size_t streams = 0;
-  for (const std::filesystem::path& log : logs) {
-    Source& source = sources_.emplace_back();
-    source.path = log;
-    source.reader = openLog(log);
-    streams += imuStreams(source);
-  }
+  for (const std::filesystem::path& log : logs)
+    streams += imuStreams(streams_.files().emplace_back(Log{log, openLog(log)}));
   match(streams == 1);
-  for (Source& source : sources_) {
-    source.reader->select(source.selected);
-    source.filters.assign(source.selected.size(), StampFilter<ImuSample>(kSampleStamps));
-    advance(source);
-  }
-  checkClocks();
-  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
-  for (const Source& source : sources_) first_ns = std::min(first_ns, source.time_ns());
-  if (stop_.stop_requested()) return;
-  if (first_ns == std::numeric_limits<std::int64_t>::max())
+  const std::optional<std::int64_t> first_ns = streams_.begin();
+  streams_.checkClocks([](double) {
+    return "IMUs can be compared only on clocks that agree to seconds: give each log for itself, or "
+           "record them together";
+  });
+  if (stop.stop_requested()) return;
+  if (!first_ns)
     throw badInput(logs.front().string(), "there are no IMU samples in it", "Record again, or copy it again");
-  start_ns_ = first_ns;
+  start_ns_ = *first_ns;
 }
 
 // A table whose header does not identify its columns is assumed to have those of the calibration. If the calibration used
@@ -84,10 +69,9 @@ std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& l
 }
 
 // What is said of a stream, then its name in the calibration, then that of the IMU, then that there is no other.
-std::optional<std::size_t> ImuLogs::imuOf(const Source& source, const StreamInfo& stream,
-                                          bool only_one) const {
-  const std::filesystem::path& log = source.path;
-  const bool alone = imuStreams(source) == 1;
+std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& stream, bool only_one) const {
+  const std::filesystem::path& log = file.path;
+  const bool alone = imuStreams(file) == 1;
   for (std::size_t i = 0; i < before_.imus.size(); ++i) {
     const auto said = settings_.streams.find(before_.imus[i].name);
     if (said == settings_.streams.end()) continue;
@@ -116,7 +100,7 @@ std::vector<SeparateImu> ImuLogs::separateImus() const {
     if (std::ranges::none_of(imus, same)) imus.push_back(imu);
   };
   for (const auto& [name, reading] : readings_)
-    if (!reading.accelerometer_stream.empty()) add({reading.gyroscope_stream, reading.accelerometer_stream});
+    if (!reading.accelerometer_stream.empty()) add({reading.stream, reading.accelerometer_stream});
   for (const auto& [name, stream] : settings_.streams)
     if (const std::size_t plus = stream.find(" + "); plus != std::string::npos)
       add({stream.substr(0, plus), stream.substr(plus + 3)});
@@ -124,35 +108,33 @@ std::vector<SeparateImu> ImuLogs::separateImus() const {
 }
 
 // Its samples arrive with those of the other sensor, as another stream of the log.
-bool ImuLogs::isPartOfJoined(const Source& source, const std::string& stream) const {
-  const std::vector<StreamInfo>& streams = source.reader->streams();
+bool ImuLogs::isPartOfJoined(const Log& log, const std::string& stream) const {
+  const std::vector<StreamInfo>& streams = log.reader->streams();
   return std::ranges::any_of(separateImus(), [&](const SeparateImu& imu) {
     return (imu.gyroscope == stream || imu.accelerometer == stream) &&
            std::ranges::any_of(streams, [&](const StreamInfo& one) { return one.name == nameOf(imu); });
   });
 }
 
-std::size_t ImuLogs::imuStreams(const Source& source) const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(source.reader->streams(), [&](const StreamInfo& stream) {
-        return stream.type == StreamType::Imu && !isPartOfJoined(source, stream.name);
-      }));
+std::size_t ImuLogs::imuStreams(const Log& log) const {
+  return static_cast<std::size_t>(std::ranges::count_if(log.reader->streams(), [&](const StreamInfo& stream) {
+    return stream.type == StreamType::Imu && !isPartOfJoined(log, stream.name);
+  }));
 }
 
 void ImuLogs::match(bool only_one) {
-  for (Source& source : sources_) {
-    const std::vector<StreamInfo>& streams = source.reader->streams();
+  for (Log& log : streams_.files()) {
+    const std::vector<StreamInfo>& streams = log.reader->streams();
     for (std::size_t s = 0; s < streams.size(); ++s) {
       if (streams[s].type != StreamType::Imu || !streams[s].readable) continue;
-      if (isPartOfJoined(source, streams[s].name)) continue;
-      const auto imu = imuOf(source, streams[s], only_one);
+      if (isPartOfJoined(log, streams[s].name)) continue;
+      const auto imu = imuOf(log, streams[s], only_one);
       if (!imu) {
         notes_.push_back(fmt::format("{}: the stream {} is left out: the old result knows no IMU of it",
-                                     source.path.filename().string(), streams[s].name));
+                                     log.path.filename().string(), streams[s].name));
         continue;
       }
-      source.selected.push_back(s);
-      source.imus.push_back(*imu);
+      log.add(s, *imu, readingOf(*imu));
       imus_.push_back(*imu);
     }
   }
@@ -165,15 +147,15 @@ void ImuLogs::match(bool only_one) {
       throw badInput("--imu " + name + "=" + stream, "there is no such stream or log",
                      "See 'evical inspect' for the streams' names");
   }
-  std::erase_if(sources_, [](const Source& source) { return source.selected.empty(); });
+  std::erase_if(streams_.files(), [](const Log& log) { return log.streams.empty(); });
 }
 
 void ImuLogs::refuseUnknown() const {
   std::vector<std::string> streams;
-  for (const Source& source : sources_)
-    for (const StreamInfo& stream : source.reader->streams())
+  for (const Log& log : streams_.files())
+    for (const StreamInfo& stream : log.reader->streams())
       if (stream.type == StreamType::Imu) streams.push_back(stream.name);
-  const std::string where = sources_.front().path.string();
+  const std::string where = streams_.files().front().path.string();
   if (streams.empty())
     throw badInput(where, "there are no IMU samples in it", "Give a log of an IMU that was calibrated");
   const std::vector<std::string> names = namesOf(before_);
@@ -192,108 +174,52 @@ void ImuLogs::refuseUnknown() const {
 }
 
 const StreamInfo& ImuLogs::stream(std::size_t imu) const {
-  for (const Source& source : sources_)
-    for (std::size_t s = 0; s < source.imus.size(); ++s)
-      if (source.imus[s] == imu) return source.reader->streams()[source.selected[s]];
-  return sources_.front().reader->streams()[sources_.front().selected.front()];
-}
-
-void ImuLogs::checkClocks() const {
-  constexpr double kFurthestStarts_s = 3600.0;
-  const Source& first = sources_.front();
-  for (const Source& source : sources_) {
-    // Logs of the same IMU follow each other, however much later.
-    if (first.finished || source.finished || source.imus == first.imus) continue;
-    const double apart_s = secondsSince(first.time_ns(), source.time_ns());
-    if (std::abs(apart_s) < kFurthestStarts_s) continue;
-    throw badInput(
-        source.path.string(),
-        fmt::format("its clock has nothing to do with that of {}: it starts at {:.3f} s, the other "
-                    "at {:.3f} s",
-                    first.path.string(), secondsSince(0, source.time_ns()), secondsSince(0, first.time_ns())),
-        "IMUs can be compared only on clocks that agree to seconds: give each log for itself, or "
-        "record them together");
-  }
-}
-
-bool ImuLogs::read(ImuLogPacket& packet) {
-  const auto behind =
-      std::min_element(sources_.begin(), sources_.end(),
-                       [](const Source& a, const Source& b) { return a.time_ns() < b.time_ns(); });
-  if (behind->finished) return false;
-  checkOrder(*behind);
-  std::swap(packet, behind->next);
-  advance(*behind);
-  return true;
-}
-
-void ImuLogs::advance(Source& source) {
-  while (!source.read_out) {
-    source.read_out = stop_.stop_requested() || !source.reader->read(source.raw);
-    if (source.read_out) break;
-    const auto found = std::find(source.selected.begin(), source.selected.end(), source.raw.stream);
-    if (found == source.selected.end() || source.raw.imu_samples.empty()) continue;
-    const auto place = static_cast<std::size_t>(found - source.selected.begin());
-    const StreamInfo& info = source.reader->streams()[*found];
-    source.next.imu = source.imus[place];
-    source.next.samples.clear();
-    toSamples(info, source.raw.imu_samples, source.next);
-    immeasurable_ +=
-        std::erase_if(source.next.samples, [](const ImuSample& sample) { return !isMeasurable(sample); });
-    source.filters[place].filter(source.next.samples);
-    if (!source.next.samples.empty()) return;
-  }
-  while (source.flushed < source.filters.size()) {
-    const std::size_t place = source.flushed++;
-    source.next.imu = source.imus[place];
-    source.filters[place].finish(source.next.samples);
-    if (!source.next.samples.empty()) return;
-  }
-  source.finished = true;
+  for (const Log& log : streams_.files())
+    for (const MergedStreams::Stream& stream : log.streams)
+      if (stream.sensor == imu) return log.info(stream);
+  return streams_.files().front().info(streams_.files().front().streams.front());
 }
 
 // Units as the caller says, else as the calibration read them, else as the log does; axes as the calibration read them.
-void ImuLogs::toSamples(const StreamInfo& info, const std::vector<RawImuSample>& raw,
-                        ImuLogPacket& packet) const {
-  const auto found = readings_.find(before_.imus[packet.imu].name);
-  const ImuReading reading = found == readings_.end() ? ImuReading{} : found->second;
-  toSi(raw, settings_.acceleration_unit.value_or(reading.acceleration_unit.value_or(info.acceleration_unit)),
-       settings_.angular_rate_unit.value_or(reading.angular_rate_unit.value_or(info.angular_rate_unit)),
-       packet.samples);
-  for (ImuSample& sample : packet.samples) {
-    if (reading.accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
-    sample.angular_rate_rad_s = readAs(reading.gyroscope_axes, sample.angular_rate_rad_s);
-    sample.specific_force_m_s2 = readAs(reading.accelerometer_axes, sample.specific_force_m_s2);
-  }
+// A log has its own clock.
+SessionImu ImuLogs::readingOf(std::size_t imu) const {
+  const auto found = readings_.find(before_.imus[imu].name);
+  SessionImu reading = found == readings_.end() ? SessionImu{} : found->second;
+  if (settings_.acceleration_unit) reading.acceleration_unit = settings_.acceleration_unit;
+  if (settings_.angular_rate_unit) reading.angular_rate_unit = settings_.angular_rate_unit;
+  reading.clock_offset_s = 0.0;
+  reading.clock_scale = 1.0;
+  return reading;
+}
+
+bool ImuLogs::read(SensorPacket& packet) {
+  if (const Log* const log = streams_.behind()) checkOrder(*log);
+  return streams_.read(packet);
 }
 
 // Two logs of one IMU at once are of two IMUs, or the same one twice.
-void ImuLogs::checkOrder(const Source& source) {
-  Latest& latest = latest_[source.next.imu];
-  if (latest.source != nullptr && latest.source != &source &&
-      source.next.samples.front().time_ns <= latest.time_ns)
-    throw badInput(source.path.string(),
+void ImuLogs::checkOrder(const Log& log) {
+  const std::vector<ImuSample>& samples = log.next.imu_samples;
+  Latest& latest = latest_[log.next.sensor];
+  if (latest.log != nullptr && latest.log != &log && samples.front().time_ns <= latest.time_ns)
+    throw badInput(log.path.string(),
                    fmt::format("has samples of the IMU '{}' at times at which another log has some, too",
-                               before_.imus[source.next.imu].name),
+                               before_.imus[log.next.sensor].name),
                    "Say which log is of which IMU: --imu NAME=LOG; or give logs that follow each other");
-  latest = {source.next.samples.back().time_ns, &source};
-}
-
-double ImuLogs::fractionRead() const {
-  double sum = 0.0;
-  for (const Source& source : sources_) sum += source.finished ? 1.0 : source.reader->fractionRead();
-  return sum / static_cast<double>(sources_.size());
+  latest = {samples.back().time_ns, &log};
 }
 
 std::vector<RecordingFault> ImuLogs::faults() const {
   std::vector<RecordingFault> all;
-  for (const Source& source : sources_)
-    all.insert(all.end(), source.reader->faults().begin(), source.reader->faults().end());
-  if (immeasurable_ > 0)
+  streams_.addFaults(all);
+  std::uint64_t immeasurable = 0;
+  for (const Log& log : streams_.files())
+    for (const MergedStreams::Stream& stream : log.streams) immeasurable += stream.immeasurable;
+  if (immeasurable > 0)
     all.push_back({"imu", FaultKind::NotFinite, 0.0,
                    fmt::format("{} IMU samples left out, whose values are no numbers, or none that a sensor "
                                "measures",
-                               immeasurable_)});
+                               immeasurable)});
   return all;
 }
 

@@ -14,14 +14,13 @@
 #include "core/pipeline/maintain/maintained_quantities.h"
 #include "core/pipeline/maintain/maintained_trajectory.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/pipeline/session/session_keys.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
+#include <optional>
 #include <utility>
 
 namespace evical {
@@ -192,18 +191,18 @@ void Maintainer::look() {
   nominal_before_ = nominal_;
   maintenance_.notes = logs.notes();
   std::vector<Looked> seen(imus_.size());
-  ImuLogPacket packet;
+  SensorPacket packet;
   while (logs.read(packet)) {
     context_.throwIfStopped();
     const auto k =
-        static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.imu) - imus_.begin());
-    for (const ImuSample& sample : packet.samples) {
+        static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.sensor) - imus_.begin());
+    for (const ImuSample& sample : packet.imu_samples) {
       const double time_s = secondsSince(logs.start_ns(), sample.time_ns);
       seen[k].times.add(time_s, sample);
       if (seen[k].samples.size() < kLooked) seen[k].samples.push_back(sample);
       if (!measuresRate(sample)) continue;
       seen[k].norms.add(time_s + nominal_[k].time_offset_s,
-                        sample.angular_rate_rad_s - state(packet.imu).gyroscope_bias_rad_s);
+                        sample.angular_rate_rad_s - state(packet.sensor).gyroscope_bias_rad_s);
     }
     if (std::all_of(seen.begin(), seen.end(), [](const Looked& imu) { return imu.times.to_s() > kLook_s; }))
       break;
@@ -248,12 +247,12 @@ void Maintainer::readAll() {
   std::vector<ImuState> states;
   for (const std::size_t imu : imus_) states.push_back(state(imu));
   ImuPairs pairs(states, nominal_, smoothing_s_, *input_.options);
-  ImuLogPacket packet;
+  SensorPacket packet;
   while (logs.read(packet)) {
     context_.throwIfStopped();
     const auto k =
-        static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.imu) - imus_.begin());
-    for (const ImuSample& sample : packet.samples) {
+        static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.sensor) - imus_.begin());
+    for (const ImuSample& sample : packet.imu_samples) {
       const double time_s = secondsSince(logs.start_ns(), sample.time_ns);
       passes_[k].add(time_s, sample);
       if (imus_.size() > 1) pairs.add(k, time_s, sample);
@@ -440,26 +439,15 @@ MaintainInput::MaintainInput() = default;
 
 MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
                                 const std::filesystem::path& result) {
-  std::error_code ignored;
-  const std::filesystem::path file =
-      std::filesystem::is_directory(result, ignored) ? result / "result.yaml" : result;
-  if (!std::filesystem::exists(file, ignored))
-    throw badInput(file.string(), "is not there", "Give the folder of a calibration, or its result.yaml");
   MaintainInput input;
   input.logs = logs;
-  input.before = readResultYaml(file);
+  input.before = readOldResult(result, "maintained");
   input.before_name = result.string();
-  if (input.before.result->status == CalibrationStatus::Failed)
-    throw badInput(file.string(), "the calibration failed: " + input.before.result->reason,
-                   "Calibrate first: there is nothing to be maintained");
   if (input.before.imus.empty())
-    throw badInput(file.string(), "has no IMUs", "Give the result of a calibration with IMUs");
-  const std::filesystem::path kept = file.parent_path() / kSessionFile;
-  if (std::filesystem::exists(kept, ignored))
-    for (const SessionImu& imu : readSessionOfRun(kept).imus)
-      input.readings[imu.name] = {imu.acceleration_unit,   imu.angular_rate_unit, imu.gyroscope_axes,
-                                  imu.accelerometer_axes,  imu.columns,           imu.stream,
-                                  imu.accelerometer_stream};
+    throw badInput(resultFileOf(result).string(), "has no IMUs",
+                   "Give the result of a calibration with IMUs");
+  if (const std::optional<Session> session = sessionOfOldResult(result))
+    for (const SessionImu& imu : session->imus) input.readings[imu.name] = imu;
   return input;
 }
 

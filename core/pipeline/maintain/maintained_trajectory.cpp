@@ -193,11 +193,11 @@ class TrajectoryCheck {
 void forSamples(const MaintainInput& input, std::size_t imu, const RunContext& context,
                 const std::function<bool(double, const ImuSample&)>& use) {
   ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);
-  ImuLogPacket packet;
+  SensorPacket packet;
   while (logs.read(packet)) {
     context.throwIfStopped();
-    if (packet.imu != imu) continue;
-    for (const ImuSample& sample : packet.samples)
+    if (packet.sensor != imu) continue;
+    for (const ImuSample& sample : packet.imu_samples)
       if (!use(secondsSince(logs.start_ns(), sample.time_ns), sample)) return;
     context.progress.stageProgress(logs.fractionRead());
   }

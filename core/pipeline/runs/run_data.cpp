@@ -1,7 +1,7 @@
 #include "core/pipeline/runs/run_data.h"
 
 #include "core/base/time.h"
-#include "core/pipeline/runs/packed_members.h"
+#include "core/pipeline/runs/columns.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -11,100 +11,78 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
 namespace evical {
 
-// How many members each struct of a run has.
-namespace packed {
+namespace columns {
 
-template <>
-inline constexpr int kMembers<RigidTransform> = 2;
-template <>
-inline constexpr int kMembers<So3Spline> = 3;
-template <>
-inline constexpr int kMembers<VectorSpline> = 3;
-template <>
-inline constexpr int kMembers<Resolution> = 2;
-template <>
-inline constexpr int kMembers<CameraIntrinsics> = 5;
-template <>
-inline constexpr int kMembers<LensUncertainty> = 2;
-template <>
-inline constexpr int kMembers<CameraLens> = 4;
-template <>
-inline constexpr int kMembers<CameraState> = 9;
-template <>
-inline constexpr int kMembers<BiasDrift> = 4;
-template <>
-inline constexpr int kMembers<ImuState> = 11;
-template <>
-inline constexpr int kMembers<BoardState> = 6;
-template <>
-inline constexpr int kMembers<CalibrationState> = 7;
-template <>
-inline constexpr int kMembers<CameraUncertainty> = 9;
-template <>
-inline constexpr int kMembers<ImuUncertainty> = 12;
-template <>
-inline constexpr int kMembers<BoardUncertainty> = 7;
-template <>
-inline constexpr int kMembers<UncertaintyReport> = 13;
-template <>
-inline constexpr int kMembers<SensorLatency> = 4;
-template <>
-inline constexpr int kMembers<CameraFit> = 9;
-template <>
-inline constexpr int kMembers<ImuFit> = 2;
-template <>
-inline constexpr int kMembers<IterationRecord> = 7;
-template <>
-inline constexpr int kMembers<CircleResidual> = 8;
-template <>
-inline constexpr int kMembers<RejectedWindow> = 2;
-template <>
-inline constexpr int kMembers<QuantityDifference> = 4;
-template <>
-inline constexpr int kMembers<CrossValidation> = 5;
-template <>
-inline constexpr int kMembers<Repair> = 2;
-template <>
-inline constexpr int kMembers<Doubt> = 4;
-template <>
-inline constexpr int kMembers<Timing> = 6;
-template <>
-inline constexpr int kMembers<CalibrationResult> = 17;
-template <>
-inline constexpr int kMembers<ImageCell> = 3;
-template <>
-inline constexpr int kMembers<ImageMap> = 5;
-template <>
-inline constexpr int kMembers<IntrinsicsResult> = 18;
-template <>
-inline constexpr int kMembers<CircleObservation> = 12;
-template <>
-inline constexpr int kMembers<BoardView> = 3;
-template <>
-inline constexpr int kMembers<WindowReport> = 7;
-template <>
-inline constexpr int kMembers<LatticeEnds> = 4;
-template <>
-inline constexpr int kMembers<BoardExtent> = 2;
-template <>
-inline constexpr int kMembers<PolarityDelay> = 2;
-template <>
-inline constexpr int kMembers<BoardObservations> = 8;
-template <>
-inline constexpr int kMembers<ImuNoise> = 4;
-template <>
-inline constexpr int kMembers<ImuSample> = 4;
-template <>
-inline constexpr int kMembers<ImuData> = 4;
-template <>
-inline constexpr int kMembers<RecordingFault> = 4;
-template <>
-inline constexpr int kMembers<RecordingPass> = 9;
+EVICAL_FIELDS(RigidTransform, rotation, translation_m);
+EVICAL_FIELDS(So3Spline, start_s, knot_spacing_s, control_points);
+EVICAL_FIELDS(VectorSpline, start_s, knot_spacing_s, control_points);
+EVICAL_FIELDS(Resolution, width_px, height_px);
+EVICAL_FIELDS(CameraIntrinsics, model, resolution_px, focal_length_px, principal_point_px, distortion);
+EVICAL_FIELDS(LensUncertainty, std, correlation);
+EVICAL_FIELDS(CameraLens, given, seen_with, solved, given_with);
+EVICAL_FIELDS(CameraState, reference_from_camera, time_offset_s, edge_lead_px, slow_edge_lead_px, lens,
+              time_offset_drift_ppm, time_offset_at_s, line_delay_us, exposure_share);
+EVICAL_FIELDS(BiasDrift, start_s, knot_spacing_s, gyroscope_rad_s, accelerometer_m_s2);
+EVICAL_FIELDS(ImuState, reference_from_imu, time_offset_s, gyroscope_bias_rad_s, accelerometer_bias_m_s2,
+              gyroscope_mapping, accelerometer_mapping, gyroscope_from_accelerometer, accelerometer_delay_s,
+              bias_drift, time_offset_drift_ppm, time_offset_at_s);
+EVICAL_FIELDS(BoardState, scale, stretch, row_curvature_1_m, column_curvature_1_m, twist_1_m,
+              world_from_board);
+EVICAL_FIELDS(CalibrationState, world_from_imu_rotation, imu_in_world_m, cameras, imus, board, further_boards,
+              gravity_in_world_m_s2);
+EVICAL_FIELDS(CameraUncertainty, rotation_std_rad, translation_std_m, time_offset_std_s, edge_lead_std_px,
+              slow_edge_lead_std_px, intrinsics_std, time_offset_drift_std_ppm, line_delay_std_us,
+              exposure_share_std);
+EVICAL_FIELDS(ImuUncertainty, rotation_std_rad, translation_std_m, time_offset_std_s,
+              gyroscope_bias_std_rad_s, accelerometer_bias_std_m_s2, gyroscope_mapping_std,
+              accelerometer_mapping_std, gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2,
+              gyroscope_rotation_std_rad, time_offset_drift_std_ppm, accelerometer_delay_std_s);
+EVICAL_FIELDS(BoardUncertainty, rotation_std_rad, translation_std_m, scale_std, stretch_std,
+              row_curvature_std_1_m, column_curvature_std_1_m, twist_std_1_m);
+EVICAL_FIELDS(UncertaintyReport, names, standard_deviations, correlation, cameras, imus, board,
+              further_boards, given, gravity_direction_std_rad, gravity_norm_std_m_s2, observability, weakest,
+              directions);
+EVICAL_FIELDS(SensorLatency, camera, against, latency_s, std_s);
+EVICAL_FIELDS(CameraFit, reprojection_rms_px, normalised_rms, windows_total, windows_complete,
+              windows_partial, windows_used, windows_rejected, circles_used, circles_rejected);
+EVICAL_FIELDS(ImuFit, gyroscope_rms_rad_s, accelerometer_rms_m_s2);
+EVICAL_FIELDS(IterationRecord, stage, iteration, cost, gradient, step, cameras, released);
+EVICAL_FIELDS(CircleResidual, camera, view, circle, time_s, centre_px, residual_px, sigma_px, used);
+EVICAL_FIELDS(RejectedWindow, camera, time_s);
+EVICAL_FIELDS(QuantityDifference, name, unit, difference, sigma);
+EVICAL_FIELDS(CrossValidation, block_s, windows, quantities, rms_sigmas, failure);
+EVICAL_FIELDS(Repair, key, value);
+EVICAL_FIELDS(Doubt, text, repair, name, explains);
+EVICAL_FIELDS(Timing, read_s, detect_s, initialise_s, optimise_s, cross_validate_s, total_s);
+EVICAL_FIELDS(CalibrationResult, status, reason, repair, causes, start_ns, state, uncertainty, latencies,
+              cameras, imus, iterations, circle_residuals, rejected_windows, cross_validation, notes, timing,
+              memory_peak_mb);
+EVICAL_FIELDS(ImageCell, middle_px, circles, sigma_px);
+EVICAL_FIELDS(ImageMap, columns, rows, cells, rms_px, max_px);
+EVICAL_FIELDS(IntrinsicsResult, status, reason, advice, intrinsics, covariance, edge_lead_px,
+              edge_lead_std_px, image, reprojection_rms_px, normalised_rms, largest_tilt_deg, views_found,
+              views_used, circles_used, circles_rejected, passes, moved_px, elapsed_s);
+EVICAL_FIELDS(CircleObservation, circle, time_s, centre_px, covariance_px2, velocity_px_s, edge_lead_effect,
+              semi_axes_px, angle_rad, events, residual_rms_px, rows_below_middle, longer_exposed_s);
+EVICAL_FIELDS(BoardView, time_s, kind, circles);
+EVICAL_FIELDS(WindowReport, time_s, half_width_s, outcome, events, candidates, circles, tracked);
+EVICAL_FIELDS(LatticeEnds, beyond_in_view, beyond_seen, edge_in_view, edge_missing);
+EVICAL_FIELDS(BoardExtent, rows, cols);
+EVICAL_FIELDS(PolarityDelay, later_s, std_s);
+EVICAL_FIELDS(BoardObservations, camera, kind, views, windows, extent, events, polarity_delay, stamp_step_s);
+EVICAL_FIELDS(ImuNoise, gyroscope_density, accelerometer_density, gyroscope_random_walk,
+              accelerometer_random_walk);
+EVICAL_FIELDS(ImuSample, time_ns, angular_rate_rad_s, specific_force_m_s2, measured_by);
+EVICAL_FIELDS(ImuData, name, noise, samples, prior);
+EVICAL_FIELDS(RecordingFault, stream, kind, at_s, text);
+EVICAL_FIELDS(RecordingPass, start_ns, cameras, lenses, imus, resolutions_px, faults, read_s, detect_s,
+              rejected_views);
 
 template <>
 inline constexpr auto kLast<CalibrationStatus> = CalibrationStatus::Failed;
@@ -124,85 +102,54 @@ inline constexpr auto kLast<MeasuredBy> = MeasuredBy::Accelerometer;
 template <>
 inline constexpr bool kLeftOut<ImuPrior> = true;
 
-}  // namespace packed
+}  // namespace columns
 
 namespace {
 
-constexpr std::string_view kMagic = "evical run 1\n";
+constexpr std::string_view kMagic = "evical run data\n";
 
-std::uint32_t sumOf(std::string_view bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-// Name, what types it is of, check sum, length, and the bytes themselves.
-template <class T>
-void addPart(const std::string& name, const T& value, const TextSink& sink) {
-  std::uint32_t sum = 0;
-  std::uint64_t length = 0;
-  const TextSink measure = [&](std::string_view bytes) {
-    sum = sumOf(bytes, sum);
-    length += bytes.size();
-  };
-  packed::Packing measured(measure);
-  measured.pack(value);
-  measured.flush();
-  packed::Packing part(sink);
-  part.pack(name);
-  part.pack(packed::description<T>());
-  part.pack(sum);
-  part.pack(length);
-  part.pack(value);
-  part.flush();
-}
-
+// A line with name, length and check sum, and then so many bytes of an HDF5 file: each part is damaged by itself, and the
+// library gets no bytes that are.
 struct Part {
-  std::string description, bytes;
-  std::uint32_t sum = 0;
+  std::string name;
+  std::size_t size = 0;
+  unsigned long sum = 0;
+
+  std::string line() const { return fmt::format("{} {} {:08x}\n", name, size, sum); }
 };
 
-// Those before the place at which the file is cut off or damaged.
-std::map<std::string, Part> partsOf(std::string_view content) {
-  std::map<std::string, Part> parts;
-  if (!content.starts_with(kMagic)) return parts;
-  packed::Unpacking file(content.substr(kMagic.size()));
-  try {
-    while (!file.atEnd()) {
-      std::string name;
-      Part part;
-      file.unpack(name);
-      file.unpack(part.description);
-      file.unpack(part.sum);
-      file.unpack(part.bytes);
-      parts[name] = std::move(part);
-    }
-  } catch (const CalibrationError&) {
-    // What is missing is said by who looks for it.
-  }
-  return parts;
+unsigned long sumOf(std::string_view bytes) {
+  return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
 }
 
-#ifdef EVICAL_FUZZ_RUN_DATA
-constexpr bool kSumsCount = false;
-#else
-constexpr bool kSumsCount = true;
-#endif
-
-// Why it could not be read; empty if it was.
 template <class T>
-std::string readPart(const std::map<std::string, Part>& parts, const std::string& name, T& value) {
-  const auto found = parts.find(name);
-  if (found == parts.end()) return "is missing";
-  const Part& part = found->second;
-  if (part.description != packed::description<T>()) return "was written by another version of the program";
-  if (kSumsCount && part.sum != sumOf(part.bytes)) return "is damaged";
-  try {
-    packed::Unpacking bytes(part.bytes);
-    bytes.unpack(value);
-    return bytes.atEnd() ? "" : "is damaged";
-  } catch (const CalibrationError& error) {
-    return error.problem();
+void addPart(const std::string& name, const T& value, const TextSink& sink) {
+  const auto fill = [&](const Hdf5Sink& add) { columns::write(name, value, add); };
+  writeHdf5(fill, "Of a run: " + name, [&](std::string_view bytes) {
+    sink(Part{name, bytes.size(), sumOf(bytes)}.line());
+    sink(bytes);
+  });
+}
+
+// Those before the place at which the file is cut off or damaged.
+std::map<std::string, Hdf5Source> partsOf(std::string_view content) {
+  std::map<std::string, Hdf5Source> parts;
+  if (!content.starts_with(kMagic)) return parts;
+  content.remove_prefix(kMagic.size());
+  for (std::size_t end = 0; (end = content.find('\n')) != content.npos;) {
+    Part part;
+    std::istringstream line{std::string(content.substr(0, end))};
+    line >> part.name >> part.size >> std::hex >> part.sum;
+    content.remove_prefix(end + 1);
+    if (!line || part.size > content.size()) break;
+    const std::string_view bytes = content.substr(0, part.size);
+    content.remove_prefix(part.size);
+    if (sumOf(bytes) == part.sum)
+      parts[part.name] = hdf5Source(bytes, "run.data");
+    else
+      parts[part.name] = [](const std::string&) -> std::optional<Hdf5Dataset> { throw columns::damaged(); };
   }
+  return parts;
 }
 
 template <class Spline>
@@ -302,10 +249,15 @@ bool isWhole(const std::vector<std::optional<IntrinsicsResult>>& intrinsics) {
 
 // Reads a part, and says of what it leaves people without.
 template <class T>
-bool readWhole(const std::map<std::string, Part>& parts, const std::string& name, const char* what, T& value,
-               std::vector<std::string>& missing) {
-  std::string problem = readPart(parts, name, value);
-  if (problem.empty() && !isWhole(value)) problem = "contradicts itself";
+bool readWhole(const Hdf5Source& datasets, std::size_t most, const std::string& name, const char* what,
+               T& value, std::vector<std::string>& missing) {
+  std::string problem;
+  try {
+    columns::read(name, value, datasets, most);
+    if (!isWhole(value)) problem = "contradicts itself";
+  } catch (const CalibrationError& error) {
+    problem = error.problem();
+  }
   if (problem.empty()) return true;
   value = {};
   missing.push_back(fmt::format("{}: this part {}", what, problem));
@@ -326,29 +278,40 @@ std::string runData(const CalibrationRun& run) {
 }
 
 ReadRunData readRunData(const std::filesystem::path& file) {
-  ReadRunData read;
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (content.empty()) {
-    read.missing.push_back(fmt::format("trajectory, convergence, signals and residuals: {} is not there",
-                                       file.filename().string()));
-    return read;
-  }
-  return parseRunData(content);
+  if (!content.empty()) return parseRunData(content);
+  ReadRunData read;
+  read.missing.push_back(fmt::format("trajectory, convergence, signals and residuals: {} is not there",
+                                     file.filename().string()));
+  return read;
+}
+
+Hdf5Source runDatasets(const std::string& content) {
+  return [parts = partsOf(content)](const std::string& path) {
+    const auto part = parts.find(path.substr(0, path.find('/')));
+    if (part == parts.end()) throw badInput("", "is missing");
+    return part->second(path);
+  };
 }
 
 ReadRunData parseRunData(const std::string& content) {
+  return runFrom(runDatasets(content), content.size());
+}
+
+ReadRunData runFrom(const Hdf5Source& datasets, std::size_t most) {
   ReadRunData read;
-  const std::map<std::string, Part> parts = partsOf(content);
-  read.has_result =
-      readWhole(parts, "result", "trajectory, convergence and residuals", read.run.result, read.missing);
-  readWhole(parts, "intrinsics", "how the lenses were calibrated", read.run.intrinsics, read.missing);
-  read.has_pass = readWhole(parts, "observations", "what was found of the board, and the IMUs' samples",
-                            read.run.pass, read.missing);
+  const auto readPart = [&](const char* name, const char* what, auto& value) {
+    return readWhole(datasets, most, name, what, value, read.missing);
+  };
+  constexpr const char* kSeen = "what was found of the board, and the IMUs' samples";
+  read.has_result = readPart("result", "trajectory, convergence and residuals", read.run.result);
+  readPart("intrinsics", "how the lenses were calibrated", read.run.intrinsics);
+  read.has_pass = readPart("observations", kSeen, read.run.pass);
   if (read.has_result && read.has_pass && !fits(read.run.result, read.run.pass)) {
     read.run.pass = {};
     read.has_pass = false;
-    read.missing.push_back("what was found of the board, and the IMUs' samples: this part is of another run");
+    read.missing.push_back(fmt::format("{}: this part is of another run", kSeen));
   }
   return read;
 }

@@ -282,11 +282,6 @@ class FolderReader {
   bool has_pass_ = false;
 };
 
-std::filesystem::path folderOf(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(path, ignored) ? path : path.parent_path();
-}
-
 std::uintmax_t sizeOf(const std::filesystem::path& folder) {
   std::uintmax_t bytes = 0;
   std::error_code error;
@@ -299,6 +294,27 @@ std::uintmax_t sizeOf(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::filesystem::path resultFileOf(const std::filesystem::path& path, const char* name) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) ? path / name : path;
+}
+
+NamedResult readOldResult(const std::filesystem::path& path, const std::string& what) {
+  const std::filesystem::path file = resultFileOf(path);
+  if (!isThere(file))
+    throw badInput(file.string(), "is not there", "Give the folder of a calibration, or its result.yaml");
+  NamedResult named = readResultYaml(file);
+  if (named.result->status == CalibrationStatus::Failed)
+    throw badInput(file.string(), "the calibration failed: " + named.result->reason,
+                   fmt::format("Calibrate first: there is nothing to be {}", what));
+  return named;
+}
+
+std::optional<Session> sessionOfOldResult(const std::filesystem::path& path) {
+  const std::filesystem::path kept = resultFileOf(path).parent_path() / kSessionFile;
+  return isThere(kept) ? std::optional(readSessionOfRun(kept)) : std::nullopt;
+}
 
 std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Session& session,
                                   const CalibrationRun& run, std::int64_t made_s) {
@@ -328,7 +344,7 @@ bool isSavedRun(const std::filesystem::path& path) {
 }
 
 SavedRun readSavedRun(const std::filesystem::path& path) {
-  return FolderReader(folderOf(path)).read();
+  return FolderReader(resultFileOf(path).parent_path()).read();
 }
 
 RunSummary readRunSummary(const std::filesystem::path& folder) {

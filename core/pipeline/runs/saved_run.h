@@ -9,10 +9,12 @@
 #include "core/base/progress.h"
 #include "core/data/calibration_status.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/report/result_yaml.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,16 @@ namespace evical {
 
 // Files of a result's folder.
 inline constexpr const char *kResultFile = "result.yaml", *kSessionFile = "run_session.yaml";
+
+// Of a folder the file with this name, of a file the file itself.
+std::filesystem::path resultFileOf(const std::filesystem::path& path, const char* name = kResultFile);
+
+// An old result from which something goes on: result.yaml, or the folder of a run. Throws CalibrationError (BadInput) where
+// there is none or it failed; `what` is what should become of it: "checked".
+NamedResult readOldResult(const std::filesystem::path& path, const std::string& what);
+
+// The session that it was made from; nothing where none is kept beside it. Throws CalibrationError (BadInput).
+std::optional<Session> sessionOfOldResult(const std::filesystem::path& path);
 
 // What run.yaml says.
 struct RunSummary {

@@ -232,13 +232,14 @@ class TestSeparateImu : public QObject {
     before.imus.push_back({});
     before.imus.back().name = "left_imu";
     before.imus.back().stream = nameOf({kGyroscope, kAccelerometer});
-    const ImuReadings readings{
-        {"left_imu", {.gyroscope_stream = kGyroscope, .accelerometer_stream = kAccelerometer}}};
+    ImuReadings readings;
+    readings["left_imu"].stream = kGyroscope;
+    readings["left_imu"].accelerometer_stream = kAccelerometer;
     ImuLogs logs({path("left_imu.bag")}, before, {}, readings, {});
     std::size_t rates = 0, forces = 0;
-    ImuLogPacket packet;
+    SensorPacket packet;
     while (logs.read(packet))
-      for (const ImuSample& sample : packet.samples) {
+      for (const ImuSample& sample : packet.imu_samples) {
         QVERIFY(sample.measured_by != MeasuredBy::Both);
         (sample.measured_by == MeasuredBy::Gyroscope ? rates : forces) += 1;
       }

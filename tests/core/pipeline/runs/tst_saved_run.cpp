@@ -1,6 +1,7 @@
 // A run that was written opens again with all that was in it; a folder that is damaged or of an older version shows
 // what it has, and says what it lacks.
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
@@ -13,8 +14,12 @@
 #include <QTemporaryDir>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <set>
 
 using namespace evical;
 using namespace evical::test;
@@ -76,6 +81,82 @@ class TestSavedRun : public QObject {
     const NamedResult before = namedRun(simulated_.session, run_, "test"),
                       after = namedRun(saved.session, saved.run, "test");
     QCOMPARE(resultYaml(after), resultYaml(before));
+  }
+
+  // What a struct of today has and that of an older version had not.
+  void runWithoutAField_hasTheOthers_data() {
+    QTest::addColumn<QString>("field");
+    QTest::newRow("number") << "result/memory_peak_mb";
+    QTest::newRow("column of a list") << "observations/imus/samples/measured_by";
+    QTest::newRow("vectors of a list") << "result/circle_residuals/sigma_px";
+    QTest::newRow("list") << "result/notes/count";
+    QTest::newRow("struct") << "result/timing/total_s";
+    QTest::newRow("optional") << "observations/cameras/polarity_delay/count";
+  }
+
+  void runWithoutAField_hasTheOthers() {
+    QFETCH(const QString, field);
+    const std::string content = runData(*run_);
+    const Hdf5Source all = runDatasets(content);
+    int left_out = 0;
+    const ReadRunData read = runFrom(
+        [&](const std::string& path) {
+          const bool is_field = path == field.toStdString();
+          left_out += is_field ? 1 : 0;
+          return is_field ? std::nullopt : all(path);
+        },
+        content.size());
+    QCOMPARE(left_out, 1);
+    QVERIFY(read.missing.empty() && read.has_result && read.has_pass);
+    const CalibrationResult &result = read.run.result, &before = run_->result;
+    QCOMPARE(result.memory_peak_mb, field.endsWith("memory_peak_mb") ? 0.0 : before.memory_peak_mb);
+    QCOMPARE(result.timing.total_s, field.endsWith("total_s") ? 0.0 : before.timing.total_s);
+    QCOMPARE(result.notes.size(), field.contains("notes") ? 0 : before.notes.size());
+    QCOMPARE(result.circle_residuals.size(), before.circle_residuals.size());
+    QVERIFY(result.circle_residuals.back().residual_px == before.circle_residuals.back().residual_px);
+    QVERIFY(result.circle_residuals.back().sigma_px ==
+            (field.contains("sigma_px") ? Eigen::Vector2d::Zero() : before.circle_residuals.back().sigma_px));
+    const ImuSample &sample = read.run.pass.imus[0].samples.back(),
+                    &sample_before = run_->pass.imus[0].samples.back();
+    QVERIFY(sample.time_ns == sample_before.time_ns && sample.measured_by == MeasuredBy::Both);
+    QVERIFY(sample.angular_rate_rad_s == sample_before.angular_rate_rad_s);
+  }
+
+  void numbersThatAreNone_comeBack() {
+    CalibrationRun run = *run_;
+    run.result.timing.read_s = std::bit_cast<double>(0x7ff8000000012345);
+    run.result.timing.detect_s = -0.0;
+    run.result.memory_peak_mb = std::numeric_limits<double>::denorm_min();
+    run.pass.imus[0].samples.back().time_ns = kLatestTime_ns;
+    const CalibrationRun read = parseRunData(runData(run)).run;
+    QVERIFY(std::bit_cast<std::uint64_t>(read.result.timing.read_s) == 0x7ff8000000012345);
+    QVERIFY(std::signbit(read.result.timing.detect_s));
+    QCOMPARE(read.result.memory_peak_mb, run.result.memory_peak_mb);
+    QVERIFY(read.pass.imus[0].samples.back().time_ns == kLatestTime_ns);
+  }
+
+  // Whatever byte it is: parts are as they were, or missing.
+  void damagedData_isNeverMisread() {
+    const std::string content = runData(*run_);
+    std::set<std::string> parts;
+    for (int k = 0; k < 8; ++k)
+      parts.insert(runData({k & 1 ? run_->result : CalibrationResult{}, k & 2 ? run_->pass : RecordingPass{},
+                            k & 4 ? run_->intrinsics : decltype(run_->intrinsics){}}));
+    const std::size_t observations = content.find("observations ");
+    QVERIFY(observations < content.size());
+    for (int k = 0; k < 60; ++k) {
+      std::string damaged = content;
+      const std::size_t at = k < 20   ? static_cast<std::size_t>(k)
+                             : k < 40 ? observations - 10 + static_cast<std::size_t>(k - 20)
+                                      : content.size() * static_cast<std::size_t>(k - 40) / 20;
+      if (k % 2 == 0)
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << k % 8));
+      else
+        damaged.resize(at);
+      const ReadRunData read = parseRunData(damaged);
+      QVERIFY(!read.missing.empty());
+      QVERIFY2(parts.contains(runData(read.run)), qPrintable(QString::number(at)));
+    }
   }
 
   void file_opensItsFolder() {

@@ -1,0 +1,188 @@
+#include "core/pipeline/pass/merged_streams.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/data/unfit_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace evical {
+namespace {
+
+using Stream = MergedStreams::Stream;
+using File = MergedStreams::File;
+
+// Calls visit(items) with what the packet holds of each kind.
+template <class SomePacket, class Visitor>
+void forEachKind(SomePacket& packet, Visitor&& visit) {
+  visit(packet.events);
+  visit(packet.imu_samples);
+  visit(packet.frames);
+  visit(packet.points);
+}
+
+std::int64_t firstTime_ns(const SensorPacket& packet) {
+  std::int64_t time_ns = 0;
+  forEachKind(packet, [&](const auto& items) {
+    if (!items.empty()) time_ns = items.front().time_ns;
+  });
+  return time_ns;
+}
+
+void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vector<RawImuSample>& raw,
+                 std::vector<ImuSample>& samples) {
+  toSi(raw, imu.acceleration_unit.value_or(info.acceleration_unit),
+       imu.angular_rate_unit.value_or(info.angular_rate_unit), samples);
+  for (ImuSample& sample : samples) {
+    // A message's own statement of what it measured counts only if the session names separate streams.
+    if (imu.accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
+    sample.angular_rate_rad_s = readAs(imu.gyroscope_axes, sample.angular_rate_rad_s);
+    sample.specific_force_m_s2 = readAs(imu.accelerometer_axes, sample.specific_force_m_s2);
+  }
+}
+
+// What the session says of the sensor's clock: its rate, and how far it is off.
+void setClock(Stream& stream, SensorPacket& packet) {
+  const double scale = stream.clock_scale;
+  if (stream.clock_offset_s == 0.0 && scale == 1.0) return;
+  const std::int64_t offset_ns = nanosecondsFrom(stream.clock_offset_s);
+  std::optional<std::int64_t>& first_ns = stream.first_ns;
+  forEachKind(packet, [&](auto& items) {
+    for (auto& item : items) {
+      if (!first_ns) first_ns = item.time_ns;
+      const double since_ns = scale * static_cast<double>(item.time_ns - *first_ns);
+      if (scale != 1.0 && std::abs(since_ns) < static_cast<double>(kLatestTime_ns))
+        item.time_ns = *first_ns + std::llround(since_ns);
+      if (!__builtin_add_overflow(item.time_ns, offset_ns, &item.time_ns) && isTime(item.time_ns)) continue;
+      throw badInput(
+          stream.name,
+          "with clock_offset_s and clock_scale its times are centuries away from those of any recording",
+          "Correct these two in the session");
+    }
+  });
+}
+
+// Units and clock; the storage changes hands.
+void bringHome(File& file, Stream& stream) {
+  SensorPacket& packet = file.next;
+  packet.sensor = stream.sensor;
+  std::swap(packet.events, file.raw.events);
+  std::swap(packet.frames, file.raw.frames);
+  std::swap(packet.points, file.raw.points);
+  packet.imu_samples.clear();
+  if (stream.imu) takeSamples(file.info(stream), *stream.imu, file.raw.imu_samples, packet.imu_samples);
+  setClock(stream, packet);
+}
+
+void letIn(Stream& stream, SensorPacket& packet) {
+  for (const ImuSample& sample : packet.imu_samples) {
+    if (!isMeasurable(sample) && stream.immeasurable++ == 0) stream.immeasurable_ns = sample.time_ns;
+  }
+  std::erase_if(packet.imu_samples, [](const ImuSample& sample) { return !isMeasurable(sample); });
+  stream.events.filter(packet.events);
+  stream.samples.filter(packet.imu_samples);
+  stream.frames.filter(packet.frames);
+  stream.points.filter(packet.points);
+}
+
+// What a stream's stamps were waiting for has not come.
+bool flushNext(File& file) {
+  while (file.flushed < file.streams.size()) {
+    Stream& stream = file.streams[file.flushed++];
+    file.next.sensor = stream.sensor;
+    stream.events.finish(file.next.events);
+    stream.samples.finish(file.next.imu_samples);
+    stream.frames.finish(file.next.frames);
+    stream.points.finish(file.next.points);
+    if (!file.next.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void File::add(std::size_t in_file, std::size_t sensor, const SessionCamera& camera) {
+  streams.push_back({in_file, sensor, camera.name, camera.clock_offset_s, camera.clock_scale});
+}
+
+void File::add(std::size_t in_file, std::size_t sensor, const SessionImu& imu) {
+  streams.push_back({in_file, sensor, imu.name, imu.clock_offset_s, imu.clock_scale, imu});
+}
+
+std::int64_t File::time_ns() const {
+  return finished ? std::numeric_limits<std::int64_t>::max() : firstTime_ns(next);
+}
+
+std::optional<std::int64_t> MergedStreams::begin() {
+  for (File& file : files_) {
+    std::vector<std::size_t> selected;
+    for (const Stream& stream : file.streams) selected.push_back(stream.in_file);
+    file.reader->select(selected);
+    advance(file);
+  }
+  const File* const first = behind();
+  return first == nullptr ? std::nullopt : std::optional(first->time_ns());
+}
+
+void MergedStreams::checkClocks(const std::function<std::string(double)>& advice) const {
+  constexpr double kFurthestStarts_s = 3600.0;
+  const File& first = files_.front();
+  for (const File& file : files_) {
+    if (first.finished || file.finished) continue;
+    if (std::ranges::equal(file.streams, first.streams, {}, &Stream::sensor, &Stream::sensor)) continue;
+    const double later_s = secondsSince(file.time_ns(), first.time_ns());
+    if (std::abs(later_s) < kFurthestStarts_s) continue;
+    throw badInput(
+        file.path.string(),
+        fmt::format(
+            "its clock has nothing to do with that of {}: it starts at {:.3f} s, the other at {:.3f} s",
+            first.path.string(), secondsSince(0, file.time_ns()), secondsSince(0, first.time_ns())),
+        advice(later_s));
+  }
+}
+
+const File* MergedStreams::behind() const {
+  const auto found = std::ranges::min_element(files_, {}, &File::time_ns);
+  return found == files_.end() || found->finished ? nullptr : &*found;
+}
+
+bool MergedStreams::read(SensorPacket& packet) {
+  const File* const next = behind();
+  if (next == nullptr) return false;
+  File& file = files_[static_cast<std::size_t>(next - files_.data())];
+  std::swap(packet, file.next);
+  advance(file);
+  return true;
+}
+
+// The next packet that holds something.
+void MergedStreams::advance(File& file) {
+  while (!file.read_out) {
+    file.read_out = stop_.stop_requested() || !file.reader->read(file.raw);
+    if (file.read_out) break;
+    if (file.raw.empty()) continue;
+    Stream& stream = *std::ranges::find(file.streams, file.raw.stream, &Stream::in_file);
+    bringHome(file, stream);
+    letIn(stream, file.next);
+    if (!file.next.empty()) return;
+  }
+  file.finished = !flushNext(file);
+}
+
+double MergedStreams::fractionRead() const {
+  double sum = 0.0;
+  for (const File& file : files_) sum += file.finished ? 1.0 : file.reader->fractionRead();
+  return sum / static_cast<double>(files_.size());
+}
+
+void MergedStreams::addFaults(std::vector<RecordingFault>& faults) const {
+  for (const File& file : files_)
+    faults.insert(faults.end(), file.reader->faults().begin(), file.reader->faults().end());
+}
+
+}  // namespace evical
