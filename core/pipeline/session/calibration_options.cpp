@@ -21,17 +21,12 @@ auto& partOf(Options& options) {
 }
 
 // Visits a copy of shared options and stores it if the visitor changed it.
-template <class Options, class Visitor>
-void visitShared(const char* name, Applies applies, const char* help, const SharedOptions<Options>& shared,
-                 Visitor&& visit) {
-  visit(name, applies, help, *shared);
-}
-template <class Options, class Visitor>
-void visitShared(const char* name, Applies applies, const char* help, SharedOptions<Options>& shared,
-                 Visitor&& visit) {
-  Options options = *shared;
+template <class Shared, class Visitor>
+void visitShared(const char* name, Applies applies, const char* help, Shared& shared, Visitor&& visit) {
+  auto options = *shared;
   visit(name, applies, help, options);
-  if (options != *shared) shared = options;
+  if constexpr (!std::is_const_v<Shared>)
+    if (options != *shared) shared = options;
 }
 
 // The one list of groups: visit(name, what all of it needs, help, options of the group).
