@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,10 @@
 // through. libhdf5 gets none of it.
 #include "core/pipeline/runs/run_data.h"
 
+#include <algorithm>
 #include <cstring>
 #include <map>
+#include <type_traits>
 
 namespace {
 
@@ -49,7 +51,7 @@ void damage(const Change& change, std::optional<Hdf5Dataset>& dataset) {
         if (change.what == 1) return values.resize(change.place);
         if (values.empty()) return;
         auto& value = values[change.place % values.size()];
-        if constexpr (requires { value = static_cast<double>(change.value); })
+        if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(value)>>)
           std::memcpy(&value, &change.value, std::min(sizeof value, sizeof change.value));
       },
       dataset->data);
@@ -61,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const std::string whole = runData(smallRun());
   static const Hdf5Source datasets = runDatasets(whole);
   static std::map<std::string, std::optional<Hdf5Dataset>> known;  // reading them each time takes long
-  runData(parseRunData({reinterpret_cast<const char*>(data), size}).run);
+  parseRunData({reinterpret_cast<const char*>(data), size});
   std::size_t asked = 0;
   const Hdf5Source changed = [&](const std::string& path) {
     if (!known.contains(path)) known[path] = datasets(path);
@@ -74,6 +76,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ++asked;
     return dataset;
   };
-  runData(runFrom(changed, whole.size()).run);
+  runFrom(changed, whole.size());
   return 0;
 }
