@@ -15,7 +15,8 @@ CalibrationRun smallRun() {
   CalibrationRun run;
   run.result.state.cameras.resize(1);
   run.result.state.imus.resize(1);
-  run.result.state.imus[0].bias_drift = {0.0, 1.0, {{}, {}}, {{}, {}}};
+  const std::vector<Eigen::Vector3d> at_knots(2, Eigen::Vector3d::Zero());
+  run.result.state.imus[0].bias_drift = {0.0, 1.0, at_knots, at_knots};
   run.result.state.world_from_imu_rotation.control_points.assign(5, Eigen::Quaterniond::Identity());
   run.result.state.imu_in_world_m.control_points.assign(5, Eigen::Vector3d::Zero());
   run.result.cameras.resize(1);
