@@ -1,6 +1,7 @@
 // evical.Result and its sensors.
 #include "core/data/calibration_stage.h"
 #include "core/numerics/angles.h"
+#include "core/report/quantity_words.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/result.h"
@@ -161,10 +162,8 @@ py::object byName(const std::shared_ptr<const Result>& result, const std::vector
 }
 
 py::object covarianceOf(const Result& result) {
-  const UncertaintyReport& report = result.numbers().uncertainty;
-  const Eigen::VectorXd& sigmas = report.standard_deviations;
-  const Eigen::MatrixXd covariance = sigmas.asDiagonal() * report.correlation * sigmas.asDiagonal();
-  return py::module_::import("evical.covariance").attr("Covariance")(report.names, arrayOf(covariance));
+  return py::module_::import("evical.covariance")
+      .attr("Covariance")(columnNames(result.named), arrayOf(result.numbers().uncertainty.covariance()));
 }
 
 py::dict timingOf(const Result& result) {

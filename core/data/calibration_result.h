@@ -5,6 +5,7 @@
 #include "core/data/calibration_state.h"
 #include "core/data/calibration_status.h"
 #include "core/data/doubt.h"
+#include "core/data/quantity_address.h"
 
 #include <Eigen/Core>
 
@@ -57,9 +58,9 @@ struct BoardUncertainty {
   double row_curvature_std_1_m = 0.0, column_curvature_std_1_m = 0.0, twist_std_1_m = 0.0;
 };
 
-// Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).
+// Over all calibrated quantities, in one order that `columns` gives. In SI units, as QuantityPart::unit says.
 struct UncertaintyReport {
-  std::vector<std::string> names;
+  std::vector<QuantityAddress> columns;
   Eigen::VectorXd standard_deviations;
   Eigen::MatrixXd correlation;
   std::vector<CameraUncertainty> cameras;
@@ -76,6 +77,9 @@ struct UncertaintyReport {
   std::string weakest;                  // in plain words: "translation along the camera's z axis"
   std::vector<std::string> directions;  // each of `observability` in such words; older files have none
 
+  Eigen::MatrixXd covariance() const {
+    return standard_deviations.asDiagonal() * correlation * standard_deviations.asDiagonal();
+  }
   // 0: the world's.
   BoardUncertainty& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }
   const BoardUncertainty& boardAt(std::size_t index) const {

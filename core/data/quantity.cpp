@@ -5,6 +5,8 @@
 #include "core/geometry/so3.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace evical {
 namespace {
@@ -18,16 +20,40 @@ template <std::size_t Count>
 std::vector<QuantityPart> namedParts(const QuantityInfo& info, const std::array<const char*, Count>& names) {
   std::vector<QuantityPart> parts;
   for (const char* name : names)
-    parts.push_back({std::string(info.name) + "." + name, info.unit, info.shown_unit});
+    parts.push_back({std::string(info.name) + "." + name, name, info.unit, info.shown_unit});
+  return parts;
+}
+
+// The first `count` coefficients of a lens, and what comes before them.
+std::vector<QuantityPart> lensParts(const QuantityInfo& info, CameraModel model, std::size_t count) {
+  std::vector<QuantityPart> parts;
+  for (const char* name : kPixelIntrinsics) parts.push_back({name, name, info.unit, info.shown_unit});
+  const auto coefficients = distortionNames(model);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string name = std::string("distortion.") + coefficients.at(k);
+    parts.push_back({name, name, "1", ""});
+  }
   return parts;
 }
 
 }  // namespace
 
+const QuantityInfo& quantityInfo(QuantityOwner owner, QuantityId id) {
+  const QuantityInfo* found = kGravityQuantity.is(owner, id) ? &kGravityQuantity : nullptr;
+  const auto look = [&](const auto& row) {
+    if (row.info.is(owner, id)) found = &row.info;
+  };
+  forEachQuantity(kCameraQuantities, look);
+  forEachQuantity(kImuQuantities, look);
+  forEachQuantity(kBoardQuantities, look);
+  if (found == nullptr) throw std::out_of_range("no such quantity");
+  return *found;
+}
+
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info) {
   switch (info.shape) {
     case QuantityShape::Scalar:
-      return {{info.name, info.unit, info.shown_unit}};
+      return {{info.name, "", info.unit, info.shown_unit}};
     case QuantityShape::Vector3:
     case QuantityShape::Rotation:
     case QuantityShape::LocalRotation:
@@ -39,18 +65,67 @@ std::vector<QuantityPart> quantityParts(const QuantityInfo& info) {
     case QuantityShape::Gravity:
       break;
   }
-  return {{"direction.1", "rad", "deg"}, {"direction.2", "rad", "deg"}, {"norm", info.unit, info.shown_unit}};
+  return {{"direction.1", "direction.1", "rad", "deg"},
+          {"direction.2", "direction.2", "rad", "deg"},
+          {"norm", "norm", info.unit, info.shown_unit}};
 }
 
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info,
                                         const std::optional<CameraIntrinsics>& value) {
-  std::vector<QuantityPart> parts;
-  if (!value) return parts;
-  for (const char* name : kPixelIntrinsics) parts.push_back({name, info.unit, info.shown_unit});
-  const auto coefficients = distortionNames(value->model);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(*value)); ++k)
-    parts.push_back({std::string("distortion.") + coefficients[k], "1", ""});
-  return parts;
+  if (!value) return {};
+  return lensParts(info, value->model, static_cast<std::size_t>(distortionCount(*value)));
+}
+
+QuantityPart quantityPart(const QuantityAddress& number) {
+  const QuantityInfo& info = quantityInfo(number.owner, number.id);
+  constexpr std::size_t kAll = std::tuple_size_v<decltype(CameraIntrinsics::distortion)>;
+  return (number.model ? lensParts(info, *number.model, kAll) : quantityParts(info)).at(number.component);
+}
+
+std::vector<QuantityAddress> quantityAddresses(const CalibrationState& state) {
+  std::vector<QuantityAddress> all;
+  const auto add = [&](QuantityAddress number, std::size_t parts) {
+    for (; number.component < parts; ++number.component) all.push_back(number);
+  };
+  const auto addRows = [&](const auto& rows, std::size_t k, const auto& sensor) {
+    forEachQuantity(rows, [&](const auto& row) {
+      const auto& value = row.value(sensor);
+      add(quantityAddress(row.info, k, value), quantityParts(row.info, value).size());
+    });
+  };
+  for (std::size_t k = 0; k < state.cameras.size(); ++k) addRows(kCameraQuantities, k, state.cameras[k]);
+  for (std::size_t k = 0; k < state.imus.size(); ++k) addRows(kImuQuantities, k, state.imus[k]);
+  for (std::size_t k = 0; k <= state.further_boards.size(); ++k)
+    addRows(kBoardQuantities, k, state.boardAt(k));
+  add({}, quantityParts(kGravityQuantity).size());
+  return all;
+}
+
+void setSigmas(UncertaintyReport& report) {
+  for (const QuantityAddress& first : report.columns) {
+    if (first.component != 0) continue;
+    Eigen::VectorXd sigmas(0);
+    QuantityAddress number = first;
+    while (const auto column = columnOf(number, report.columns)) {
+      sigmas.conservativeResize(sigmas.size() + 1);
+      sigmas[sigmas.size() - 1] = report.standard_deviations[*column];
+      ++number.component;
+    }
+    visitQuantity(first, std::tie(report),
+                  [&](const auto& row, auto& sensor) { setQuantityNumbers(sigmas, row.sigma(sensor)); });
+    if (first.id != QuantityId::Gravity) continue;
+    report.gravity_direction_std_rad = sigmas.head<2>().norm() / std::sqrt(2.0);
+    if (sigmas.size() == 3) report.gravity_norm_std_m_s2 = sigmas[2];
+  }
+}
+
+Eigen::MatrixXd intrinsicsCovariance(const UncertaintyReport& report, std::size_t camera) {
+  std::vector<Eigen::Index> columns;
+  for (std::size_t k = 0; k < report.columns.size(); ++k)
+    if (const QuantityAddress& each = report.columns[k];
+        each.id == QuantityId::Intrinsics && each.sensor == camera)
+      columns.push_back(static_cast<Eigen::Index>(k));
+  return report.covariance()(columns, columns);
 }
 
 Eigen::VectorXd quantityNumbers(double value) {

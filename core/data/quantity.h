@@ -20,8 +20,6 @@
 
 namespace evical {
 
-enum class QuantityOwner { Camera, Imu, Board, Rig };
-
 enum class QuantityShape {
   Scalar,
   Vector3,
@@ -59,6 +57,7 @@ enum class QuantityPresence {
 enum class QuantityWriting { Always, WherePresent };  // in result.yaml
 
 struct QuantityInfo {
+  QuantityId id;
   const char* name;   // "time_offset"
   const char* title;  // for people
   QuantityOwner owner;
@@ -84,10 +83,7 @@ struct QuantityInfo {
   const char* std_key = "";
   double largest = 1e6;  // beyond it a prior is a slip
 
-  // A second name of a number, among the sensor's own keys, in another unit or out of its section.
-  const char* also_key = "";
-  const char* also_std_key = "";
-  double also_factor = 1.0;  // from the first one's unit
+  constexpr bool is(QuantityOwner of, QuantityId which) const { return owner == of && id == which; }
 };
 
 // A member of a member: the rotation of a pose.
@@ -144,7 +140,8 @@ namespace detail {
 inline constexpr double kLargestPlace_m = 100.0;  // millimetres written as metres are beyond it
 
 constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
-  return {.name = "rotation",
+  return {.id = QuantityId::Rotation,
+          .name = "rotation",
           .title = "rotation vector",
           .owner = owner,
           .shape = QuantityShape::Rotation,
@@ -160,7 +157,8 @@ constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
 }
 
 constexpr QuantityInfo translationInfo(QuantityOwner owner, const char* section) {
-  return {.name = "translation",
+  return {.id = QuantityId::Translation,
+          .name = "translation",
           .title = "translation",
           .owner = owner,
           .shape = QuantityShape::Vector3,
@@ -178,7 +176,8 @@ constexpr QuantityInfo translationInfo(QuantityOwner owner, const char* section)
 }
 
 constexpr QuantityInfo timeOffsetInfo(QuantityOwner owner) {
-  return {.name = "time_offset",
+  return {.id = QuantityId::TimeOffset,
+          .name = "time_offset",
           .title = "time offset",
           .owner = owner,
           .shape = QuantityShape::Scalar,
@@ -194,7 +193,8 @@ constexpr QuantityInfo timeOffsetInfo(QuantityOwner owner) {
 }
 
 constexpr QuantityInfo timeOffsetDriftInfo(QuantityOwner owner) {
-  return {.name = "time_offset_drift",
+  return {.id = QuantityId::TimeOffsetDrift,
+          .name = "time_offset_drift",
           .title = "time offset drift",
           .owner = owner,
           .shape = QuantityShape::Scalar,
@@ -207,14 +207,13 @@ constexpr QuantityInfo timeOffsetDriftInfo(QuantityOwner owner) {
           .written = QuantityWriting::WherePresent,
           .relative = true,
           .of_sensor = true,
-          .key = "time_offset_drift_ppm",
-          .std_key = "time_offset_drift_std_ppm",
-          .also_key = "clock_drift_ppm",
-          .also_std_key = "clock_drift_std_ppm"};
+          .key = "clock_drift_ppm",
+          .std_key = "clock_drift_std_ppm"};
 }
 
-constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
-  return {.name = name,
+constexpr QuantityInfo mappingInfo(QuantityId id, const char* name, const char* sensor) {
+  return {.id = id,
+          .name = name,
           .title = sensor,
           .owner = QuantityOwner::Imu,
           .shape = QuantityShape::UpperTriangle,
@@ -226,9 +225,10 @@ constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
           .std_key = "mapping_std"};
 }
 
-constexpr QuantityInfo curvatureInfo(const char* name, const char* title, const char* key,
+constexpr QuantityInfo curvatureInfo(QuantityId id, const char* name, const char* title, const char* key,
                                      const char* std_key) {
-  return {.name = name,
+  return {.id = id,
+          .name = name,
           .title = title,
           .owner = QuantityOwner::Board,
           .shape = QuantityShape::Scalar,
@@ -264,7 +264,8 @@ inline constexpr auto kCameraQuantities = std::tuple{
                 &CameraUncertainty::time_offset_std_s, &SensorPrior::time_offset},
     QuantityRow{detail::timeOffsetDriftInfo(QuantityOwner::Camera), &CameraState::time_offset_drift_ppm,
                 &CameraUncertainty::time_offset_drift_std_ppm, &SensorPrior::time_offset_drift},
-    QuantityRow{QuantityInfo{.name = "line_delay",
+    QuantityRow{QuantityInfo{.id = QuantityId::LineDelay,
+                             .name = "line_delay",
                              .title = "line delay",
                              .owner = QuantityOwner::Camera,
                              .shape = QuantityShape::Scalar,
@@ -277,12 +278,10 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .presence = QuantityPresence::WhereNotZero,
                              .written = QuantityWriting::WherePresent,
                              .key = "line_delay_us",
-                             .std_key = "line_delay_std_us",
-                             .also_key = "line_delay_s",
-                             .also_std_key = "line_delay_std_s",
-                             .also_factor = 1e-6},
+                             .std_key = "line_delay_std_us"},
                 &CameraState::line_delay_us, &CameraUncertainty::line_delay_std_us, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "exposure_share",
+    QuantityRow{QuantityInfo{.id = QuantityId::ExposureShare,
+                             .name = "exposure_share",
                              .title = "exposure's share",
                              .owner = QuantityOwner::Camera,
                              .shape = QuantityShape::Scalar,
@@ -296,7 +295,8 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .key = "exposure_share",
                              .std_key = "exposure_share_std"},
                 &CameraState::exposure_share, &CameraUncertainty::exposure_share_std, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "edge_lead",
+    QuantityRow{QuantityInfo{.id = QuantityId::EdgeLead,
+                             .name = "edge_lead",
                              .title = "edge lead",
                              .owner = QuantityOwner::Camera,
                              .shape = QuantityShape::Scalar,
@@ -308,7 +308,8 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .key = "edge_lead_px",
                              .std_key = "edge_lead_std_px"},
                 &CameraState::edge_lead_px, &CameraUncertainty::edge_lead_std_px, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "slow_edge_lead",
+    QuantityRow{QuantityInfo{.id = QuantityId::SlowEdgeLead,
+                             .name = "slow_edge_lead",
                              .title = "lead of slow edges",
                              .owner = QuantityOwner::Camera,
                              .shape = QuantityShape::Scalar,
@@ -320,7 +321,8 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .key = "slow_edge_lead_px",
                              .std_key = "slow_edge_lead_std_px"},
                 &CameraState::slow_edge_lead_px, &CameraUncertainty::slow_edge_lead_std_px, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "intrinsics",
+    QuantityRow{QuantityInfo{.id = QuantityId::Intrinsics,
+                             .name = "intrinsics",
                              .title = "intrinsics",
                              .owner = QuantityOwner::Camera,
                              .shape = QuantityShape::Intrinsics,
@@ -343,7 +345,8 @@ inline constexpr auto kImuQuantities = std::tuple{
                 &ImuUncertainty::time_offset_std_s, &ImuPrior::time_offset},
     QuantityRow{detail::timeOffsetDriftInfo(QuantityOwner::Imu), &ImuState::time_offset_drift_ppm,
                 &ImuUncertainty::time_offset_drift_std_ppm, &ImuPrior::time_offset_drift},
-    QuantityRow{QuantityInfo{.name = "gyroscope_bias",
+    QuantityRow{QuantityInfo{.id = QuantityId::GyroscopeBias,
+                             .name = "gyroscope_bias",
                              .title = "gyroscope bias",
                              .owner = QuantityOwner::Imu,
                              .shape = QuantityShape::Vector3,
@@ -355,7 +358,8 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .std_key = "bias_std_rad_s"},
                 &ImuState::gyroscope_bias_rad_s, &ImuUncertainty::gyroscope_bias_std_rad_s,
                 &ImuPrior::gyroscope_bias},
-    QuantityRow{QuantityInfo{.name = "accelerometer_bias",
+    QuantityRow{QuantityInfo{.id = QuantityId::AccelerometerBias,
+                             .name = "accelerometer_bias",
                              .title = "accelerometer bias",
                              .owner = QuantityOwner::Imu,
                              .shape = QuantityShape::Vector3,
@@ -367,12 +371,15 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .std_key = "bias_std_m_s2"},
                 &ImuState::accelerometer_bias_m_s2, &ImuUncertainty::accelerometer_bias_std_m_s2,
                 &ImuPrior::accelerometer_bias},
-    QuantityRow{detail::mappingInfo("gyroscope_mapping", "gyroscope"), &ImuState::gyroscope_mapping,
-                &ImuUncertainty::gyroscope_mapping_std, &ImuPrior::gyroscope_mapping},
-    QuantityRow{detail::mappingInfo("accelerometer_mapping", "accelerometer"),
-                &ImuState::accelerometer_mapping, &ImuUncertainty::accelerometer_mapping_std,
-                &ImuPrior::accelerometer_mapping},
-    QuantityRow{QuantityInfo{.name = "accelerometer_delay",
+    QuantityRow{detail::mappingInfo(QuantityId::GyroscopeMapping, "gyroscope_mapping", "gyroscope"),
+                &ImuState::gyroscope_mapping, &ImuUncertainty::gyroscope_mapping_std,
+                &ImuPrior::gyroscope_mapping},
+    QuantityRow{
+        detail::mappingInfo(QuantityId::AccelerometerMapping, "accelerometer_mapping", "accelerometer"),
+        &ImuState::accelerometer_mapping, &ImuUncertainty::accelerometer_mapping_std,
+        &ImuPrior::accelerometer_mapping},
+    QuantityRow{QuantityInfo{.id = QuantityId::AccelerometerDelay,
+                             .name = "accelerometer_delay",
                              .title = "accelerometer delay",
                              .owner = QuantityOwner::Imu,
                              .shape = QuantityShape::Scalar,
@@ -382,15 +389,13 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .decimals = 4,
                              .remark = "against the gyroscope",
                              .release = QuantityRelease::ImuIntrinsics,
-                             .section = "accelerometer",
-                             .key = "delay_s",
-                             .std_key = "delay_std_s",
-                             .largest = 0.1,
-                             .also_key = "accelerometer_delay_s",
-                             .also_std_key = "accelerometer_delay_std_s"},
+                             .key = "accelerometer_delay_s",
+                             .std_key = "accelerometer_delay_std_s",
+                             .largest = 0.1},
                 &ImuState::accelerometer_delay_s, &ImuUncertainty::accelerometer_delay_std_s,
                 &ImuPrior::accelerometer_delay},
-    QuantityRow{QuantityInfo{.name = "gyroscope_rotation",
+    QuantityRow{QuantityInfo{.id = QuantityId::GyroscopeRotation,
+                             .name = "gyroscope_rotation",
                              .title = "gyroscope rotation",
                              .owner = QuantityOwner::Imu,
                              .shape = QuantityShape::LocalRotation,
@@ -413,7 +418,8 @@ inline constexpr auto kBoardQuantities = std::tuple{
     QuantityRow{detail::ofFurtherBoard(detail::translationInfo(QuantityOwner::Board, "world_from_board")),
                 MemberOf{&BoardState::world_from_board, &RigidTransform::translation_m},
                 &BoardUncertainty::translation_std_m, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "scale",
+    QuantityRow{QuantityInfo{.id = QuantityId::Scale,
+                             .name = "scale",
                              .title = "size",
                              .owner = QuantityOwner::Board,
                              .shape = QuantityShape::Scalar,
@@ -425,7 +431,8 @@ inline constexpr auto kBoardQuantities = std::tuple{
                              .key = "scale",
                              .std_key = "scale_std"},
                 &BoardState::scale, &BoardUncertainty::scale_std, NoPrior{}},
-    QuantityRow{QuantityInfo{.name = "stretch",
+    QuantityRow{QuantityInfo{.id = QuantityId::Stretch,
+                             .name = "stretch",
                              .title = "stretch",
                              .owner = QuantityOwner::Board,
                              .shape = QuantityShape::Scalar,
@@ -437,17 +444,19 @@ inline constexpr auto kBoardQuantities = std::tuple{
                              .key = "stretch",
                              .std_key = "stretch_std"},
                 &BoardState::stretch, &BoardUncertainty::stretch_std, NoPrior{}},
-    QuantityRow{detail::curvatureInfo("row_curvature", "curvature along its rows", "row_curvature_1_m",
-                                      "row_curvature_std_1_m"),
+    QuantityRow{detail::curvatureInfo(QuantityId::RowCurvature, "row_curvature", "curvature along its rows",
+                                      "row_curvature_1_m", "row_curvature_std_1_m"),
                 &BoardState::row_curvature_1_m, &BoardUncertainty::row_curvature_std_1_m, NoPrior{}},
-    QuantityRow{detail::curvatureInfo("column_curvature", "curvature along its columns",
-                                      "column_curvature_1_m", "column_curvature_std_1_m"),
-                &BoardState::column_curvature_1_m, &BoardUncertainty::column_curvature_std_1_m, NoPrior{}},
-    QuantityRow{detail::curvatureInfo("twist", "twist", "twist_1_m", "twist_std_1_m"), &BoardState::twist_1_m,
-                &BoardUncertainty::twist_std_1_m, NoPrior{}}};
+    QuantityRow{
+        detail::curvatureInfo(QuantityId::ColumnCurvature, "column_curvature", "curvature along its columns",
+                              "column_curvature_1_m", "column_curvature_std_1_m"),
+        &BoardState::column_curvature_1_m, &BoardUncertainty::column_curvature_std_1_m, NoPrior{}},
+    QuantityRow{detail::curvatureInfo(QuantityId::Twist, "twist", "twist", "twist_1_m", "twist_std_1_m"),
+                &BoardState::twist_1_m, &BoardUncertainty::twist_std_1_m, NoPrior{}}};
 
 // The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
-inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",
+inline constexpr QuantityInfo kGravityQuantity = {.id = QuantityId::Gravity,
+                                                  .name = "gravity",
                                                   .title = "gravity",
                                                   .owner = QuantityOwner::Rig,
                                                   .shape = QuantityShape::Gravity,
@@ -468,16 +477,25 @@ constexpr void forEachSheetQuantity(Visitor&& visit) {
   });
 }
 
-// Of the row whose value is this member.
-template <class Rows, class ValueAt>
-const QuantityInfo& quantityInfo(const Rows& rows, ValueAt member) {
-  const QuantityInfo* found = nullptr;
-  forEachQuantity(rows, [&](const auto& row) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row.value_at)>, ValueAt>)
-      if (row.value_at == member) found = &row.info;
-  });
-  return *found;
+// visit(row, sensor...) of the number's quantity, with its owner in each of `in`: states or uncertainty reports, as
+// std::tie has them. Gravity has no row.
+template <class In, class Visitor>
+void visitQuantity(const QuantityAddress& number, const In& in, Visitor&& visit) {
+  const auto among = [&](const auto& rows, auto&... sensors) {
+    forEachQuantity(rows, [&](const auto& row) {
+      if (row.info.id == number.id) visit(row, sensors...);
+    });
+  };
+  const auto of = [&](auto&... each) {
+    if (number.owner == QuantityOwner::Camera) among(kCameraQuantities, each.cameras.at(number.sensor)...);
+    if (number.owner == QuantityOwner::Imu) among(kImuQuantities, each.imus.at(number.sensor)...);
+    if (number.owner == QuantityOwner::Board) among(kBoardQuantities, each.boardAt(number.sensor)...);
+  };
+  std::apply(of, in);
 }
+
+// Of a row, or gravity. Throws std::out_of_range where the owner has no such quantity.
+const QuantityInfo& quantityInfo(QuantityOwner owner, QuantityId id);
 
 // Those with a place in a session's prior.
 template <class Rows, class Visitor>
@@ -490,6 +508,7 @@ constexpr void forEachPriorQuantity(const Rows& rows, Visitor&& visit) {
 // One of a quantity's numbers.
 struct QuantityPart {
   std::string name;  // "rotation.x", "focal_length.y"; behind the sensor's and a dot it is unique in a rig
+  std::string component;  // "x", "focal_length.y"; empty where it is the only one
   std::string unit, shown_unit;
 };
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info);  // of all shapes but intrinsics
@@ -500,6 +519,26 @@ std::vector<QuantityPart> quantityParts(const QuantityInfo& info, const Value&) 
 }
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info,
                                         const std::optional<CameraIntrinsics>& value);
+// Throws std::out_of_range where there is none.
+QuantityPart quantityPart(const QuantityAddress& number);
+
+// Of its first number, `value` as in a state.
+template <class Value>
+QuantityAddress quantityAddress(const QuantityInfo& info, std::size_t sensor, const Value& value) {
+  QuantityAddress first{info.owner, sensor, info.id};
+  if constexpr (std::is_same_v<Value, std::optional<CameraIntrinsics>>)
+    if (value) first.model = value->model;
+  return first;
+}
+
+// Of all numbers that the state has.
+std::vector<QuantityAddress> quantityAddresses(const CalibrationState& state);
+
+// Each quantity's own sigmas, from the standard deviations of its columns.
+void setSigmas(UncertaintyReport& report);
+
+// Of a lens's numbers that are estimated, among those of `report`; empty where none is.
+Eigen::MatrixXd intrinsicsCovariance(const UncertaintyReport& report, std::size_t camera);
 
 // Those numbers, in SI units: rotations as vectors, upper triangles row by row; of intrinsics all nine.
 Eigen::VectorXd quantityNumbers(double value);

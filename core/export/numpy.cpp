@@ -5,6 +5,7 @@
 #include "core/export/ros_camera.h"
 #include "core/format/npy.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/report/quantity_words.h"
 
 #include <algorithm>
 #include <array>
@@ -86,11 +87,10 @@ void addImu(const RigImu& imu, const ImuUncertainty& uncertainty, Arrays& arrays
   addSigmas(kImuQuantities, uncertainty, arrays);
 }
 
-void addCovariance(const UncertaintyReport& uncertainty, Arrays& arrays) {
-  if (uncertainty.names.empty()) return;
-  const auto sigmas = uncertainty.standard_deviations.asDiagonal();
-  arrays.add("covariance_names", npyList(uncertainty.names));
-  arrays.add("covariance", npyMatrix(sigmas * uncertainty.correlation * sigmas));
+void addCovariance(const NamedResult& named, Arrays& arrays) {
+  if (named.result->uncertainty.columns.empty()) return;
+  arrays.add("covariance_names", npyList(columnNames(named)));
+  arrays.add("covariance", npyMatrix(named.result->uncertainty.covariance()));
 }
 
 template <class Sensors>
@@ -117,7 +117,7 @@ ExportedFiles exportNumpy(const NamedResult& result) {
     if (!inertial && camera.name == result.reference) reference = camera.file_name;
   arrays.add("reference", npyText(reference));
   if (inertial) arrays.add("gravity_m_s2", rig.gravity_m_s2);
-  addCovariance(uncertainty, arrays);
+  addCovariance(result, arrays);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
     addNumpyCamera(rig.cameras[i], result.result->state.cameras[i], elementOrNone(uncertainty.cameras, i),
                    arrays);

@@ -54,8 +54,6 @@ std::vector<std::string> quantityKeys(const Rows& rows, const std::string& secti
       keys.insert(keys.end(), {row.info.key, row.info.std_key});
     else if (section.empty())
       keys.push_back(row.info.section);
-    if (section.empty() && *row.info.also_key != '\0')
-      keys.insert(keys.end(), {row.info.also_key, row.info.also_std_key});
   });
   return keys;
 }

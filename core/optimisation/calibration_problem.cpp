@@ -122,9 +122,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
         (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
         (release == QuantityRelease::BoardBow && !(last && options_.board_bow)) ||
         (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld()) ||
-        (quantity.info->owner == QuantityOwner::Imu &&
-         quantity.block == &parameters_.moved().imus[quantity.sensor].accelerometer_delay_s &&
-         builder.delayIsHeld(quantity.sensor));
+        (quantity.info->id == QuantityId::AccelerometerDelay && builder.delayIsHeld(quantity.sensor));
     if (held) builder.hold(quantity.block);
   }
 }

@@ -21,10 +21,9 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
 template <class Known>
 std::optional<Known> heldWithoutPrior([[maybe_unused]] const QuantityInfo& info) {
   if constexpr (std::is_same_v<Known, KnownNumber>)
-    if (info.release == QuantityRelease::TimeOffsets || info.release == QuantityRelease::ImuIntrinsics)
+    if (info.id == QuantityId::TimeOffset || info.id == QuantityId::AccelerometerDelay)
       return KnownNumber{0.0};
-  if constexpr (std::is_same_v<Known, KnownMapping>)
-    if (info.release == QuantityRelease::ImuIntrinsics) return KnownMapping{Eigen::Matrix3d::Identity()};
+  if constexpr (std::is_same_v<Known, KnownMapping>) return KnownMapping{Eigen::Matrix3d::Identity()};
   return std::nullopt;
 }
 

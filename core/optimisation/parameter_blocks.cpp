@@ -34,6 +34,17 @@ void copySensor(CameraState& from, CameraState& to) {
 
 }  // namespace
 
+std::optional<Eigen::Index> columnOf(const QuantityAddress& number, const std::vector<Quantity>& quantities,
+                                     const std::vector<Eigen::Index>& first_column) {
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const Eigen::Index column = first_column[i] + static_cast<Eigen::Index>(number.component);
+    if (quantities[i].info->is(number.owner, number.id) && quantities[i].sensor == number.sensor &&
+        column < first_column[i + 1])
+      return column;
+  }
+  return std::nullopt;
+}
+
 ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
                                  const CalibrationState& initial)
     : moved_(initial) {
@@ -119,8 +130,8 @@ std::vector<Quantity> ParameterBlocks::quantities() {
 
 std::vector<Quantity> ParameterBlocks::biasKnots() {
   std::vector<Quantity> all;
-  const QuantityInfo& gyroscope = quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s);
-  const QuantityInfo& accelerometer = quantityInfo(kImuQuantities, &ImuState::accelerometer_bias_m_s2);
+  const QuantityInfo& gyroscope = quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeBias);
+  const QuantityInfo& accelerometer = quantityInfo(QuantityOwner::Imu, QuantityId::AccelerometerBias);
   for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
     BiasDrift& drift = moved_.imus[i].bias_drift;
     for (Eigen::Vector3d& knot : drift.gyroscope_rad_s) all.push_back({&gyroscope, i, knot.data()});

@@ -22,7 +22,13 @@ struct Quantity {
   const QuantityInfo* info;
   std::size_t sensor;
   double* block;
+
+  QuantityAddress address() const { return {info->owner, sensor, info->id}; }
 };
+
+// Where columns begin with `first_column` of each, and end with one more; nothing where the number is none of theirs.
+std::optional<Eigen::Index> columnOf(const QuantityAddress& number, const std::vector<Quantity>& quantities,
+                                     const std::vector<Eigen::Index>& first_column);
 
 class ParameterBlocks {
  public:

@@ -1,71 +1,62 @@
 #include "core/report/quantity_words.h"
 
+#include "core/base/yaml_node.h"
 #include "core/data/quantity.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <string_view>
-#include <vector>
 
 namespace evical {
 namespace {
 
-struct KnownName {
-  std::string name, title;
-};
-
-// Longer names first: "slow_edge_lead" before "edge_lead".
-const std::vector<KnownName>& knownNames() {
-  static const std::vector<KnownName> known = [] {
-    std::vector<KnownName> names = {{"focal_length", "focal length"},
-                                    {"principal_point", "principal point"},
-                                    {"distortion", "distortion"},
-                                    {"direction", "direction"},
-                                    {"norm", "norm"}};
-    const auto add = [&](const auto& row) {
-      const bool matrix = row.info.shape == QuantityShape::UpperTriangle;
-      names.push_back(
-          {row.info.name, std::string(row.info.title) + (matrix ? " scale and misalignment" : "")});
-    };
-    forEachQuantity(kCameraQuantities, add);
-    forEachQuantity(kImuQuantities, add);
-    forEachQuantity(kBoardQuantities, add);
-    std::stable_sort(names.begin(), names.end(),
-                     [](const KnownName& a, const KnownName& b) { return a.name.size() > b.name.size(); });
-    return names;
-  }();
-  return known;
-}
-
-std::string spaced(std::string_view text) {
-  std::string words(text);
-  for (char& letter : words)
-    if (letter == '_' || letter == '.') letter = ' ';
-  return words;
-}
-
-// Where `quantity` stands in `name`: behind a dot, and at the end or before another one.
-std::size_t placeOf(const std::string& quantity, const std::string& name) {
-  const std::string behind_dot = "." + quantity;
-  const std::size_t at = name.rfind(behind_dot);
-  if (at == std::string::npos) return at;
-  const std::size_t end = at + behind_dot.size();
-  return end == name.size() || name[end] == '.' ? at : std::string::npos;
+std::string ownerName(const QuantityAddress& number, const NamedResult& named) {
+  switch (number.owner) {
+    case QuantityOwner::Camera:
+      return named.cameras.at(number.sensor).name;
+    case QuantityOwner::Imu:
+      return named.imus.at(number.sensor).name;
+    case QuantityOwner::Board:
+      return named.boards.at(number.sensor);
+    case QuantityOwner::Rig:
+      break;
+  }
+  return kGravityQuantity.name;
 }
 
 }  // namespace
 
-QuantityWords quantityWords(const std::string& name) {
-  const std::string bare = name.substr(0, name.find(" ["));
-  for (const KnownName& known : knownNames()) {
-    const std::size_t at = placeOf(known.name, bare);
-    if (at == std::string::npos) continue;
-    const std::size_t end = at + 1 + known.name.size();
-    return {bare.substr(0, at), known.title, end < bare.size() ? spaced(bare.substr(end + 1)) : ""};
+std::string columnKeys(const QuantityAddress& number, const NamedResult& named) {
+  constexpr std::array kOwners = {"camera", "imu", "board"};
+  const auto owner = static_cast<std::size_t>(number.owner);
+  const std::string component = quantityPart(number).component;
+  std::string keys;
+  if (owner < kOwners.size())
+    keys = fmt::format("{}: {}, ", kOwners[owner], yamlText(ownerName(number, named)));
+  keys += fmt::format("quantity: {}", quantityInfo(number.owner, number.id).name);
+  return component.empty() ? keys : fmt::format("{}, component: {}", keys, component);
+}
+
+std::vector<std::string> columnNames(const NamedResult& named) {
+  std::vector<std::string> names;
+  for (const QuantityAddress& column : named.result->uncertainty.columns) {
+    const QuantityPart part = quantityPart(column);
+    names.push_back(fmt::format("{}.{} [{}]", ownerName(column, named), part.name, part.unit));
   }
-  const std::size_t dot = bare.find('.');
-  if (dot == std::string::npos) return {"", spaced(bare), ""};
-  return {bare.substr(0, dot), spaced(bare.substr(dot + 1)), ""};
+  return names;
+}
+
+QuantityWords quantityWords(const QuantityAddress& number, const NamedResult& named) {
+  const QuantityInfo& info = quantityInfo(number.owner, number.id);
+  QuantityWords words{ownerName(number, named), info.title, quantityPart(number).component};
+  if (info.shape == QuantityShape::UpperTriangle) words.quantity += " scale and misalignment";
+  if (info.shape != QuantityShape::Intrinsics && info.shape != QuantityShape::Gravity) return words;
+  const std::size_t dot = std::min(words.part.find('.'), words.part.size());
+  words.quantity = words.part.substr(0, dot);
+  words.part.erase(0, dot + 1);
+  std::ranges::replace(words.quantity, '_', ' ');
+  return words;
 }
 
 std::string quantitySentence(const QuantityWords& words) {

@@ -1,9 +1,19 @@
-// Names of estimated quantities, "left.gyroscope_bias.x [rad/s]", as people say them.
+// Names of estimated numbers, for people and for tables.
 #pragma once
 
+#include "core/data/quantity_address.h"
+#include "core/report/result_yaml.h"
+
 #include <string>
+#include <vector>
 
 namespace evical {
+
+// "camera: left, quantity: gyroscope_bias, component: x", as result.yaml has it.
+std::string columnKeys(const QuantityAddress& number, const NamedResult& named);
+
+// "left.gyroscope_bias.x [rad/s]", for all columns of the result's covariance.
+std::vector<std::string> columnNames(const NamedResult& named);
 
 struct QuantityWords {
   std::string sensor;    // "left"
@@ -11,8 +21,7 @@ struct QuantityWords {
   std::string part;      // "x", "xy"; empty where the quantity is one number
 };
 
-// Sensors may have dots in their names. What nobody knows is taken apart at its dots.
-QuantityWords quantityWords(const std::string& name);
+QuantityWords quantityWords(const QuantityAddress& number, const NamedResult& named);
 
 // "left: gyroscope bias x"
 std::string quantitySentence(const QuantityWords& words);

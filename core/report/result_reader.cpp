@@ -4,6 +4,7 @@
 #include "core/format/intrinsics_yaml.h"
 #include "core/format/quantity_yaml.h"
 #include "core/numerics/angles.h"
+#include "core/report/quantity_words.h"
 #include "core/report/result_yaml.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -81,7 +83,8 @@ template <class Rows, class State, class Uncertainty>
 void readQuantities(const YamlNode& sensor, const Rows& rows, State& state, Uncertainty& uncertainty) {
   forEachQuantity(rows, [&](const auto& row) {
     if constexpr (!std::is_same_v<decltype(row.value(state)), std::optional<CameraIntrinsics>&>) {
-      if (row.info.need == QuantityNeed::Rotation || row.info.need == QuantityNeed::Translation)
+      const bool pose = row.info.id == QuantityId::Rotation || row.info.id == QuantityId::Translation;
+      if (pose && row.info.owner != QuantityOwner::Board)
         static_cast<void>(sensor[row.info.section][row.info.key]);  // throws where it is missing
       const auto section = quantitySection(sensor, row.info);
       if (!section) return;
@@ -188,7 +191,25 @@ SensorDescription readImu(const YamlNode& map, const std::string& name, Calibrat
   return readKnown(map, name);
 }
 
-void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
+// Of the covariance: whose number each is, and which.
+std::vector<QuantityAddress> readColumns(const YamlNode& list, const NamedResult& named,
+                                         const CalibrationState& state) {
+  std::map<std::string, QuantityAddress> known;
+  for (const QuantityAddress& number : quantityAddresses(state)) known[columnKeys(number, named)] = number;
+  std::vector<QuantityAddress> columns;
+  for (const YamlNode& item : list.items()) {
+    std::string keys;
+    for (const char* const key : {"camera", "imu", "board", "quantity", "component"})
+      if (const auto node = item.find(key))
+        keys += fmt::format("{}{}: {}", keys.empty() ? "" : ", ", key, yamlText(node->text()));
+    if (!known.contains(keys)) throw item.error(fmt::format("{} is no number of this result", keys));
+    columns.push_back(known[keys]);
+  }
+  return columns;
+}
+
+void readUncertainty(const YamlNode& root, const NamedResult& named, const CalibrationState& state,
+                     UncertaintyReport& uncertainty) {
   double gravity_std_deg = 0.0;
   get(root, "gravity_direction_std_deg", gravity_std_deg);
   uncertainty.gravity_direction_std_rad = kRadPerDeg * gravity_std_deg;
@@ -202,11 +223,11 @@ void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
   }
   const auto map = root.find("uncertainty");
   if (!map) return;
-  get(*map, "names", uncertainty.names);
-  const auto count = static_cast<Eigen::Index>(uncertainty.names.size());
+  uncertainty.columns = readColumns((*map)["columns"], named, state);
+  const auto count = static_cast<Eigen::Index>(uncertainty.columns.size());
   const std::vector<YamlNode> sigmas = (*map)["std"].items(), rows = (*map)["correlation"].items();
-  if (sigmas.size() != uncertainty.names.size() || rows.size() != sigmas.size())
-    throw map->error("names, std and correlation must be of one size");
+  if (sigmas.size() != uncertainty.columns.size() || rows.size() != sigmas.size())
+    throw map->error("columns, std and correlation must be of one size");
   uncertainty.standard_deviations.resize(count);
   uncertainty.correlation.resize(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -285,11 +306,19 @@ void readCauses(const YamlNode& root, std::vector<Doubt>& causes) {
   }
 }
 
+void checkVersion(const YamlNode& version) {
+  constexpr int kVersion = 1;
+  if (version.text() != std::to_string(kVersion))
+    throw version.error(
+        fmt::format("is {}: this program reads files of version {}", version.text(), kVersion),
+        "Calibrate again, or use the program that wrote it");
+}
+
 NamedResult resultFrom(const YamlNode& root) {
   if (!root.isMap() || !(root.has("evical_result") || root.has("evical_truth")))
     throw root.error("is neither a result nor a truth file",
                      "Give result.yaml of `evical calibrate`, or truth.yaml");
-  root[root.has("evical_result") ? "evical_result" : "evical_truth"].integer(1, 1);  // the format's version
+  checkVersion(root[root.has("evical_result") ? "evical_result" : "evical_truth"]);
   NamedResult named;
   CalibrationResult result;
   if (const auto status = root.find("status"))
@@ -311,7 +340,7 @@ NamedResult resultFrom(const YamlNode& root) {
     for (const YamlNode& window : rejected->items())
       result.rejected_windows.push_back({cameraOf(window["camera"], named), window["time_s"].real()});
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
-  readUncertainty(root, result.uncertainty);
+  readUncertainty(root, named, result.state, result.uncertainty);
   if (const auto validation = root.find("cross_validation"))
     readCrossValidation(*validation, result.cross_validation.emplace());
   readRun(root, named, result);

@@ -7,6 +7,7 @@
 #include "core/format/quantity_yaml.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
+#include "core/report/quantity_words.h"
 #include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
@@ -40,15 +41,6 @@ void addTimeOfOffset(const State& state, YamlSections& sections) {
     sections.add({}, "time_offset_at_s", quantityYaml(state.time_offset_at_s, exactYaml));
 }
 
-// Second names are of numbers alone.
-template <class Value, class Sigma>
-void addSecondName(const QuantityInfo&, const Value&, const Sigma&, YamlSections&) {}
-void addSecondName(const QuantityInfo& info, double value, double sigma, YamlSections& sections) {
-  if (*info.also_key == '\0') return;
-  sections.add({}, info.also_key, quantityYaml(info.also_factor * value, exactYaml));
-  sections.add({}, info.also_std_key, quantityYaml(info.also_factor * sigma, roundedYaml));
-}
-
 enum class Written { Values, Sigmas, Both };
 
 // The rows that `chosen` takes, but for intrinsics, which have a map of their own.
@@ -63,13 +55,12 @@ void addQuantities(const Rows& rows, const State& state, const Uncertainty& unce
       if (written != Written::Sigmas)
         sections.add(info.section, info.key, quantityYaml(row.value(state), exactYaml));
       if (written != Written::Values) addSigma(info, row.sigma(uncertainty), sections);
-      if (written == Written::Both) addSecondName(info, row.value(state), row.sigma(uncertainty), sections);
     }
   });
 }
 
 bool inPose(const QuantityInfo& info) {
-  return info.need == QuantityNeed::Rotation || info.need == QuantityNeed::Translation;
+  return info.id == QuantityId::Rotation || info.id == QuantityId::Translation;
 }
 bool besidesPose(const QuantityInfo& info) {
   return !inPose(info);
@@ -101,19 +92,6 @@ std::string latencyYaml(const NamedResult& named, std::size_t camera) {
   return text;
 }
 
-// How much later its events are stamped than the frames of the same sensor.
-std::string eventLatencyYaml(const NamedResult& named, std::size_t camera) {
-  if (named.cameras.at(camera).kind != CameraKind::Events) return {};
-  for (const SensorLatency& latency : named.result->latencies) {
-    const bool first = latency.camera == camera;
-    const std::size_t other = first ? latency.against : latency.camera;
-    if ((!first && latency.against != camera) || named.cameras.at(other).kind != CameraKind::Frames) continue;
-    return fmt::format("    event_latency_s: {}\n    event_latency_std_s: {}\n",
-                       exactYaml(first ? latency.latency_s : -latency.latency_s), roundedYaml(latency.std_s));
-  }
-  return {};
-}
-
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result->state.cameras[i];
   const CameraUncertainty sigma = elementOrNone(named.result->uncertainty.cameras, i);
@@ -124,7 +102,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
   addTimeOfOffset(state, sections);
-  text += sections.text(kSensorIndent) + latencyYaml(named, i) + eventLatencyYaml(named, i);
+  text += sections.text(kSensorIndent) + latencyYaml(named, i);
   if (const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse()) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
     if (sigma.intrinsics_std)
@@ -196,7 +174,8 @@ std::string boardsYaml(const NamedResult& named) {
   return text;
 }
 
-std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
+std::string uncertaintyYaml(const NamedResult& named) {
+  const UncertaintyReport& uncertainty = named.result->uncertainty;
   std::string text =
       fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
                   roundedYaml(kDegPerRad * uncertainty.gravity_direction_std_rad),
@@ -209,9 +188,11 @@ std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
     text += "given:\n";
     for (const std::string& quantity : uncertainty.given) text += fmt::format("  - {}\n", yamlText(quantity));
   }
-  if (uncertainty.names.empty()) return text;
-  text += "uncertainty:\n  names:\n";
-  for (const std::string& name : uncertainty.names) text += fmt::format("    - {}\n", yamlText(name));
+  if (uncertainty.columns.empty()) return text;
+  text += "uncertainty:\n  columns:\n";
+  for (const QuantityAddress& column : uncertainty.columns)
+    text += fmt::format("    - {{{}, unit: {}}}\n", columnKeys(column, named),
+                        yamlText(quantityPart(column).unit));
   text += fmt::format("  std: {}\n  correlation:\n", list(uncertainty.standard_deviations, roundedYaml));
   const NumberFormat fourDecimals = [](double value) { return roundedYaml(std::round(value * 1e4) / 1e4); };
   for (Eigen::Index row = 0; row < uncertainty.correlation.rows(); ++row)
@@ -272,6 +253,12 @@ std::string runYaml(const NamedResult& named) {
 
 }  // namespace
 
+std::vector<std::string> sensorNames(const std::vector<SensorDescription>& sensors) {
+  std::vector<std::string> names;
+  for (const SensorDescription& sensor : sensors) names.push_back(sensor.name);
+  return names;
+}
+
 std::vector<CameraKind> cameraKinds(const NamedResult& named) {
   std::vector<CameraKind> kinds;
   for (const SensorDescription& camera : named.cameras) kinds.push_back(camera.kind);
@@ -299,7 +286,7 @@ std::string resultYaml(const NamedResult& named) {
   text += boardsYaml(named);
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
-  text += uncertaintyYaml(named.result->uncertainty);
+  text += uncertaintyYaml(named);
   if (named.result->cross_validation) text += crossValidationYaml(*named.result->cross_validation);
   return text + runYaml(named);
 }

@@ -36,6 +36,8 @@ struct NamedResult {
   std::shared_ptr<const CalibrationResult> result = std::make_shared<const CalibrationResult>();
 };
 
+std::vector<std::string> sensorNames(const std::vector<SensorDescription>& sensors);
+
 // As its cameras are listed.
 std::vector<CameraKind> cameraKinds(const NamedResult& named);
 

@@ -7,14 +7,11 @@
 namespace evical {
 namespace {
 
-// What follows the quantity's own name: "x" of "rotation.x"; of intrinsics all: "focal length x".
-std::string partOf(const QuantityInfo& info, std::string name) {
-  const std::string own = std::string(info.name) + ".";
-  if (name == info.name) return {};
-  if (name.starts_with(own)) return name.substr(own.size());
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
-  return name;
+// "focal length x"
+std::string inWords(std::string component) {
+  std::ranges::replace_if(
+      component, [](char c) { return c == '_' || c == '.'; }, ' ');
+  return component;
 }
 
 template <class Rows, class State, class Uncertainty>
@@ -29,7 +26,7 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
     for (const QuantityPart& part : quantityParts(row.info, row.value(state))) {
       const auto k = static_cast<Eigen::Index>(quantity.numbers.size());
       const double sigma = k < sigmas.size() ? sigmas[k] : 0.0;
-      quantity.numbers.push_back({sensor + "." + part.name, partOf(row.info, part.name), part.shown_unit,
+      quantity.numbers.push_back({sensor + "." + part.name, inWords(part.component), part.shown_unit,
                                   row.info.shown_factor * values[k], row.info.shown_factor * sigma});
     }
     all.push_back(std::move(quantity));
@@ -38,7 +35,8 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
 }
 
 // Follows from two time offsets.
-constexpr QuantityInfo kLatency{.name = "latency",
+constexpr QuantityInfo kLatency{.id = QuantityId::Latency,
+                                .name = "latency",
                                 .title = "latency",
                                 .owner = QuantityOwner::Camera,
                                 .shape = QuantityShape::Scalar,

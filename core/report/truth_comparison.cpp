@@ -19,19 +19,13 @@ CameraError sizeOfError(const std::string& name, const CameraState& estimate, co
           kMsPerS * std::abs(estimate.time_offset_s - truth.time_offset_s)};
 }
 
-std::vector<std::string> namesOf(const std::vector<SensorDescription>& sensors) {
-  std::vector<std::string> names;
-  for (const SensorDescription& sensor : sensors) names.push_back(sensor.name);
-  return names;
-}
-
 }  // namespace
 
 Estimate estimateOf(const NamedResult& named) {
   const CalibrationState& state = named.result->state;
   Estimate estimate{named.reference,
-                    namesOf(named.cameras),
-                    namesOf(named.imus),
+                    sensorNames(named.cameras),
+                    sensorNames(named.imus),
                     state.cameras,
                     state.imus,
                     named.boards,

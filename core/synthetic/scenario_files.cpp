@@ -32,7 +32,7 @@ std::string transformText(const char* key, const RigidTransform& transform) {
 std::string driftTruth(const Scenario& scenario, const SimulatedCamera& camera) {
   const double drift_ppm = scenario.imus.empty() ? 0.0 : scenario.imus.front().faults.clock_drift_ppm;
   if (drift_ppm == 0.0) return {};
-  return fmt::format("    time_offset_drift_ppm: {}\n    time_offset_at_s: {}\n", drift_ppm,
+  return fmt::format("    clock_drift_ppm: {}\n    time_offset_at_s: {}\n", drift_ppm,
                      0.5 * scenario.duration_s - camera.time_offset_s);
 }
 

@@ -63,7 +63,9 @@ NamedResult stereoRig() {
     sigma.translation_std_m.setConstant(1e-4);
     sigma.time_offset_std_s = 1e-5;
   }
-  result.uncertainty.names = {"left.translation.x [m]", "left.translation.y [m]", "left.time_offset [s]"};
+  result.uncertainty.columns = {{QuantityOwner::Camera, 0, QuantityId::Translation, 0},
+                                {QuantityOwner::Camera, 0, QuantityId::Translation, 1},
+                                {QuantityOwner::Camera, 0, QuantityId::TimeOffset}};
   result.uncertainty.correlation = Eigen::MatrixXd::Identity(3, 3);
   result.uncertainty.correlation(0, 2) = result.uncertainty.correlation(2, 0) = -0.9;
   result.uncertainty.observability = {0.25, 400.0};
@@ -75,17 +77,16 @@ NamedResult stereoRig() {
 
 // As many quantities as a stereo rig has.
 void nameEverything(UncertaintyReport& report) {
-  report.names.clear();
-  for (const char* const camera : {"left", "right"}) {
-    for (const char* const quantity : {"rotation", "translation"})
-      for (const char* const axis : {"x", "y", "z"})
-        report.names.push_back(QString("%1.%2.%3 [m]").arg(camera, quantity, axis).toStdString());
-    report.names.push_back(QString("%1.time_offset [s]").arg(camera).toStdString());
+  report.columns.clear();
+  for (const std::size_t camera : {0, 1}) {
+    for (const QuantityId id : {QuantityId::Rotation, QuantityId::Translation})
+      for (const std::size_t axis : {0, 1, 2})
+        report.columns.push_back({QuantityOwner::Camera, camera, id, axis});
+    report.columns.push_back({QuantityOwner::Camera, camera, QuantityId::TimeOffset});
   }
-  for (const char* const bias : {"gyroscope_bias", "accelerometer_bias"})
-    for (const char* const axis : {"x", "y", "z"})
-      report.names.push_back(QString("imu.%1.%2 [1]").arg(bias, axis).toStdString());
-  const auto count = static_cast<Eigen::Index>(report.names.size());
+  for (const QuantityId bias : {QuantityId::GyroscopeBias, QuantityId::AccelerometerBias})
+    for (const std::size_t axis : {0, 1, 2}) report.columns.push_back({QuantityOwner::Imu, 0, bias, axis});
+  const auto count = static_cast<Eigen::Index>(report.columns.size());
   report.correlation = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index row = 0; row < count; ++row)
     for (Eigen::Index col = 0; col < row; ++col)
@@ -268,9 +269,7 @@ class TestHandOn : public QObject {
   void correlations_areNamedInWordsAndSaved() {
     CorrelationView view;
     view.resize(420, 420);
-    QStringList names;
-    for (const std::string& name : rig_.result->uncertainty.names) names << QString::fromStdString(name);
-    view.setCorrelation(names, rig_.result->uncertainty.correlation);
+    view.setResult(rig_);
     QCOMPARE(view.axisLabels(), (QStringList{"left: translation", "left: time offset"}));
     QVERIFY(QString(saved(pictureForms(&view), "svg")).count("left: translation") == 2);  // rows and columns
     QVERIFY(view.csv().contains("left.time_offset [s],-0.9,0,1\n"));

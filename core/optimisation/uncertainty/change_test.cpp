@@ -26,10 +26,10 @@ struct Candidate {
 };
 
 std::optional<ChangeKind> kindOf(const QuantityInfo& info) {
-  if (info.need == QuantityNeed::TimeOffset) return ChangeKind::Clock;
-  if (info.need != QuantityNeed::None) return ChangeKind::Pose;
-  const bool bias = &info == &quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s) ||
-                    &info == &quantityInfo(kImuQuantities, &ImuState::accelerometer_bias_m_s2);
+  if (info.owner == QuantityOwner::Board) return std::nullopt;
+  if (info.id == QuantityId::TimeOffset) return ChangeKind::Clock;
+  if (info.id == QuantityId::Rotation || info.id == QuantityId::Translation) return ChangeKind::Pose;
+  const bool bias = info.id == QuantityId::GyroscopeBias || info.id == QuantityId::AccelerometerBias;
   return bias ? std::optional(ChangeKind::Biases) : std::nullopt;
 }
 

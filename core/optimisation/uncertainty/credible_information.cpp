@@ -19,10 +19,9 @@ constexpr double kLeastShare = 1e-12;  // of the strongest direction, for the de
 
 // What noise has added, times its factor.
 Eigen::MatrixXd feigned(const ProjectedInformation& information) {
-  const QuantityInfo& delay = quantityInfo(kImuQuantities, &ImuState::accelerometer_delay_s);
   Eigen::VectorXd root = Eigen::VectorXd::Constant(information.total.rows(), std::sqrt(kNoiseFactor));
   for (std::size_t i = 0; i < information.quantities.size(); ++i)
-    if (information.quantities[i].info == &delay)
+    if (information.quantities[i].info->id == QuantityId::AccelerometerDelay)
       root[information.first_column[i]] = std::sqrt(kDelayNoiseFactor);
   return root.asDiagonal() * information.from_noise * root.asDiagonal();
 }

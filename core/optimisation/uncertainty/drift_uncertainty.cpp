@@ -1,32 +1,19 @@
 #include "core/optimisation/uncertainty/drift_uncertainty.h"
 
 namespace evical {
-namespace {
-
-// First column of the mean that a knot's block is added to.
-Eigen::Index columnOfMean(const ProjectedInformation& information, const Quantity& knot) {
-  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
-    const Quantity& quantity = information.quantities[i];
-    if (quantity.info == knot.info && quantity.sensor == knot.sensor) return information.first_column[i];
-  }
-  return -1;
-}
-
-}  // namespace
-
 void reportDrift(const ProjectedInformation& information, const std::vector<Quantity>& drift_blocks,
                  const Eigen::MatrixXd& covariance, UncertaintyReport& report) {
   for (std::size_t k = 0; k < drift_blocks.size(); ++k) {
     const Quantity& knot = drift_blocks[k];
     const auto row = static_cast<Eigen::Index>(3 * k);
-    const Eigen::Index mean = columnOfMean(information, knot);
-    if (mean < 0) continue;
+    const auto mean = columnOf(knot.address(), information.quantities, information.first_column);
+    if (!mean) continue;
     Eigen::MatrixXd by_quantities = -information.drift_by_quantities.middleRows<3>(row);
-    by_quantities.middleCols<3>(mean) += Eigen::Matrix3d::Identity();
+    by_quantities.middleCols<3>(*mean) += Eigen::Matrix3d::Identity();
     const Eigen::Vector3d variance = information.drift_covariance.diagonal().segment<3>(row) +
                                      (by_quantities * covariance * by_quantities.transpose()).diagonal();
     ImuUncertainty& imu = report.imus[knot.sensor];
-    const bool gyroscope = knot.info == &quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s);
+    const bool gyroscope = knot.info->id == QuantityId::GyroscopeBias;
     (gyroscope ? imu.gyroscope_drift_std_rad_s : imu.accelerometer_drift_std_m_s2)
         .push_back(variance.cwiseMax(0.0).cwiseSqrt());
   }

@@ -13,17 +13,6 @@
 namespace evical {
 namespace {
 
-double needed(QuantityNeed need, const OptimisationOptions& options) {
-  switch (need) {
-    case QuantityNeed::Rotation:
-      return kRadPerDeg * options.needed_rotation_deg;
-    case QuantityNeed::Translation:
-      return options.needed_translation_mm * 1e-3;
-    default:
-      return options.needed_time_offset_ms * 1e-3;
-  }
-}
-
 Eigen::MatrixXd ownCovariance(const QuantityCovariance& covariance, std::size_t quantity) {
   const Eigen::Index first = covariance.first_column[quantity],
                      size = covariance.first_column[quantity + 1] - first;
@@ -136,10 +125,11 @@ std::string Judge::unmetNeed(const Part& part) const {
     return fmt::format("the {} of {} has no sigma: splines or sensors are without measurements",
                        nameOf(part.need), sensorName(input_, quantity));
   const auto [sigma, direction] = worstOf(covariance_, part.quantity);
-  if (!(sigma > needed(part.need, options_))) return {};
+  if (!(sigma > neededSigma(part.need, options_))) return {};
   const std::string words = partWords(quantity, part.need, direction);
   constexpr double kHopeless = 100.0;
-  if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
+  if (sigma > kHopeless * neededSigma(part.need, options_))
+    return words + " is not observable in this recording";
   switch (part.need) {
     case QuantityNeed::Rotation:
       return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, kDegPerRad * sigma,
@@ -164,7 +154,7 @@ Observability Judge::judge() const {
     parts.push_back({i, static_cast<Eigen::Index>(columns.size()), size, need});
     for (Eigen::Index k = 0; k < size; ++k) {
       columns.push_back(first + k);
-      units.push_back(needed(need, options_));
+      units.push_back(neededSigma(need, options_));
     }
   }
   const auto count = static_cast<Eigen::Index>(columns.size());
@@ -197,6 +187,17 @@ Observability Judge::judge() const {
 }
 
 }  // namespace
+
+double neededSigma(QuantityNeed need, const OptimisationOptions& options) {
+  switch (need) {
+    case QuantityNeed::Rotation:
+      return kRadPerDeg * options.needed_rotation_deg;
+    case QuantityNeed::Translation:
+      return options.needed_translation_mm * 1e-3;
+    default:
+      return options.needed_time_offset_ms * 1e-3;
+  }
+}
 
 Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,
                                  const QuantityCovariance& covariance, const QuantityCovariance& scale_known,

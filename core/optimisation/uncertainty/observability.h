@@ -19,6 +19,9 @@ struct Observability {
   std::string reason;
 };
 
+// What is asked of a sigma, in SI units.
+double neededSigma(QuantityNeed need, const OptimisationOptions& options);
+
 // What a recording can mend is judged as if the board and gravity were known (`scale_known`, as withScaleKnown
 // has it); what only a better measure of the board can, against a need of its own.
 Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,

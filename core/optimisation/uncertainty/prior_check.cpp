@@ -8,6 +8,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/covariance.h"
+#include "core/optimisation/uncertainty/observability.h"
 
 #include <fmt/format.h>
 
@@ -85,20 +86,6 @@ void Comparison::judge(const std::string& name, const Unit& unit, const std::vec
   if (matters && check_.doubt.empty()) check_.doubt = text + "; check the session's prior";
 }
 
-double neededFor(QuantityNeed need, const OptimisationOptions& options) {
-  switch (need) {
-    case QuantityNeed::Rotation:
-      return options.needed_rotation_deg / kDegPerRad;
-    case QuantityNeed::Translation:
-      return 1e-3 * options.needed_translation_mm;
-    case QuantityNeed::TimeOffset:
-      return 1e-3 * options.needed_time_offset_ms;
-    case QuantityNeed::None:
-      break;
-  }
-  return kNoNeed;
-}
-
 // What a value is compared with, and how it is told: rotations as vectors from the known one, which is 0.
 template <class Value>
 Eigen::VectorXd fromKnown(const QuantityInfo&, const Value& value, const Value&) {
@@ -140,7 +127,7 @@ void Comparison::compareRow(const std::string& sensor, const Row& row, const Pri
   const std::string shown_unit = info.shown_unit;
   judge(sensor + "." + info.name + (isRotation(info) ? " (from there)" : ""),
         {shown_unit.empty() ? "" : fmt::format(" {}", shown_unit), info.shown_factor,
-         neededFor(info.need, options_)},
+         info.need == QuantityNeed::None ? kNoNeed : neededSigma(info.need, options_)},
         numbers, partWords(info));
 }
 
@@ -158,7 +145,7 @@ void Comparison::compareLens(std::size_t camera) {
   const CameraLens& lens = input_.cameras[camera].lens;
   const auto &solved = solution_.cameras[camera].lens.solved, &alone = alone_.cameras[camera].lens.solved;
   if (!lens.given_with || !solved || !alone) return;
-  const QuantityInfo& info = quantityInfo(kCameraQuantities, LensIntrinsics{});
+  const QuantityInfo& info = quantityInfo(QuantityOwner::Camera, QuantityId::Intrinsics);
   const Eigen::VectorXd known = quantityNumbers(lens.given), found = quantityNumbers(solved),
                         found_alone = quantityNumbers(alone),
                         alone_sigma = quantityNumbers(sigmas_.cameras[camera].intrinsics_std);

@@ -168,10 +168,11 @@ QuantityCovariance withPixelDelay(const CalibrationInput& input, const Optimisat
                                   QuantityCovariance covariance) {
   std::vector<CameraKind> kinds;
   for (const CameraData& camera : input.cameras) kinds.push_back(camera.observations.kind);
-  const QuantityInfo* const offset = &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
-    if (quantity.info != offset || !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty())) continue;
+    if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||
+        !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty()))
+      continue;
     const Eigen::Index column = covariance.first_column[i];
     covariance.covariance(column, column) +=
         delayVariance_s2(input.cameras[quantity.sensor].observations, options);

@@ -14,31 +14,15 @@
 namespace evical {
 namespace {
 
-// Where a number of one board stands in the covariance; nothing where it is held.
-std::optional<Eigen::Index> columnOf(const QuantityCovariance& covariance, const QuantityInfo& info,
-                                     std::size_t board = 0) {
-  for (std::size_t i = 0; i < covariance.quantities.size(); ++i)
-    if (covariance.quantities[i].info == &info && covariance.quantities[i].sensor == board)
-      return covariance.first_column[i];
-  return std::nullopt;
+std::optional<Eigen::Index> boardColumn(const QuantityCovariance& covariance, QuantityId id,
+                                        std::size_t board = 0) {
+  return columnOf({QuantityOwner::Board, board, id}, covariance.quantities, covariance.first_column);
 }
 
 // Of gravity's norm, behind its two tilts.
 std::optional<Eigen::Index> gravityNormColumn(const QuantityCovariance& covariance) {
-  constexpr Eigen::Index kNorm = 2;
-  for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
-    if (covariance.quantities[i].info != &kGravityQuantity) continue;
-    const Eigen::Index column = covariance.first_column[i] + kNorm;
-    if (column < covariance.first_column[i + 1]) return column;
-  }
-  return std::nullopt;
-}
-
-const QuantityInfo& scaleInfo() {
-  return quantityInfo(kBoardQuantities, &BoardState::scale);
-}
-const QuantityInfo& stretchInfo() {
-  return quantityInfo(kBoardQuantities, &BoardState::stretch);
+  return columnOf({QuantityOwner::Rig, 0, QuantityId::Gravity, 2}, covariance.quantities,
+                  covariance.first_column);
 }
 
 // What is known of a number, and what the solution made of it.
@@ -77,7 +61,8 @@ struct Combination {
 Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& state,
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination excess(covariance);
-  excess.add(columnOf(covariance, scaleInfo()), 1.0, options.board_spacing_sigma, state.board.scale - 1.0);
+  excess.add(boardColumn(covariance, QuantityId::Scale), 1.0, options.board_spacing_sigma,
+             state.board.scale - 1.0);
   excess.add(gravityNormColumn(covariance), -1.0 / input.gravity_norm_m_s2, options.gravity_norm_sigma_m_s2,
              state.gravity_in_world_m_s2.norm() - input.gravity_norm_m_s2);
   return excess.weighed(covariance);
@@ -88,7 +73,7 @@ Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& stat
                      const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination ratio(covariance);
   for (const auto& [index, weight] : {std::pair<std::size_t, double>{board, 1.0}, {0, -1.0}})
-    ratio.add(columnOf(covariance, scaleInfo(), index), weight,
+    ratio.add(boardColumn(covariance, QuantityId::Scale, index), weight,
               input.spacingSigma(index, options.board_spacing_sigma), state.boardAt(index).scale - 1.0);
   return ratio.weighed(covariance);
 }
@@ -126,7 +111,7 @@ BoardState certainBow(std::size_t board, const BoardState& found, const Quantity
                       const OptimisationOptions& options) {
   BoardState bent;
   forEachSheetQuantity([&](const auto& row) {
-    const auto column = columnOf(covariance, row.info, board);
+    const auto column = boardColumn(covariance, row.info.id, board);
     if (row.info.release != QuantityRelease::BoardBow || !column) return;
     const double sigma = std::sqrt(std::max(0.0, covariance.covariance(*column, *column)));
     if (std::abs(row.value(found)) > options.bent_board_sigmas * sigma) row.value(bent) = row.value(found);
@@ -151,14 +136,13 @@ void checkBow(const CalibrationInput& input, std::size_t index, const BoardState
 // "left: a board 0.1 % larger than said moves its translation by 0.68 mm"
 void addEffects(const CalibrationInput& input, const QuantityCovariance& covariance,
                 std::vector<std::string>& notes) {
-  const auto scale = columnOf(covariance, scaleInfo());
+  const auto scale = boardColumn(covariance, QuantityId::Scale);
   if (!scale) return;
   constexpr double kTenthOfPercent = 1e-3;
   const double variance = covariance.covariance(*scale, *scale);
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
-    if (quantity.info->need != QuantityNeed::Translation || quantity.info->owner != QuantityOwner::Camera)
-      continue;
+    if (!quantity.info->is(QuantityOwner::Camera, QuantityId::Translation)) continue;
     const Eigen::Vector3d moves_m =
         covariance.covariance.col(*scale).segment<3>(covariance.first_column[i]) / variance;
     notes.push_back(fmt::format(
@@ -188,7 +172,8 @@ ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& sta
       if (isDoubtful(ratio, check.size_doubt)) check.size_doubt = ratioDoubt(input, i, ratio);
     }
     Combination stretch(covariance);
-    stretch.add(columnOf(covariance, stretchInfo(), i), 1.0, boardStretchSigma(spacing_sigma), board.stretch);
+    stretch.add(boardColumn(covariance, QuantityId::Stretch, i), 1.0, boardStretchSigma(spacing_sigma),
+                board.stretch);
     const Weighed stretched = stretch.weighed(covariance);
     if (isDoubtful(stretched, check.stretch_doubt))
       check.stretch_doubt = stretchDoubt(input.boardWords(i), stretched);
@@ -201,7 +186,7 @@ QuantityCovariance withScaleKnown(const QuantityCovariance& covariance) {
   std::vector<Eigen::Index> known;
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i)
     if (const QuantityInfo* const info = covariance.quantities[i].info;
-        info == &scaleInfo() || info == &stretchInfo())
+        info->id == QuantityId::Scale || info->id == QuantityId::Stretch)
       known.push_back(covariance.first_column[i]);
   if (const auto norm = gravityNormColumn(covariance)) known.push_back(*norm);
   if (known.empty()) return covariance;

@@ -21,12 +21,11 @@ namespace {
 
 // Free for the test's sake, not because there is a prior to be weighed or an option that asks for it.
 bool isHeld(const Quantity& quantity, const CalibrationInput& input, const OptimisationOptions& options) {
-  if (quantity.info->shape == QuantityShape::Intrinsics) return !options.freesIntrinsics();
+  if (quantity.info->id == QuantityId::Intrinsics) return !options.freesIntrinsics();
   if (quantity.info->release == QuantityRelease::BoardBow) return !options.board_bow;
-  if (quantity.info->release == QuantityRelease::LineDelay)
+  if (quantity.info->id == QuantityId::LineDelay)
     return !options.line_delay && input.cameras[quantity.sensor].shutter != Shutter::Rolling;
-  if (quantity.info->release != QuantityRelease::GyroscopeRotation || options.gyroscope_rotation)
-    return false;
+  if (quantity.info->id != QuantityId::GyroscopeRotation || options.gyroscope_rotation) return false;
   const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
   return !(prior && prior->sigma);
 }
@@ -143,7 +142,7 @@ class BoardTest {
     if (step.sigmas < options.bent_board_sigmas) return;
     sigmas_ = std::max(sigmas_, step.sigmas);
     forEachSheetQuantity([&](const auto& row) {
-      if (&row.info == &info) row.value(bent_) = step.change[0];
+      if (row.info.id == info.id) row.value(bent_) = step.change[0];
     });
   }
   std::string doubt(const Board& board, const std::string& called, const OptimisationOptions& options) const {
@@ -180,7 +179,7 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
     const Quantity& quantity = information.quantities[i];
     if (quantity.info->owner == QuantityOwner::Board)
       boards[quantity.sensor].add(*quantity.info, steps.of(i), options);
-    else if (quantity.info->release == QuantityRelease::LineDelay)
+    else if (quantity.info->id == QuantityId::LineDelay)
       testShutter(input.cameras[quantity.sensor], steps.of(i), options, doubts.shutters);
     else if (quantity.info->owner == QuantityOwner::Camera)
       testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),

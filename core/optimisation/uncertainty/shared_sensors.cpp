@@ -84,12 +84,12 @@ class SensorTest {
   Eigen::VectorXd alreadyApart(const Quantity& quantity) const {
     const CameraState& camera = state_.cameras[quantity.sensor];
     const CameraState& sensor = state_.cameras[input_.sensorOf(quantity.sensor)];
-    if (quantity.info->shape == QuantityShape::Rotation)
+    if (quantity.info->id == QuantityId::Rotation)
       return quaternionLog(sensor.reference_from_camera.rotation.conjugate() *
                            camera.reference_from_camera.rotation);
     Eigen::VectorXd numbers;
     forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      if (&row.info == quantity.info)
+      if (row.info.id == quantity.info->id)
         numbers = quantityDifference(row.info, row.value(camera), row.value(sensor));
     });
     return numbers;
@@ -99,15 +99,15 @@ class SensorTest {
   bool counts(const Quantity& quantity, const Eigen::VectorXd& difference, double sigmas,
               Apart& apart) const {
     const bool certain = sigmas > options_.other_sensor_sigmas;
-    if (quantity.info->shape == QuantityShape::Rotation) {
+    if (quantity.info->id == QuantityId::Rotation) {
       apart.rotation_deg = kDegPerRad * difference.norm();
       return certain && apart.rotation_deg > options_.needed_rotation_deg;
     }
-    if (quantity.info->shape == QuantityShape::Vector3) {
+    if (quantity.info->id == QuantityId::Translation) {
       apart.translation_mm = 1e3 * difference.norm();
       return certain && apart.translation_mm > options_.needed_translation_mm;
     }
-    if (quantity.info->shape != QuantityShape::Intrinsics) return false;
+    if (quantity.info->id != QuantityId::Intrinsics) return false;
     apart.lens_px = lensDifference_px(*state_.cameras[quantity.sensor].lens.inUse(), difference);
     return certain && apart.lens_px > options_.wrong_lens_px;
   }
@@ -128,16 +128,12 @@ class SensorTest {
   ScaledInverse covariance_;
 };
 
-// In the report, of a camera's time offset; none where it is not estimated.
-std::optional<Eigen::Index> offsetIn(const UncertaintyReport& report, const std::string& camera) {
-  const std::string name = camera + "." + quantityInfo(kCameraQuantities, &CameraState::time_offset_s).name;
-  for (std::size_t i = 0; i < report.names.size(); ++i)
-    if (report.names[i].starts_with(name + " ")) return static_cast<Eigen::Index>(i);
-  return std::nullopt;
-}
-
-double differenceSigma(const UncertaintyReport& report, std::optional<Eigen::Index> a,
-                       std::optional<Eigen::Index> b) {
+// Of two cameras' time offsets.
+double differenceSigma(const UncertaintyReport& report, std::size_t first, std::size_t second) {
+  const auto offsetOf = [&](std::size_t camera) {
+    return columnOf({QuantityOwner::Camera, camera, QuantityId::TimeOffset}, report.columns);
+  };
+  const std::optional<Eigen::Index> a = offsetOf(first), b = offsetOf(second);
   const auto sigma = [&](const std::optional<Eigen::Index>& i) {
     return i ? report.standard_deviations[*i] : 0.0;
   };
@@ -201,8 +197,7 @@ std::vector<SensorLatency> sensorLatencies(const CalibrationInput& input, const 
     const CameraState& b = state.cameras[other];
     latencies.push_back({later, other,
                          timeOffsetAt_s(b, b.time_offset_at_s) - timeOffsetAt_s(a, a.time_offset_at_s),
-                         differenceSigma(report, offsetIn(report, input.cameras[later].name),
-                                         offsetIn(report, input.cameras[other].name))});
+                         differenceSigma(report, later, other)});
   }
   return latencies;
 }

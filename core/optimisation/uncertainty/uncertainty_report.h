@@ -1,4 +1,4 @@
-// A covariance as results have it: names, standard deviations and correlation of every number, and each
+// A covariance as results have it: addresses, standard deviations and correlation of every number, and each
 // quantity's own sigmas.
 #pragma once
 

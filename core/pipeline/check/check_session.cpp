@@ -4,7 +4,6 @@
 #include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
 #include "core/data/quantity.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/pipeline/compare/compared_quantities.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/pipeline/session/check_options.h"
@@ -28,16 +27,10 @@ NamedResult resultIn(const std::filesystem::path& path) {
   return before;
 }
 
-std::vector<std::string> namesOf(const std::vector<SensorDescription>& sensors) {
-  std::vector<std::string> names;
-  for (const SensorDescription& sensor : sensors) names.push_back(sensor.name);
-  return names;
-}
-
 template <class Sensors>
 void checkSensors(const Sensors& sensors, const std::vector<SensorDescription>& known, const char* what,
                   CheckInput& input) {
-  const std::vector<std::string> names = namesOf(known);
+  const std::vector<std::string> names = sensorNames(known);
   std::set<std::string> seen;
   for (const auto& sensor : sensors) {
     seen.insert(sensor.name);
@@ -113,52 +106,30 @@ bool isSameBoard(const std::filesystem::path& result, const Session& session) {
 }
 
 // Where the old result has a sigma: what was given then is given by the session now.
-template <class Known, class Value, class Sigma>
-void weigh(const Value& value, const Sigma& sigma, const Sigma& stability, std::optional<Known>& prior) {
-  if (isGiven(prior)) return;
-  if constexpr (std::is_same_v<Sigma, double>) {
-    if (sigma > 0.0) prior = Known{value, std::hypot(sigma, stability)};
-  } else {
-    constexpr double kLeast = 1e-12;  // a sigma of 0 would be none
-    if ((sigma.array() > 0.0).any())
-      prior = Known{value, Sigma((sigma.array().square() + stability.array().square()).sqrt().max(kLeast))};
-  }
-}
-
-struct Stability {
-  Eigen::Vector3d rotation_rad, translation_m;
-  double time_offset_s;
-  Eigen::Matrix3d mapping;
-
-  explicit Stability(const CheckOptions& options)
-      : rotation_rad(Eigen::Vector3d::Constant(kRadPerDeg * options.stability_rotation_deg)),
-        translation_m(Eigen::Vector3d::Constant(1e-3 * options.stability_translation_mm)),
-        time_offset_s(1e-3 * options.stability_time_offset_ms),
-        mapping(Eigen::Matrix3d::Constant(options.stability_imu_scale).triangularView<Eigen::Upper>()) {}
-};
-
-template <class Uncertainty>
-void weighPlace(const RigidTransform& pose, double time_offset_s, const Uncertainty& sigma,
-                const Stability& stability, SensorPrior& prior) {
-  weigh(pose.rotation, sigma.rotation_std_rad, stability.rotation_rad, prior.rotation);
-  weigh(pose.translation_m, sigma.translation_std_m, stability.translation_m, prior.translation);
-  weigh(time_offset_s, sigma.time_offset_std_s, stability.time_offset_s, prior.time_offset);
+template <class Rows, class State, class Uncertainty, class Prior>
+void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, bool reference,
+           const CheckOptions& options, Prior& prior) {
+  constexpr double kLeast = 1e-12;  // a sigma of 0 would be none
+  forEachPriorQuantity(rows, [&](const auto& row) {
+    const std::optional<double> stability = stabilityOf(row.info, options);
+    const Eigen::VectorXd sigmas = quantityNumbers(row.sigma(uncertainty));
+    auto& known = row.prior(prior);
+    if (!stability || (reference && row.info.relative) || isGiven(known) || !(sigmas.array() > 0.0).any())
+      return;
+    known = {row.value(was)};
+    Eigen::VectorXd both = (sigmas.array().square() + *stability * *stability).sqrt().max(kLeast);
+    if (both.size() == 1) both[0] = std::hypot(sigmas[0], *stability);
+    setQuantityNumbers(both, known->sigma.emplace());
+  });
 }
 
 // With its whole covariance: focal length and distortion err together.
-void weighLens(const NamedResult& before, const std::string& camera, double stability_px,
+void weighLens(const UncertaintyReport& before, std::size_t camera, double stability_px,
                SessionCamera& session_camera) {
-  const UncertaintyReport& report = before.result->uncertainty;
-  const auto first = std::find(report.names.begin(), report.names.end(), camera + ".focal_length.x [px]");
-  if (first == report.names.end()) return;
-  const Eigen::Index begin = first - report.names.begin();
-  Eigen::Index count = 4;
-  while (count < kIntrinsicsCount && begin + count < static_cast<Eigen::Index>(report.names.size()) &&
-         report.names[static_cast<std::size_t>(begin + count)].starts_with(camera + ".distortion."))
-    ++count;
-  const auto sigmas = report.standard_deviations.segment(begin, count).asDiagonal();
-  const Eigen::MatrixXd covariance = sigmas * report.correlation.block(begin, begin, count, count) * sigmas +
-                                     lensCovariance(*session_camera.intrinsics, count, stability_px);
+  Eigen::MatrixXd covariance = intrinsicsCovariance(before, camera);
+  const Eigen::Index count = covariance.rows();
+  if (count == 0) return;
+  covariance += lensCovariance(*session_camera.intrinsics, count, stability_px);
   const Eigen::VectorXd std = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   LensUncertainty& uncertainty = session_camera.intrinsics_uncertainty.emplace();
   uncertainty.std.head(count) = std;
@@ -178,7 +149,7 @@ CheckInput checkInputOf(NamedResult before, Session session) {
                    "Use the old result's reference: poses are relative to it");
   checkSensors(input.session.cameras, input.before.cameras, "camera", input);
   checkSensors(input.session.imus, input.before.imus, "IMU", input);
-  const std::vector<std::string> names = namesOf(input.before.cameras);
+  const std::vector<std::string> names = sensorNames(input.before.cameras);
   for (SessionImu& imu : input.session.imus) dropWeighed(kImuQuantities, imu.prior);
   for (SessionCamera& camera : input.session.cameras) {
     dropWeighed(kCameraQuantities, camera.prior);
@@ -212,33 +183,22 @@ CheckInput readCheckInput(const std::filesystem::path& result, Session session) 
 }
 
 Session withPriorOf(const NamedResult& before, Session session) {
-  const Stability stability(*session.options.check);
+  const CheckOptions& options = *session.options.check;
   const CalibrationState& state = before.result->state;
   const UncertaintyReport& sigmas = before.result->uncertainty;
   for (std::size_t k = 0; k < before.cameras.size(); ++k)
     for (SessionCamera& camera : session.cameras) {
       if (camera.name != before.cameras[k].name) continue;
-      weighLens(before, camera.name, session.options.check->stability_lens_px, camera);
-      if (camera.name == session.reference || !camera.same_sensor_as.empty()) continue;
-      weighPlace(state.cameras[k].reference_from_camera, state.cameras[k].time_offset_s, sigmas.cameras[k],
-                 stability, camera.prior);
+      weighLens(sigmas, k, options.stability_lens_px, camera);
+      if (camera.same_sensor_as.empty())
+        weigh(kCameraQuantities, state.cameras[k], sigmas.cameras[k], camera.name == session.reference,
+              options, camera.prior);
     }
   for (std::size_t k = 0; k < before.imus.size(); ++k)
-    for (SessionImu& imu : session.imus) {
-      if (imu.name != before.imus[k].name) continue;
-      const ImuState& was = state.imus[k];
-      const ImuUncertainty& sigma = sigmas.imus[k];
-      weigh(was.gyroscope_mapping, sigma.gyroscope_mapping_std, stability.mapping,
-            imu.prior.gyroscope_mapping);
-      weigh(was.accelerometer_mapping, sigma.accelerometer_mapping_std, stability.mapping,
-            imu.prior.accelerometer_mapping);
-      weigh(was.accelerometer_delay_s, sigma.accelerometer_delay_std_s, stability.time_offset_s,
-            imu.prior.accelerometer_delay);
-      weigh(was.gyroscope_from_accelerometer, sigma.gyroscope_rotation_std_rad, stability.rotation_rad,
-            imu.prior.gyroscope_rotation);
-      if (imu.name != session.reference)
-        weighPlace(was.reference_from_imu, was.time_offset_s, sigma, stability, imu.prior);
-    }
+    for (SessionImu& imu : session.imus)
+      if (imu.name == before.imus[k].name)
+        weigh(kImuQuantities, state.imus[k], sigmas.imus[k], imu.name == session.reference, options,
+              imu.prior);
   return session;
 }
 

@@ -157,7 +157,7 @@ class BoardlessCheck {
                   fmt::format("the image turns {:.3g} times as fast as the gyroscope says", alignment.scale),
                   {"Check that the lens is this camera's, and calibrate again before the board"});
     weakest_ = nameOfAxis(alignment.weakest_in_camera);
-    take(name, camera_before, alignment);
+    take(camera_before, alignment);
   }
 
   void fail(const std::string& camera, const std::string& reason, const std::vector<std::string>& advice) {
@@ -166,7 +166,7 @@ class BoardlessCheck {
   }
 
   // Into the result of now, whose only uncertain numbers these are.
-  void take(const std::string& name, std::size_t camera, const RotationAlignment& alignment) {
+  void take(std::size_t camera, const RotationAlignment& alignment) {
     CameraState& state = result_->state.cameras[camera];
     state.reference_from_camera.rotation = alignment.imu_from_camera;
     state.time_offset_s = alignment.time_offset_s;
@@ -175,11 +175,9 @@ class BoardlessCheck {
     uncertainty.rotation_std_rad = sigmas.head<3>();
     uncertainty.time_offset_std_s = sigmas[3];
     UncertaintyReport& report = result_->uncertainty;
-    forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      if (row.info.need != QuantityNeed::Rotation && row.info.need != QuantityNeed::TimeOffset) return;
-      for (const QuantityPart& part : quantityParts(row.info, row.value(state)))
-        report.names.push_back(fmt::format("{}.{} [{}]", name, part.name, part.unit));
-    });
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      report.columns.push_back({QuantityOwner::Camera, camera, QuantityId::Rotation, axis});
+    report.columns.push_back({QuantityOwner::Camera, camera, QuantityId::TimeOffset});
     const Eigen::Index size = report.standard_deviations.size();
     report.standard_deviations.conservativeResize(size + 4);
     report.standard_deviations.tail<4>() = sigmas;
@@ -191,7 +189,7 @@ class BoardlessCheck {
   }
 
   void judge() {
-    if (!result_->uncertainty.names.empty()) {
+    if (!result_->uncertainty.columns.empty()) {
       now_.result = result_;
       now_.options.clear();
       // The light of pixels' delays is not in these sigmas.

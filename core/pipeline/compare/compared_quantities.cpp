@@ -16,9 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
-#include <set>
 
 namespace evical {
 namespace {
@@ -33,32 +31,34 @@ struct Judged {
 };
 
 std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& options) {
-  const auto rotation = Judged{"deg", kDegPerRad, options.stability_rotation_deg, 0.0};
-  if (info.need == QuantityNeed::Rotation)
-    return Judged{rotation.unit, rotation.factor, rotation.stability, options.matters_rotation_deg};
-  if (info.need == QuantityNeed::Translation)
-    return Judged{"mm", 1e3, options.stability_translation_mm, options.matters_translation_mm};
-  if (info.need == QuantityNeed::TimeOffset)
-    return Judged{"ms", 1e3, options.stability_time_offset_ms, options.matters_time_offset_ms};
-  if (info.shape == QuantityShape::Intrinsics)
-    return Judged{"px", 1.0, options.stability_lens_px, options.matters_lens_px};
-  if (info.shape == QuantityShape::UpperTriangle)
-    return Judged{"%", kPerCent, kPerCent * options.stability_imu_scale, 0.0};
-  if (info.release == QuantityRelease::GyroscopeRotation) return rotation;
-  if (info.release == QuantityRelease::ImuIntrinsics)
-    return Judged{"ms", 1e3, options.stability_time_offset_ms, 0.0};
-  return std::nullopt;  // what no calibration is made for: biases, drifts, edges' leads
-}
-
-std::optional<Eigen::Index> columnOf(const std::string& name, const UncertaintyReport& report) {
-  const auto found = std::find(report.names.begin(), report.names.end(), name);
-  if (found == report.names.end()) return std::nullopt;
-  return found - report.names.begin();
+  switch (info.id) {
+    case QuantityId::Rotation:
+      return Judged{"deg", kDegPerRad, options.stability_rotation_deg, options.matters_rotation_deg};
+    case QuantityId::Translation:
+      return Judged{"mm", 1e3, options.stability_translation_mm, options.matters_translation_mm};
+    case QuantityId::TimeOffset:
+      return Judged{"ms", 1e3, options.stability_time_offset_ms, options.matters_time_offset_ms};
+    case QuantityId::Intrinsics:
+      return Judged{"px", 1.0, options.stability_lens_px, options.matters_lens_px};
+    case QuantityId::GyroscopeMapping:
+    case QuantityId::AccelerometerMapping:
+      return Judged{"%", kPerCent, kPerCent * options.stability_imu_scale, 0.0};
+    case QuantityId::GyroscopeRotation:
+      return Judged{"deg", kDegPerRad, options.stability_rotation_deg, 0.0};
+    case QuantityId::AccelerometerDelay:
+      return Judged{"ms", 1e3, options.stability_time_offset_ms, 0.0};
+    case QuantityId::Scale:
+    case QuantityId::Stretch:
+      return Judged{"", 1.0, kStableSheet, 0.0};
+    default:
+      return std::nullopt;  // what no calibration is made for: biases, drifts, edges' leads
+  }
 }
 
 // One number of a result: its column in the report, or a sigma of its own where an older one has none.
 struct Uncertain {
-  std::optional<Eigen::Index> column;
+  QuantityAddress number;
+  std::optional<Eigen::Index> column = {};
   double sigma = 0.0;
 };
 
@@ -145,25 +145,31 @@ class Comparison {
 
  private:
   template <class State, class Uncertainty>
+  struct Side {
+    std::size_t index;
+    const State& state;
+    const Uncertainty& sigma;
+  };
+  template <class State, class Uncertainty>
   struct Pair {
     std::string sensor;
     bool without_place;
-    const State &before, &now;
-    const Uncertainty &sigma_before, &sigma_now;
+    Side<State, Uncertainty> before, now;
   };
 
   void addCamera(std::size_t k) {
     const std::string& name = now_.camera_names[k];
     const std::size_t j = sensorIndex(name, before_.camera_names, "cameras");
     const CameraState& now = now_.cameras[k];
-    const Pair<CameraState, CameraUncertainty> pair{
-        name, name == now_.reference,         before_.cameras[j],
-        now,  before_.uncertainty.cameras[j], now_.uncertainty.cameras[k]};
+    const Pair<CameraState, CameraUncertainty> pair{name,
+                                                    name == now_.reference,
+                                                    {j, before_.cameras[j], before_.uncertainty.cameras[j]},
+                                                    {k, now, now_.uncertainty.cameras[k]}};
     forEachQuantity(kCameraQuantities, [&](const auto& row) {
       ComparedQuantity* const added = add(row, pair);
       if (added == nullptr || !now.lens.inUse()) return;
-      if (row.info.need == QuantityNeed::Rotation) added->at_edge = byTurn(now);
-      if (row.info.shape == QuantityShape::Intrinsics) {
+      if (row.info.id == QuantityId::Rotation) added->at_edge = byTurn(now);
+      if (row.info.id == QuantityId::Intrinsics) {
         ChangeGroup& group = out_.groups.back();
         added->at_edge = byIntrinsics(*now.lens.inUse(), group.size, true);
         group.to_size = lensToSize(*now.lens.inUse(), group.size);
@@ -175,22 +181,21 @@ class Comparison {
   void addImu(std::size_t k) {
     const std::string& name = now_.imu_names[k];
     const std::size_t j = sensorIndex(name, before_.imu_names, "imus");
-    const Pair<ImuState, ImuUncertainty> pair{
-        name,         name == now_.reference,      before_.imus[j],
-        now_.imus[k], before_.uncertainty.imus[j], now_.uncertainty.imus[k]};
+    const Pair<ImuState, ImuUncertainty> pair{name,
+                                              name == now_.reference,
+                                              {j, before_.imus[j], before_.uncertainty.imus[j]},
+                                              {k, now_.imus[k], now_.uncertainty.imus[k]}};
     forEachQuantity(kImuQuantities, [&](const auto& row) { add(row, pair); });
   }
 
   // A sheet keeps its size to within what damp paper does.
   void addBoard() {
-    const auto& scale = quantityInfo(kBoardQuantities, &BoardState::scale);
-    const auto& stretch = quantityInfo(kBoardQuantities, &BoardState::stretch);
-    const Pair<BoardState, BoardUncertainty> pair{now_.board_names[0],       true,
-                                                  before_.boards[0],         now_.boards[0],
-                                                  before_.uncertainty.board, now_.uncertainty.board};
+    const Pair<BoardState, BoardUncertainty> pair{now_.board_names[0],
+                                                  true,
+                                                  {0, before_.boards[0], before_.uncertainty.board},
+                                                  {0, now_.boards[0], now_.uncertainty.board}};
     forEachSheetQuantity([&](const auto& row) {
-      if (&row.info == &scale || &row.info == &stretch)
-        addNumbers(row, pair, Judged{"", 1.0, kStableSheet, 0.0}, false);
+      if (const auto judged = judgedBy(row.info, options_)) addNumbers(row, pair, *judged, false);
     });
   }
 
@@ -200,7 +205,7 @@ class Comparison {
     if (!judged || (row.info.relative && pair.without_place)) return nullptr;
     if (!addNumbers(row, pair, *judged, true)) {
       if (row.info.presence == QuantityPresence::Always &&
-          quantityNumbers(row.sigma(pair.sigma_now)).isZero(0.0))
+          quantityNumbers(row.sigma(pair.now.sigma)).isZero(0.0))
         out_.not_told.push_back(fmt::format("{} of {}", row.info.title, pair.sensor));
       return nullptr;
     }
@@ -211,22 +216,24 @@ class Comparison {
   template <class Row, class Sensors>
   bool addNumbers(const Row& row, const Sensors& pair, const Judged& judged, bool tested) {
     const QuantityInfo& info = row.info;
-    const std::vector<QuantityPart> all = quantityParts(info, row.value(pair.now));
+    const std::vector<QuantityPart> all = quantityParts(info, row.value(pair.now.state));
     std::vector<Uncertain> before, now;
-    const Eigen::VectorXd sigmas_before = quantityNumbers(row.sigma(pair.sigma_before));
-    for (const QuantityPart& part : all) {
-      const std::string name = fmt::format("{}.{} [{}]", pair.sensor, part.name, part.unit);
-      const auto column = columnOf(name, now_.uncertainty);
+    const Eigen::VectorXd sigmas_before = quantityNumbers(row.sigma(pair.before.sigma));
+    QuantityAddress number = quantityAddress(info, pair.now.index, row.value(pair.now.state)), was = number;
+    was.sensor = pair.before.index;
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(all.size()); ++i) {
+      const auto column = columnOf(number, now_.uncertainty.columns);
       if (!column) break;
-      const auto i = static_cast<Eigen::Index>(now.size());
-      now.push_back({column, 0.0});
-      before.push_back(
-          {columnOf(name, before_.uncertainty), i < sigmas_before.size() ? sigmas_before[i] : 0.0});
+      now.push_back({number, column});
+      before.push_back({was, columnOf(was, before_.uncertainty.columns),
+                        i < sigmas_before.size() ? sigmas_before[i] : 0.0});
+      ++number.component;
+      ++was.component;
     }
     if (now.empty()) return false;
     const auto size = static_cast<Eigen::Index>(now.size());
     const Eigen::VectorXd difference =
-        quantityDifference(info, row.value(pair.now), row.value(pair.before)).head(size);
+        quantityDifference(info, row.value(pair.now.state), row.value(pair.before.state)).head(size);
     ChangeGroup group{next_, size,  judged.factor * Eigen::MatrixXd::Identity(size, size), judged.stability,
                       {},    tested};
     group.stable_covariance = stableCovariance(group);
@@ -235,8 +242,6 @@ class Comparison {
     differences_.insert(differences_.end(), difference.begin(), difference.end());
     columns_before_.insert(columns_before_.end(), before.begin(), before.end());
     columns_now_.insert(columns_now_.end(), now.begin(), now.end());
-    const bool offset = &info == &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
-    offset_of_.insert(offset_of_.end(), now.size(), offset ? pair.sensor : std::string());
     if (tested) out_.quantities.push_back(shownQuantity(row, pair, judged, all));
     return true;
   }
@@ -259,10 +264,10 @@ class Comparison {
     shown.stability = judged.stability;
     shown.matters = judged.matters;
     const double factor = info.shown_factor;
-    const Eigen::VectorXd before = factor * quantityNumbers(row.value(pair.before)),
-                          now = factor * quantityNumbers(row.value(pair.now)),
-                          sigma_before = factor * quantityNumbers(row.sigma(pair.sigma_before)),
-                          sigma_now = factor * quantityNumbers(row.sigma(pair.sigma_now));
+    const Eigen::VectorXd before = factor * quantityNumbers(row.value(pair.before.state)),
+                          now = factor * quantityNumbers(row.value(pair.now.state)),
+                          sigma_before = factor * quantityNumbers(row.sigma(pair.before.sigma)),
+                          sigma_now = factor * quantityNumbers(row.sigma(pair.now.sigma));
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       shown.numbers.push_back({parts[k].name, parts[k].shown_unit, before[i],
@@ -273,8 +278,8 @@ class Comparison {
   }
 
   static std::string titleOf(const QuantityInfo& info) {
-    if (info.need == QuantityNeed::Rotation) return "rotation";
-    if (info.shape == QuantityShape::Intrinsics) return "lens";
+    if (info.id == QuantityId::Rotation) return "rotation";
+    if (info.id == QuantityId::Intrinsics) return "lens";
     if (info.shape == QuantityShape::UpperTriangle) return std::string(info.title) + " scale and axes";
     return info.title;
   }
@@ -289,21 +294,20 @@ class Comparison {
         const auto b = static_cast<std::size_t>(j);
         double before = covarianceOf(before_.uncertainty, columns_before_[a], columns_before_[b], i == j);
         double now = covarianceOf(now_.uncertainty, columns_now_[a], columns_now_[b], i == j);
-        if (i == j && !offset_of_[a].empty()) {
-          before = withoutDelay(before, results_.before, offset_of_[a]);
-          now = withoutDelay(now, results_.now, offset_of_[a]);
+        if (i == j) {
+          before = withoutDelay(before, results_.before, columns_before_[a].number);
+          now = withoutDelay(now, results_.now, columns_now_[a].number);
         }
         out_.change.covariance(i, j) = before + now;
       }
     }
   }
 
-  static double withoutDelay(double variance_s2, const NamedResult& named, const std::string& camera) {
-    const auto isThis = [&](const SensorDescription& each) { return each.name == camera; };
-    const auto which = std::ranges::find_if(named.cameras, isThis) - named.cameras.begin();
-    return holdsPixelDelay(cameraKinds(named), static_cast<std::size_t>(which), !named.imus.empty())
-               ? withoutPixelDelay_s2(variance_s2, pixelDelay_s(named))
-               : variance_s2;
+  static double withoutDelay(double variance, const NamedResult& named, const QuantityAddress& number) {
+    const bool offset = number.owner == QuantityOwner::Camera && number.id == QuantityId::TimeOffset;
+    return offset && holdsPixelDelay(cameraKinds(named), number.sensor, !named.imus.empty())
+               ? withoutPixelDelay_s2(variance, pixelDelay_s(named))
+               : variance;
   }
 
   const ComparedResults& results_;
@@ -313,7 +317,6 @@ class Comparison {
   Eigen::Index next_ = 0;
   std::vector<double> differences_;
   std::vector<Uncertain> columns_before_, columns_now_;
-  std::vector<std::string> offset_of_;  // a camera, or empty: no time offset of one
 };
 
 double sizeAlong(const GroupTestResult& test, const ChangeGroup& group) {
@@ -338,6 +341,29 @@ CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTest
   for (const Eigen::MatrixXd& place : compared.at_edge)
     quantity.edge_px = std::max(quantity.edge_px, (place * test.change).norm());
   return quantity;
+}
+
+std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options) {
+  switch (info.id) {
+    case QuantityId::Rotation:
+    case QuantityId::GyroscopeRotation:
+      return kRadPerDeg * options.stability_rotation_deg;
+    case QuantityId::Translation:
+      return 1e-3 * options.stability_translation_mm;
+    case QuantityId::TimeOffset:
+    case QuantityId::AccelerometerDelay:
+      return 1e-3 * options.stability_time_offset_ms;
+    case QuantityId::Intrinsics:
+      return options.stability_lens_px;
+    case QuantityId::GyroscopeMapping:
+    case QuantityId::AccelerometerMapping:
+      return options.stability_imu_scale;
+    case QuantityId::Scale:
+    case QuantityId::Stretch:
+      return kStableSheet;
+    default:
+      return std::nullopt;
+  }
 }
 
 Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include "core/data/calibration_check.h"
+#include "core/data/quantity.h"
 #include "core/pipeline/compare/single_changes.h"
 #include "core/pipeline/session/check_options.h"
 #include "core/report/result_yaml.h"
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,10 @@ struct ComparedResults {
   const NamedResult& now;
   bool same_board = true;
 };
+
+// What a quantity may move by itself, in SI units; nothing for what no calibration is made for: biases, drifts, edges'
+// leads. Of a lens RMS pixels.
+std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options);
 
 // Of a lens's first `count` intrinsics that move its image by so much, by RMS, in no direction more than in others.
 Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px);

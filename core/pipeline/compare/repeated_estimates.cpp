@@ -15,29 +15,22 @@ namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
+// The first of the direction's two tilts, and what stands behind them.
+constexpr QuantityAddress kGravityDirection{QuantityOwner::Rig, 0, QuantityId::Gravity, 0};
+constexpr QuantityAddress kGravityNorm{QuantityOwner::Rig, 0, QuantityId::Gravity, 2};
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::optional<Eigen::Index> columnOf(const std::string& name, const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return found - names.begin();
-}
-
-Eigen::MatrixXd covarianceOf(const UncertaintyReport& report) {
-  return report.standard_deviations.asDiagonal() * report.correlation *
-         report.standard_deviations.asDiagonal();
-}
 
 // A recording's estimate with the common values, and their covariance, of all recordings in the place of its own: what
 // is its own follows as its normal equations say (docs/maths.md, 14).
 struct FollowingEstimate {
-  std::vector<std::string> names;  // the recording's, then common ones that it does not tell
-  Eigen::VectorXd by;              // what its own numbers move by; 0 for common ones
+  std::vector<QuantityAddress> columns;  // the recording's, then common ones that it does not tell
+  Eigen::VectorXd by;                    // what its own numbers move by; 0 for common ones
   Eigen::MatrixXd covariance;
 };
 
 struct Following {
-  Indices columns, unknowns;         // of a report's names, and what they are of all common ones
+  Indices columns, unknowns;         // of a report, and what they are of all common ones
   Eigen::MatrixXd as_weighed, gain;  // of the recording; of all common ones by those that it tells
   Eigen::VectorXd moved;             // by which those that it tells have moved
 };
@@ -45,16 +38,16 @@ struct Following {
 // From the recording's numbers and the joint common ones to the result's: own - by_common (alone - joint), and joint.
 FollowingEstimate followingEstimate(const UncertaintyReport& report, const Following& following,
                                     const CombinedEstimate& joint,
-                                    const std::vector<std::string>& unknown_names) {
+                                    const std::vector<QuantityAddress>& unknown_columns) {
   FollowingEstimate out;
-  out.names = report.names;
+  out.columns = report.columns;
   Indices further;
-  for (std::size_t u = 0; u < unknown_names.size(); ++u)
+  for (std::size_t u = 0; u < unknown_columns.size(); ++u)
     if (std::ranges::count(following.unknowns, static_cast<Eigen::Index>(u)) == 0) {
       further.push_back(static_cast<Eigen::Index>(u));
-      out.names.push_back(unknown_names[u]);
+      out.columns.push_back(unknown_columns[u]);
     }
-  const auto size = static_cast<Eigen::Index>(report.names.size());
+  const auto size = static_cast<Eigen::Index>(report.columns.size());
   const Eigen::Index all = size + static_cast<Eigen::Index>(further.size());
   const Eigen::MatrixXd by_common =
       product(following.as_weighed(Eigen::all, following.columns),
@@ -74,7 +67,7 @@ FollowingEstimate followingEstimate(const UncertaintyReport& report, const Follo
   }
   for (std::size_t k = 0; k < further.size(); ++k)
     from_joint(size + static_cast<Eigen::Index>(k), further[k]) = 1.0;
-  const Eigen::MatrixXd covariance = covarianceOf(report);
+  const Eigen::MatrixXd covariance = report.covariance();
   // The joint values hold the recording's own errors, by the gain.
   const Eigen::MatrixXd between =
       productTransposed(covariance(Eigen::all, following.columns), following.gain);
@@ -89,19 +82,19 @@ FollowingEstimate followingEstimate(const UncertaintyReport& report, const Follo
 
 void setReport(const FollowingEstimate& estimate, UncertaintyReport& report) {
   constexpr double kLeast = 1e-300;
-  report.names = estimate.names;
+  report.columns = estimate.columns;
   report.standard_deviations = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(kLeast).cwiseInverse();
   report.correlation = inverse.asDiagonal() * estimate.covariance * inverse.asDiagonal();
   report.correlation.diagonal().setOnes();
 }
 
-// The numbers of a quantity among `all`, by its names; empty where one is missing.
-Eigen::VectorXd partsOf(const RigQuantity& quantity, const std::vector<std::string>& names,
+// The numbers of a quantity among `all`; empty where one is missing.
+Eigen::VectorXd partsOf(const RigQuantity& quantity, const std::vector<QuantityAddress>& columns,
                         const Eigen::VectorXd& all) {
-  Eigen::VectorXd parts(static_cast<Eigen::Index>(quantity.names.size()));
-  for (std::size_t k = 0; k < quantity.names.size(); ++k) {
-    const auto column = columnOf(quantity.names[k], names);
+  Eigen::VectorXd parts(quantity.size());
+  for (std::size_t k = 0; k < quantity.parts.size(); ++k) {
+    const auto column = columnOf(quantity.address(k), columns);
     if (!column) return {};
     parts[static_cast<Eigen::Index>(k)] = all[*column];
   }
@@ -109,38 +102,30 @@ Eigen::VectorXd partsOf(const RigQuantity& quantity, const std::vector<std::stri
 }
 
 void moveGravity(const FollowingEstimate& estimate, CalibrationState& state) {
-  const auto first = columnOf("gravity.direction.1 [rad]", estimate.names);
+  const auto first = columnOf(kGravityDirection, estimate.columns);
   if (!first) return;
   Eigen::Vector3d& gravity = state.gravity_in_world_m_s2;
-  const auto norm = columnOf("gravity.norm [m/s^2]", estimate.names);
+  const auto norm = columnOf(kGravityNorm, estimate.columns);
   const double new_norm = gravity.norm() + (norm ? estimate.by[*norm] : 0.0);
   const Eigen::Vector3d turned =
       gravity + gravity.norm() * (gravityTilts(gravity) * estimate.by.segment<2>(*first));
   gravity = new_norm * turned.normalized();
 }
 
-void setGravitySigmas(UncertaintyReport& report) {
-  const auto first = columnOf("gravity.direction.1 [rad]", report.names);
-  const auto norm = columnOf("gravity.norm [m/s^2]", report.names);
-  if (first)
-    report.gravity_direction_std_rad = report.standard_deviations.segment<2>(*first).norm() / std::sqrt(2.0);
-  if (norm) report.gravity_norm_std_m_s2 = report.standard_deviations[*norm];
-}
-
 }  // namespace
 
 RepeatedEstimates::RepeatedEstimates(const Session& session, std::vector<RecordedEstimate> recorded)
-    : session_(session), recorded_(std::move(recorded)) {
-  all_ = rigQuantities(session, resultOf(0).state);
-  for (const RigQuantity& quantity : all_) {
+    : session_(session), recorded_(std::move(recorded)), quantities_(session, resultOf(0).state) {
+  for (const RigQuantity& quantity : quantities_.all) {
     const auto tells = [&](const RecordedEstimate& each) {
-      return columnOf(quantity.names.front(), each.result->uncertainty.names).has_value();
+      return columnOf(quantity.first, each.result->uncertainty.columns).has_value();
     };
-    if (quantity.share != QuantityShare::Common || quantity.names.empty() ||
+    if (quantity.share != QuantityShare::Common || quantity.parts.empty() ||
         std::none_of(recorded_.begin(), recorded_.end(), tells))
       continue;
-    unknowns_.push_back({&quantity, static_cast<Eigen::Index>(names_.size())});
-    names_.insert(names_.end(), quantity.names.begin(), quantity.names.end());
+    unknowns_.push_back({&quantity, static_cast<Eigen::Index>(columns_.size())});
+    for (std::size_t part = 0; part < quantity.parts.size(); ++part)
+      columns_.push_back(quantity.address(part));
   }
   linearise(resultOf(0).state);
   std::vector<std::size_t> everyone(recorded_.size());
@@ -152,41 +137,40 @@ RepeatedEstimates::RepeatedEstimates(const Session& session, std::vector<Recorde
 std::vector<Eigen::Index> RepeatedEstimates::columnsOf(std::size_t recording) const {
   Indices columns;
   for (const Eigen::Index unknown : told_[recording])
-    columns.push_back(*columnOf(names_[static_cast<std::size_t>(unknown)], namesOf(recording)));
+    columns.push_back(
+        *columnOf(columns_[static_cast<std::size_t>(unknown)], resultOf(recording).uncertainty.columns));
   return columns;
 }
 
 Eigen::MatrixXd RepeatedEstimates::asWeighed(std::size_t recording) const {
   const Eigen::MatrixXd& known = recorded_[recording].as_weighed;
-  return known.size() > 0 ? known : covarianceOf(resultOf(recording).uncertainty);
+  return known.size() > 0 ? known : resultOf(recording).uncertainty.covariance();
 }
 
 void RepeatedEstimates::linearise(const CalibrationState& at) {
   at_ = at;
-  const auto size = static_cast<Eigen::Index>(names_.size());
+  const auto size = static_cast<Eigen::Index>(columns_.size());
   CommonKnowledge known{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size),
                         Eigen::MatrixXd::Zero(size, size)};
   for (const Unknowns& each : unknowns_) {
-    const auto count = static_cast<Eigen::Index>(each.quantity->parts.size());
+    const Eigen::Index count = each.quantity->size();
     known.moving.block(each.first, each.first, count, count) = each.quantity->moving(at_);
-    const std::optional<WeighedPrior>& prior = each.quantity->prior;
-    if (!prior) continue;
-    known.information.block(each.first, each.first, count, count) = prior->information;
-    known.value.segment(each.first, count) = prior->value(at_).head(count);
+    if (each.quantity->prior_information.size() == 0) continue;
+    known.information.block(each.first, each.first, count, count) = each.quantity->prior_information;
+    known.value.segment(each.first, count) = each.quantity->difference(quantities_.prior_means, at_);
   }
   std::vector<PartialEstimate> estimates;
   told_.clear();
   for (std::size_t k = 0; k < recorded_.size(); ++k) {
     Eigen::VectorXd values(size);
     for (const Unknowns& each : unknowns_)
-      values.segment(each.first, static_cast<Eigen::Index>(each.quantity->parts.size())) =
-          each.quantity->difference(resultOf(k).state, at_);
+      values.segment(each.first, each.quantity->size()) = each.quantity->difference(resultOf(k).state, at_);
     Indices& told = told_.emplace_back();
     for (Eigen::Index u = 0; u < size; ++u)
-      if (columnOf(names_[static_cast<std::size_t>(u)], namesOf(k))) told.push_back(u);
+      if (columnOf(columns_[static_cast<std::size_t>(u)], resultOf(k).uncertainty.columns)) told.push_back(u);
     const Indices columns = columnsOf(k);
     estimates.push_back({told, values(told), inverseOf(asWeighed(k)(columns, columns)),
-                         covarianceOf(resultOf(k).uncertainty)(columns, columns)});
+                         resultOf(k).uncertainty.covariance()(columns, columns)});
   }
   combination_.emplace(estimates, std::move(known));
   varying_.clear();
@@ -195,8 +179,7 @@ void RepeatedEstimates::linearise(const CalibrationState& at) {
 
 CalibrationState RepeatedEstimates::moved(const Eigen::VectorXd& by, CalibrationState state) const {
   for (const Unknowns& each : unknowns_)
-    each.quantity->move(by.segment(each.first, static_cast<Eigen::Index>(each.quantity->parts.size())),
-                        state);
+    each.quantity->move(by.segment(each.first, each.quantity->size()), state);
   return state;
 }
 
@@ -220,7 +203,7 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
   const FollowingEstimate estimate = followingEstimate(
       own.uncertainty,
       {columnsOf(last), told_[last], asWeighed(last), combination_->gain(last, chosen), moved_by}, combined,
-      names_);
+      columns_);
   CalibrationResult joint;
   joint.start_ns = own.start_ns;
   joint.state = own.state;
@@ -230,15 +213,12 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
   joint.state = moved(combined.value, std::move(joint.state));
   joint.uncertainty = own.uncertainty;
   setReport(estimate, joint.uncertainty);
-  for (const RigQuantity& quantity : all_) {
-    const Eigen::VectorXd sigmas = partsOf(quantity, estimate.names, joint.uncertainty.standard_deviations);
-    if (sigmas.size() == 0) continue;
-    quantity.setSigmas(sigmas, joint.uncertainty);
-    if (quantity.share != QuantityShare::Common)
-      quantity.move(partsOf(quantity, estimate.names, estimate.by), joint.state);
-  }
+  for (const RigQuantity& quantity : quantities_.all)
+    if (const Eigen::VectorXd by = partsOf(quantity, estimate.columns, estimate.by);
+        by.size() > 0 && quantity.share != QuantityShare::Common)
+      quantity.move(by, joint.state);
   moveGravity(estimate, joint.state);
-  setGravitySigmas(joint.uncertainty);
+  setSigmas(joint.uncertainty);
   // Of one recording alone, and no longer true.
   joint.uncertainty.observability.clear();
   joint.uncertainty.directions.clear();
@@ -257,19 +237,16 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
 
 double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity& quantity,
                                        std::size_t part) const {
-  const auto unknown = columnOf(quantity.names[part], names_);
+  const auto unknown = columnOf(quantity.address(part), columns_);
   if (unknown) {
     const auto told = std::ranges::find(told_[recording], *unknown);
     return varying_[recording][told - told_[recording].begin()];
   }
   // What light does to pixels' delays is in the sigmas of time offsets, and the same every time.
   const UncertaintyReport& report = resultOf(recording).uncertainty;
-  const double sigma = report.standard_deviations[*columnOf(quantity.names[part], report.names)];
-  const auto named = [&](const SessionCamera& camera) { return camera.name == quantity.sensor; };
-  const auto camera = std::ranges::find_if(session_.cameras, named) - session_.cameras.begin();
-  if (quantity.info != &quantityInfo(kCameraQuantities, &CameraState::time_offset_s) ||
-      !holdsPixelDelay(recorded_[recording].cameras, static_cast<std::size_t>(camera),
-                       !session_.imus.empty()))
+  const double sigma = report.standard_deviations[*columnOf(quantity.address(part), report.columns)];
+  if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||
+      !holdsPixelDelay(recorded_[recording].cameras, quantity.first.sensor, !session_.imus.empty()))
     return sigma;
   return std::sqrt(withoutPixelDelay_s2(sigma * sigma, 1e-3 * session_.options.optimisation.pixel_delay_ms));
 }
@@ -277,7 +254,7 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
 void RepeatedEstimates::fillStatistics(std::span<const std::size_t> chosen, const CalibrationResult& joint,
                                        const RigQuantity& quantity, RepeatedQuantity& shown) const {
   const double factor = quantity.info->shown_factor;
-  Eigen::VectorXd means = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(quantity.parts.size()));
+  Eigen::VectorXd means = Eigen::VectorXd::Zero(quantity.size());
   for (std::size_t part = 0; part < quantity.parts.size(); ++part) {
     const auto i = static_cast<Eigen::Index>(part);
     RepeatedNumber& number = shown.numbers[part];
@@ -304,7 +281,7 @@ void RepeatedEstimates::fillStatistics(std::span<const std::size_t> chosen, cons
     const auto i = static_cast<Eigen::Index>(part);
     RepeatedNumber& number = shown.numbers[part];
     number.mean = factor * mean_numbers[i];
-    const auto column = columnOf(quantity.names[part], joint.uncertainty.names);
+    const auto column = columnOf(quantity.address(part), joint.uncertainty.columns);
     if (!shown.common || !column) continue;
     number.joint = factor * joint_numbers[i];
     number.joint_sigma = factor * joint.uncertainty.standard_deviations[*column];
@@ -314,8 +291,8 @@ void RepeatedEstimates::fillStatistics(std::span<const std::size_t> chosen, cons
 std::vector<RepeatedQuantity> RepeatedEstimates::quantities(std::span<const std::size_t> chosen) const {
   std::vector<RepeatedQuantity> shown;
   const CalibrationResult together = joint(chosen);
-  for (const RigQuantity& quantity : all_) {
-    if (quantity.share == QuantityShare::Own || quantity.names.empty()) continue;
+  for (const RigQuantity& quantity : quantities_.all) {
+    if (quantity.share == QuantityShare::Own || quantity.parts.empty()) continue;
     RepeatedQuantity row{quantity.sensor,
                          quantity.info->name,
                          quantity.info->title,
@@ -329,7 +306,7 @@ std::vector<RepeatedQuantity> RepeatedEstimates::quantities(std::span<const std:
       number.unit = quantity.parts[part].shown_unit;
       for (const RecordedEstimate& each : recorded_) {
         const CalibrationResult* const result = each.result.get();
-        const auto column = columnOf(quantity.names[part], result->uncertainty.names);
+        const auto column = columnOf(quantity.address(part), result->uncertainty.columns);
         told = told || column;
         number.values.push_back(
             column ? factor * quantity.numbers(result->state)[static_cast<Eigen::Index>(part)] : kNone);

@@ -44,9 +44,6 @@ class RepeatedEstimates {
 
   void linearise(const CalibrationState& at);
   const CalibrationResult& resultOf(std::size_t recording) const { return *recorded_[recording].result; }
-  const std::vector<std::string>& namesOf(std::size_t recording) const {
-    return resultOf(recording).uncertainty.names;
-  }
   Eigen::MatrixXd asWeighed(std::size_t recording) const;
   std::vector<Eigen::Index> columnsOf(std::size_t recording) const;
   CalibrationState moved(const Eigen::VectorXd& by, CalibrationState state) const;
@@ -56,10 +53,10 @@ class RepeatedEstimates {
 
   const Session& session_;
   std::vector<RecordedEstimate> recorded_;
-  std::vector<RigQuantity> all_;
-  std::vector<Unknowns> unknowns_;  // of the common ones that any recording tells
-  std::vector<std::string> names_;  // of the unknowns
-  CalibrationState at_;             // where values are counted from
+  RigQuantities quantities_;
+  std::vector<Unknowns> unknowns_;        // of the common ones that any recording tells
+  std::vector<QuantityAddress> columns_;  // of the unknowns
+  CalibrationState at_;                   // where values are counted from
   std::optional<EstimateCombination> combination_;
   std::vector<std::vector<Eigen::Index>> told_;  // unknowns by recording
   std::vector<Eigen::VectorXd> varying_;         // as those: what sigmas say of how they vary

@@ -9,8 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,31 +20,35 @@ enum class QuantityShare {
   Own        // biases, drifts, leads of edges
 };
 
-// What a session and its options tell of a quantity beforehand.
-struct WeighedPrior {
-  Eigen::MatrixXd information;
-  std::function<Eigen::VectorXd(const CalibrationState& from)> value;  // as RigQuantity::difference
-};
-
+// Numbers are in SI units, as many as there are parts.
 struct RigQuantity {
   std::string sensor;
   const QuantityInfo* info = nullptr;
-  QuantityShare share = QuantityShare::Own;
+  QuantityAddress first;  // its first number's
   std::vector<QuantityPart> parts;
-  std::vector<std::string> names;  // of the parts, as uncertainty reports have them
+  QuantityShare share = QuantityShare::Own;
+  double stability = 0.0;  // what each number moves by itself; of a lens RMS pixels
+  // What a session and its options tell of a common one beforehand, around what RigQuantities::prior_means has. Empty:
+  // nothing.
+  Eigen::MatrixXd prior_information = {};
 
-  // In SI units, as many as there are parts: numbers as states have them, and a - b as sigmas count it.
-  std::function<Eigen::VectorXd(const CalibrationState&)> numbers;
-  std::function<Eigen::VectorXd(const CalibrationState& a, const CalibrationState& b)> difference;
-  std::function<void(const Eigen::VectorXd& by, CalibrationState&)> move;
-  std::function<void(const CalibrationState& from, CalibrationState& to)> copy;
-  std::function<void(const Eigen::VectorXd& sigmas, UncertaintyReport&)> setSigmas;
-  std::optional<WeighedPrior> prior;  // of common ones
-  // Of common ones: covariance of what they move by themselves from one recording to the next (CheckOptions).
-  std::function<Eigen::MatrixXd(const CalibrationState& at)> moving;
+  Eigen::Index size() const { return static_cast<Eigen::Index>(parts.size()); }
+  QuantityAddress address(std::size_t part) const;
+  Eigen::VectorXd numbers(const CalibrationState& state) const;  // as it has them
+  Eigen::VectorXd difference(const CalibrationState& a,
+                             const CalibrationState& b) const;  // as sigmas count it
+  void move(const Eigen::VectorXd& by, CalibrationState& state) const;
+  void copy(const CalibrationState& from, CalibrationState& to) const;
+  // Covariance of what it moves by itself from one recording to the next (CheckOptions).
+  Eigen::MatrixXd moving(const CalibrationState& at) const;
 };
 
-// Of all sensors, and of how the boards are: what a lens has of coefficients is as `state` has it.
-std::vector<RigQuantity> rigQuantities(const Session& session, const CalibrationState& state);
+struct RigQuantities {
+  // Of all sensors, and of how the boards are: what a lens has of coefficients is as `state` has it.
+  RigQuantities(const Session& session, const CalibrationState& state);
+
+  std::vector<RigQuantity> all;
+  CalibrationState prior_means;
+};
 
 }  // namespace evical

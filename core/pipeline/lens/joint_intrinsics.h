@@ -6,13 +6,11 @@
 #include "core/data/intrinsics_result.h"
 #include "core/intrinsics/intrinsics_options.h"
 
-#include <string>
-
 namespace evical {
 
 // `first` with the intrinsics of the joint solution, its covariance, and the verdict that follows; what the
 // views cover stays as it was. As it is where the report does not hold the camera's intrinsics.
-IntrinsicsResult jointIntrinsics(const IntrinsicsResult& first, const std::string& camera,
+IntrinsicsResult jointIntrinsics(const IntrinsicsResult& first, std::size_t camera,
                                  const CameraIntrinsics& solved, const UncertaintyReport& report,
                                  const IntrinsicsOptions& options);
 

@@ -215,7 +215,7 @@ class Repeat {
 
   // They are each recording's own.
   static void leaveOffsetsOut(ComparedQuantities& compared) {
-    const char* const offset = quantityInfo(kCameraQuantities, &CameraState::time_offset_s).name;
+    const char* const offset = quantityInfo(QuantityOwner::Camera, QuantityId::TimeOffset).name;
     ComparedQuantities kept;
     std::vector<Eigen::Index> numbers;
     for (std::size_t g = 0, shown = 0; g < compared.groups.size(); ++g) {

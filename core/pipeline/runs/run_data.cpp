@@ -1,6 +1,7 @@
 #include "core/pipeline/runs/run_data.h"
 
 #include "core/base/time.h"
+#include "core/data/quantity.h"
 #include "core/pipeline/runs/columns.h"
 
 #include <fmt/format.h>
@@ -45,7 +46,8 @@ EVICAL_FIELDS(ImuUncertainty, rotation_std_rad, translation_std_m, time_offset_s
               gyroscope_rotation_std_rad, time_offset_drift_std_ppm, accelerometer_delay_std_s);
 EVICAL_FIELDS(BoardUncertainty, rotation_std_rad, translation_std_m, scale_std, stretch_std,
               row_curvature_std_1_m, column_curvature_std_1_m, twist_std_1_m);
-EVICAL_FIELDS(UncertaintyReport, names, standard_deviations, correlation, cameras, imus, board,
+EVICAL_FIELDS(QuantityAddress, owner, sensor, id, component, model);
+EVICAL_FIELDS(UncertaintyReport, columns, standard_deviations, correlation, cameras, imus, board,
               further_boards, given, gravity_direction_std_rad, gravity_norm_std_m_s2, observability, weakest,
               directions);
 EVICAL_FIELDS(SensorLatency, camera, against, latency_s, std_s);
@@ -88,6 +90,10 @@ template <>
 inline constexpr auto kLast<CalibrationStatus> = CalibrationStatus::Failed;
 template <>
 inline constexpr auto kLast<CameraModel> = CameraModel::OmniRadtan;
+template <>
+inline constexpr auto kLast<QuantityOwner> = QuantityOwner::Rig;
+template <>
+inline constexpr auto kLast<QuantityId> = QuantityId::Gravity;
 template <>
 inline constexpr auto kLast<ViewKind> = ViewKind::Partial;
 template <>
@@ -169,15 +175,18 @@ bool isWhole(const CalibrationResult& result) {
   const CalibrationState& state = result.state;
   const UncertaintyReport& uncertainty = result.uncertainty;
   const std::size_t cameras = state.cameras.size();
-  const auto names = static_cast<Eigen::Index>(uncertainty.names.size());
+  const auto columns = static_cast<Eigen::Index>(uncertainty.columns.size());
+  const std::vector<QuantityAddress> numbers = quantityAddresses(state);
   return result.cameras.size() == cameras && uncertainty.cameras.size() == cameras &&
          result.imus.size() == state.imus.size() && uncertainty.imus.size() == state.imus.size() &&
          (uncertainty.directions.empty() ||
           uncertainty.directions.size() == uncertainty.observability.size()) &&
          uncertainty.further_boards.size() == state.further_boards.size() &&
-         uncertainty.standard_deviations.size() == names && uncertainty.correlation.rows() == names &&
-         uncertainty.correlation.cols() == names && isWhole(state.world_from_imu_rotation) &&
-         isWhole(state.imu_in_world_m) &&
+         uncertainty.standard_deviations.size() == columns && uncertainty.correlation.rows() == columns &&
+         uncertainty.correlation.cols() == columns &&
+         std::ranges::all_of(uncertainty.columns,
+                             [&](const auto& each) { return columnOf(each, numbers).has_value(); }) &&
+         isWhole(state.world_from_imu_rotation) && isWhole(state.imu_in_world_m) &&
          state.world_from_imu_rotation.control_points.empty() ==
              state.imu_in_world_m.control_points.empty() &&
          std::all_of(state.imus.begin(), state.imus.end(),

@@ -102,23 +102,11 @@ void readSigma(const YamlNode& node, const QuantityInfo&, KnownMapping& known) {
   if (checkedStd(node, Numbers(upper.begin(), upper.end()))) setQuantityNumbers(upper, known.sigma.emplace());
 }
 
-struct PriorNodes {
-  std::optional<YamlNode> value, sigma;
-};
-
-// By the second name where the first is not there; of what has a prior both are in the same unit.
-PriorNodes priorNodes(const YamlNode& sensor, const QuantityInfo& info) {
-  PriorNodes nodes;
-  if (const auto section = quantitySection(sensor, info))
-    nodes = {section->find(info.key), stdNode(*section, info.std_key, info.key)};
-  if (!nodes.value && *info.also_key != '\0')
-    nodes = {sensor.find(info.also_key), stdNode(sensor, info.also_std_key, info.also_key)};
-  return nodes;
-}
-
 template <class Known>
 void readPrior(const YamlNode& sensor, const QuantityInfo& info, std::optional<Known>& prior) {
-  const auto [value, sigma] = priorNodes(sensor, info);
+  const auto section = quantitySection(sensor, info);
+  if (!section) return;
+  const auto value = section->find(info.key), sigma = stdNode(*section, info.std_key, info.key);
   if (!value) return;
   readValue(*value, info, prior.emplace());
   if (sigma) readSigma(*sigma, info, *prior);
@@ -181,10 +169,9 @@ void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_li
 
 void readCameraPrior(const YamlNode& map, const std::string& name, Session& session) {
   SensorPrior& prior = sensorOf(map, name, session.cameras).prior;
-  allowOnlyKeys(
-      map, kCameraQuantities,
-      {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows", "circles",
-       "latency_s", "latency_std_s", "latency_against", "event_latency_s", "event_latency_std_s"});
+  allowOnlyKeys(map, kCameraQuantities,
+                {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows",
+                 "circles", "latency_s", "latency_std_s", "latency_against"});
   readPriors(map, kCameraQuantities, prior);
   if (name == session.reference && session.imus.empty()) dropOwnPlace(map, kCameraQuantities, prior);
 }

@@ -4,11 +4,11 @@
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
+#include "core/report/quantity_words.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace evical::html {
@@ -148,11 +148,11 @@ std::string largestDifference(const std::vector<QuantityDifference>& quantities)
                      number(std::abs(largest->normalised()), 1));
 }
 
-PlotTable correlationTable(const UncertaintyReport& u) {
+PlotTable correlationTable(const UncertaintyReport& u, const std::vector<std::string>& names) {
   PlotTable table("plots/correlation.csv", {});
   table.label_column = "quantity";
-  table.labels = u.names;
-  for (std::size_t i = 0; i < u.names.size(); ++i) {
+  table.labels = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
     table.columns.push_back(fmt::format("{}", i + 1));
     std::vector<double>& column = table.values.emplace_back();
     for (Eigen::Index row = 0; row < u.correlation.rows(); ++row)
@@ -178,13 +178,14 @@ void writeConvergence(const ReportData& data, ReportPage& page) {
 
 void writeUncertainty(const ReportData& data, ReportPage& page) {
   const UncertaintyReport& u = data.named.result->uncertainty;
-  if (u.names.empty() && u.observability.empty()) return;
+  const std::vector<std::string> names = columnNames(data.named);
+  if (names.empty() && u.observability.empty()) return;
   page.beginSection("uncertainty", "Observability and correlation");
   writeObservability(data, page);
-  if (!u.names.empty()) {
-    const PlotTable table = correlationTable(u);
+  if (!names.empty()) {
+    const PlotTable table = correlationTable(u, names);
     page.figure(
-        heatMapSvg("correlation of all quantities", u.names, u.correlation),
+        heatMapSvg("correlation of all quantities", names, u.correlation),
         "Correlation: warm positive, cold negative, the stronger the fuller (values show when the pointer "
         "rests on a cell). Strong colour off the diagonal: the recording tells these two only together.",
         &table);

@@ -150,7 +150,8 @@ NamedResult uncertainRig(const RigKind& kind) {
   own.status = CalibrationStatus::Doubtful;
   own.uncertainty.cameras.resize(own.state.cameras.size());
   own.uncertainty.cameras[1].rotation_std_rad = {1e-4, 2e-4, std::numeric_limits<double>::quiet_NaN()};
-  own.uncertainty.names = {"left.rotation.x [rad]", "left.time_offset [s]"};
+  own.uncertainty.columns = {{QuantityOwner::Camera, 0, QuantityId::Rotation},
+                             {QuantityOwner::Camera, 0, QuantityId::TimeOffset}};
   own.uncertainty.standard_deviations = Eigen::Vector2d(2e-4, 1e-5);
   own.uncertainty.correlation = (Eigen::Matrix2d() << 1.0, -0.5, -0.5, 1.0).finished();
   own.uncertainty.imus.resize(own.state.imus.size());

@@ -15,6 +15,7 @@
 #include <regex>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 using namespace evical;
@@ -203,30 +204,30 @@ class TestPoseText : public QObject {
     QCOMPARE(resultTable(turned).find(words) != std::string::npos, warned);
   }
 
-  void quantities_areSaidInWords_data() {
-    QTest::addColumn<QString>("name");
-    QTest::addColumn<QString>("words");
-    QTest::newRow("vector") << "left.rotation.x [rad]"
-                            << "left: rotation vector x";
-    QTest::newRow("scalar") << "left.time_offset [s]"
-                            << "left: time offset";
-    QTest::newRow("longer name first") << "left.slow_edge_lead [px]"
-                                       << "left: lead of slow edges";
-    QTest::newRow("matrix") << "imu.gyroscope_mapping.xy [1]"
-                            << "imu: gyroscope scale and misalignment xy";
-    QTest::newRow("lens") << "left.focal_length.x [px]"
-                          << "left: focal length x";
-    QTest::newRow("dots in the sensor's name") << "dvs.left.translation.z [m]"
-                                               << "dvs.left: translation z";
-    QTest::newRow("board") << "board.scale [1]"
-                           << "board: size";
-    QTest::newRow("nobody knows it") << "left.new_thing [1]"
-                                     << "left: new thing";
-  }
-  void quantities_areSaidInWords() {
-    QFETCH(QString, name);
-    QFETCH(QString, words);
-    QCOMPARE(QString::fromStdString(quantitySentence(quantityWords(name.toStdString()))), words);
+  void quantities_areNamed_andSaidInWords() {
+    NamedResult named;
+    named.cameras = {{"left"}, {"dvs.left"}};
+    named.imus = {{"imu"}};
+    using enum QuantityId;
+    constexpr auto kCamera = QuantityOwner::Camera, kImu = QuantityOwner::Imu, kRig = QuantityOwner::Rig;
+    const std::vector<std::tuple<QuantityAddress, QString, QString>> all = {
+        {{kCamera, 0, Rotation}, "left.rotation.x [rad]", "left: rotation vector x"},
+        {{kCamera, 0, TimeOffset}, "left.time_offset [s]", "left: time offset"},
+        {{kCamera, 0, SlowEdgeLead}, "left.slow_edge_lead [px]", "left: lead of slow edges"},
+        {{kImu, 0, GyroscopeMapping, 1},
+         "imu.gyroscope_mapping.xy [1]",
+         "imu: gyroscope scale and misalignment xy"},
+        {{kCamera, 0, Intrinsics, 0, CameraModel::Eucm}, "left.focal_length.x [px]", "left: focal length x"},
+        {{kCamera, 0, Intrinsics, 5, CameraModel::Eucm}, "left.distortion.beta [1]", "left: distortion beta"},
+        {{kCamera, 1, Translation, 2}, "dvs.left.translation.z [m]", "dvs.left: translation z"},
+        {{QuantityOwner::Board, 0, Scale}, "board.scale [1]", "board: size"},
+        {{kRig, 0, Gravity, 1}, "gravity.direction.2 [rad]", "gravity: direction 2"},
+        {{kRig, 0, Gravity, 2}, "gravity.norm [m/s^2]", "gravity: norm"}};
+    for (const auto& [number, name, words] : all) {
+      ownResult(named).uncertainty.columns = {number};
+      QCOMPARE(QString::fromStdString(columnNames(named).front()), name);
+      QCOMPARE(QString::fromStdString(quantitySentence(quantityWords(number, named))), words);
+    }
   }
 };
 

@@ -69,7 +69,7 @@ void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, Sim
 // The truth, with everything that initialisation estimates off by about what it leaves.
 CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s = 0.5e-3);
 
-// Estimate minus truth, in the order and the coordinates of UncertaintyReport::names (all quantities
+// Estimate minus truth, in the order and the coordinates of UncertaintyReport::columns (all quantities
 // released that the options allow).
 Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth,
                                const OptimisationOptions& options = {});

@@ -141,12 +141,12 @@ class TestCovariance : public QObject {
     const CovarianceRun run = calibrateForCovariance(options);
     const UncertaintyReport& report = run.estimate.report;
     QCOMPARE(report.standard_deviations.size(), test::reportedErrors(run.rig.truth, run.rig.truth).size());
-    QCOMPARE(report.names.size(), static_cast<std::size_t>(report.standard_deviations.size()));
+    QCOMPARE(report.columns.size(), static_cast<std::size_t>(report.standard_deviations.size()));
     QCOMPARE(report.correlation.rows(), report.standard_deviations.size());
     QVERIFY(report.standard_deviations.minCoeff() > 0.0);
     QVERIFY((report.correlation - report.correlation.transpose()).norm() < 1e-9);
     QVERIFY(report.correlation.cwiseAbs().maxCoeff() <= 1.0 + 1e-9);
-    QCOMPARE(QString::fromStdString(report.names[0]), QString("left.rotation.x [rad]"));
+    QVERIFY((report.columns[0] == QuantityAddress{QuantityOwner::Camera, 0, QuantityId::Rotation}));
     QCOMPARE(report.cameras[0].rotation_std_rad, Eigen::Vector3d(report.standard_deviations.head<3>()));
     QCOMPARE(report.cameras[0].time_offset_std_s, report.standard_deviations[6]);
     QVERIFY(report.imus[1].translation_std_m.minCoeff() > 0.0);

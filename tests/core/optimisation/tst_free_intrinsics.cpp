@@ -1,5 +1,6 @@
 // Intrinsics as unknowns of the batch, started at a lens that is not quite the true one.
 #include "core/data/intrinsics_result.h"
+#include "core/data/quantity.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/optimisation/batch_optimiser.h"
@@ -83,6 +84,10 @@ QString text(double value) {
   return QString::number(value);
 }
 
+QString partOfColumn(const UncertaintyReport& report, std::size_t column) {
+  return QString::fromStdString(quantityPart(report.columns.at(column)).name);
+}
+
 class TestFreeIntrinsics : public QObject {
   Q_OBJECT
 
@@ -154,11 +159,13 @@ class TestFreeIntrinsics : public QObject {
     const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     const UncertaintyEstimate estimate = estimateUncertainty(rig.input, solution, {}, RunContext{});
     const UncertaintyReport& report = estimate.report;
-    QCOMPARE(QString::fromStdString(report.names[10]), QString("left.focal_length.x [px]"));
-    QCOMPARE(QString::fromStdString(report.names[13]), QString("left.principal_point.y [px]"));
-    QCOMPARE(QString::fromStdString(report.names[16]), QString("left.distortion.p1 [1]"));
-    QCOMPARE(QString::fromStdString(report.names[18]), QString("imu.gyroscope_bias.x [rad/s]"));
-    QCOMPARE(report.names.size(), static_cast<std::size_t>(report.correlation.rows()));
+    QCOMPARE(partOfColumn(report, 10), QString("focal_length.x"));
+    QCOMPARE(partOfColumn(report, 13), QString("principal_point.y"));
+    QCOMPARE(partOfColumn(report, 16), QString("distortion.p1"));
+    QVERIFY((report.columns[10] == QuantityAddress{QuantityOwner::Camera, 0, QuantityId::Intrinsics, 0,
+                                                   CameraModel::PinholeRadtan}));
+    QVERIFY((report.columns[18] == QuantityAddress{QuantityOwner::Imu, 0, QuantityId::GyroscopeBias}));
+    QCOMPARE(report.columns.size(), static_cast<std::size_t>(report.correlation.rows()));
     const std::array<double, 9>& sigmas = report.cameras[0].intrinsics_std.value();
     for (std::size_t k = 0; k < 8; ++k)
       QCOMPARE(sigmas[k], report.standard_deviations[10 + static_cast<Eigen::Index>(k)]);
@@ -181,7 +188,7 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY(!fixed.state.cameras[0].lens.solved);
     const UncertaintyReport held = estimateUncertainty(rig.input, fixed, options, RunContext{}).report;
     QVERIFY(!held.cameras[0].intrinsics_std);
-    QCOMPARE(held.names.size() + 8, free.names.size());
+    QCOMPARE(held.columns.size() + 8, free.columns.size());
     const CameraUncertainty &with = free.cameras[0], &without = held.cameras[0];
     QVERIFY(with.rotation_std_rad.norm() > without.rotation_std_rad.norm());
     QVERIFY(with.translation_std_m.norm() > without.translation_std_m.norm());
@@ -309,7 +316,7 @@ class TestFreeIntrinsics : public QObject {
     const BatchSolution solution = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(solution.state.cameras[0].lens.solved->distortion[4] != 0.01);
     const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
-    QCOMPARE(QString::fromStdString(report.names[18]), QString("left.distortion.k3 [1]"));
+    QCOMPARE(partOfColumn(report, 18), QString("distortion.k3"));
     const double off_px = projectionDifference(truth, *solution.state.cameras[0].lens.solved).rms_px;
     QVERIFY2(off_px < 0.05, qPrintable(text(off_px)));
   }

@@ -76,12 +76,11 @@ class TestFurtherBoards : public QObject {
     const test::SimulatedRig rig = rigOfFurtherBoards(1);
     const test::SolvedRig solved = solve(rig, 1, test::withoutPixelDelay());
     QCOMPARE(solved.solution.state.board.world_from_board.translation_m, Eigen::Vector3d::Zero().eval());
-    const std::vector<std::string>& names = solved.estimate.report.names;
-    const auto reported = [&](const char* name) {
-      return std::find(names.begin(), names.end(), name) != names.end();
+    const auto reported = [&](std::size_t board, QuantityId id, std::size_t axis) {
+      return columnOf({QuantityOwner::Board, board, id, axis}, solved.estimate.report.columns).has_value();
     };
-    QVERIFY(reported("tags.translation.x [m]") && reported("tags.rotation.z [rad]"));
-    QVERIFY(!reported("board.translation.x [m]"));
+    QVERIFY(reported(1, QuantityId::Translation, 0) && reported(1, QuantityId::Rotation, 2));
+    QVERIFY(!reported(0, QuantityId::Translation, 0));
   }
 
   void sizesThatContradictEachOther_areToldOf() {

@@ -65,9 +65,8 @@ class TestGyroscopeRotation : public QObject {
           estimateUncertainty(rig.input, solution, withRotation(), RunContext{}).report;
       const Eigen::VectorXd normalised = test::reportedErrors(solution.state, rig.truth, withRotation())
                                              .cwiseQuotient(report.standard_deviations);
-      const auto turn =
-          std::find(report.names.begin(), report.names.end(), "imu.gyroscope_rotation.x [rad]") -
-          report.names.begin();
+      const Eigen::Index turn =
+          columnOf({QuantityOwner::Imu, 0, QuantityId::GyroscopeRotation}, report.columns).value();
       QCOMPARE(report.imus[0].gyroscope_rotation_std_rad[0], report.standard_deviations[turn]);
       all += normalised.squaredNorm();
       turns += normalised.segment<3>(turn).squaredNorm();

@@ -15,10 +15,10 @@ using namespace evical;
 using Eigen::Vector3d;
 
 const QuantityInfo& timeOffset() {
-  return quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
+  return quantityInfo(QuantityOwner::Camera, QuantityId::TimeOffset);
 }
 const QuantityInfo& gyroscopeMapping() {
-  return quantityInfo(kImuQuantities, &ImuState::gyroscope_mapping);
+  return quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeMapping);
 }
 
 CalibrationInput oneOfEach() {
@@ -59,7 +59,7 @@ class TestKnownValues : public QObject {
   }
 
   void isReleased_ofAGyroscopesRotation_isByOptionOrByAWeighedPrior() {
-    const QuantityInfo& rotation = quantityInfo(kImuQuantities, &ImuState::gyroscope_from_accelerometer);
+    const QuantityInfo& rotation = quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeRotation);
     OptimisationOptions options;
     options.gyroscope_rotation = false;
     QVERIFY(!isReleased(rotation, options, false));

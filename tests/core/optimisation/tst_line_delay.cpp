@@ -49,7 +49,7 @@ class TestLineDelay : public QObject {
       QVERIFY2(sigma_us > 0.01 && sigma_us < 0.3, QByteArray::number(sigma_us));
       QVERIFY2(std::abs(error_us) < 4.0 * sigma_us, QByteArray::number(error_us));
       delay += error_us * error_us / (sigma_us * sigma_us * kSeeds);
-      QCOMPARE(report.names[8], std::string("left.line_delay [us]"));
+      QVERIFY((report.columns[8] == QuantityAddress{QuantityOwner::Camera, 0, QuantityId::LineDelay}));
       constexpr Eigen::Index kExtrinsics = 7;  // rotation, translation, time offset
       const Eigen::VectorXd normalised = test::reportedErrors(solution.state, rig.truth, heldLens())
                                              .head(kExtrinsics)
@@ -77,7 +77,7 @@ class TestLineDelay : public QObject {
       const double error = solution.state.cameras[0].exposure_share - kShare;
       const double sigma = report.cameras[0].exposure_share_std;
       QVERIFY2(sigma > 1e-3 && sigma < 0.03, QByteArray::number(sigma));
-      QCOMPARE(report.names[8], std::string("left.exposure_share [1]"));
+      QVERIFY((report.columns[8] == QuantityAddress{QuantityOwner::Camera, 0, QuantityId::ExposureShare}));
       share += error * error / (sigma * sigma * kSeeds);
     }
     QVERIFY2(std::sqrt(share) > 0.6 && std::sqrt(share) < 1.5, QByteArray::number(std::sqrt(share)));

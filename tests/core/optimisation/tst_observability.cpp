@@ -141,7 +141,7 @@ class TestObservability : public QObject {
     Rig rig;
     rig.options.needed_translation_mm = 1.0;
     rig.setSigmas(0.5, 0.1, 0.5);
-    const QuantityInfo& scale = quantityInfo(kBoardQuantities, &BoardState::scale);
+    const QuantityInfo& scale = quantityInfo(QuantityOwner::Board, QuantityId::Scale);
     rig.covariance.quantities.push_back({&scale, 0, nullptr});
     rig.covariance.first_column.push_back(8);
     rig.covariance.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(8, 8));

@@ -83,7 +83,8 @@ NamedResult sampleForResultYaml() {
   result.uncertainty.weakest = "translation along the camera's z axis";
   result.uncertainty.observability = {0.5, 12.0};
   result.uncertainty.directions = {"translation along the camera's z axis", "time offset of 1 odd: name"};
-  result.uncertainty.names = {"left.rotation.x [rad]", "left.rotation.y [rad]"};
+  result.uncertainty.columns = {{QuantityOwner::Camera, 1, QuantityId::Rotation, 1},
+                                {QuantityOwner::Imu, 0, QuantityId::AccelerometerDelay}};
   result.uncertainty.standard_deviations = Eigen::Vector2d(1e-4, 2e-4);
   CrossValidation validation;
   validation.block_s = 2.5;
@@ -161,24 +162,26 @@ class TestResultYaml : public QObject {
     QCOMPARE(read.result->cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
   }
 
-  // Names that interfaces of other programs rest on stand beside ours, in their units.
-  void secondNames_sayTheSame() {
+  void columns_sayWhoseNumberTheyAre_andWhich() {
     NamedResult named = sampleForResultYaml();
-    CalibrationResult& result = test::ownResult(named);
-    result.state.cameras[1].line_delay_us = 31.25;
-    result.uncertainty.cameras[1].line_delay_std_us = 0.5;
-    result.state.cameras[1].time_offset_drift_ppm = -12.5;
-    result.uncertainty.cameras[1].time_offset_drift_std_ppm = 0.25;
-    result.uncertainty.imus[0].accelerometer_delay_std_s = 2e-4;
-    result.latencies = {{1, 0, 0.004, 5e-5}};  // frames against events
-    const QString text = QString::fromStdString(resultYaml(named));
+    UncertaintyReport& report = test::ownResult(named).uncertainty;
+    report.columns = {{QuantityOwner::Camera, 1, QuantityId::Rotation, 1},
+                      {QuantityOwner::Camera, 0, QuantityId::Intrinsics, 6, CameraModel::PinholeRadtan},
+                      {QuantityOwner::Imu, 1, QuantityId::AccelerometerDelay},
+                      {QuantityOwner::Board, 0, QuantityId::Scale},
+                      {QuantityOwner::Rig, 0, QuantityId::Gravity, 1}};
+    report.standard_deviations.setOnes(5);
+    report.correlation.setIdentity(5, 5);
+    const std::string text = resultYaml(named);
     for (const char* const line :
-         {"\n    line_delay_us: 31.25\n", "\n    line_delay_s: 3.125e-05\n    line_delay_std_s: 5e-07\n",
-          "\n    clock_drift_ppm: -12.5\n    clock_drift_std_ppm: 0.25\n",
-          "\n    accelerometer_delay_s: 0.0033333333333333335\n    accelerometer_delay_std_s: 0.0002\n",
-          "\n    event_latency_s: -0.004\n    event_latency_std_s: 5e-05\n"})
-      QVERIFY2(text.contains(line), qPrintable(QString(line) + " is not in\n" + text));
-    QCOMPARE(QString::fromStdString(resultYaml(readBack(text.toStdString()))), text);
+         {"camera: \"1 odd: name\", quantity: rotation, component: y, unit: rad}",
+          "camera: left, quantity: intrinsics, component: distortion.p1, unit: \"1\"}",
+          "imu: far_imu, quantity: accelerometer_delay, unit: s}",
+          "board: board, quantity: scale, unit: \"1\"}",
+          "{quantity: gravity, component: direction.2, unit: rad}"})
+      QVERIFY2(text.find(line) != std::string::npos,
+               qPrintable(QString(line) + " is not in\n" + text.c_str()));
+    QVERIFY(readBack(text).result->uncertainty.columns == report.columns);
   }
 
   void causes_areListedWithWhatMendsThem() {
@@ -236,6 +239,14 @@ class TestResultYaml : public QObject {
                            << "whole number";
     QTest::newRow("vector") << "evical_result: 1\ngravity_m_s2: [1, 2]\n"
                             << "3 are needed";
+    QTest::newRow("later version") << "evical_result: 2\n"
+                                   << "this program reads files of version 1";
+    for (const char* const column :
+         {"quantity: width", "quantity: gravity, component: x", "camera: left, quantity: rotation"})
+      QTest::newRow(column)
+          << QString("evical_result: 1\nuncertainty: {columns: [{%1}], std: [1], correlation: [[1]]}\n")
+                 .arg(column)
+          << QString("%1 is no number of this result").arg(column);
   }
   void result_thatIsNone_isRefused() {
     QFETCH(QString, text);

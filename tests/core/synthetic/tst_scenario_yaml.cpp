@@ -182,7 +182,7 @@ class TestScenarioYaml : public QObject {
         turned["imus"]["left_imu"]["gyroscope"]["gyroscope_from_accelerometer_xyzw"].reals(4);
     QCOMPARE(turn[1], std::sin(0.01));
     QCOMPARE(turn[3], std::cos(0.01));
-    QCOMPARE(turned["imus"]["left_imu"]["accelerometer"]["delay_s"].real(), 0.0025);
+    QCOMPARE(turned["imus"]["left_imu"]["accelerometer_delay_s"].real(), 0.0025);
     QCOMPARE(truth["gravity_m_s2"].reals(3)[1], scenario.gravity_in_world_m_s2.y());
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
   }

@@ -34,17 +34,18 @@ CorrelationView::CorrelationView(QWidget* parent) : QWidget(parent), saver_(new 
   setAccessibleName(tr("Correlation of the quantities"));
 }
 
-void CorrelationView::setCorrelation(const QStringList& names, const Eigen::MatrixXd& correlation) {
-  names_ = names;
-  correlation_ = correlation;
+void CorrelationView::setResult(const NamedResult& result) {
+  correlation_ = result.result->uncertainty.correlation;
+  names_.clear();
+  for (const std::string& name : columnNames(result)) names_ << QString::fromStdString(name);
   words_.clear();
   groups_.clear();
-  for (qsizetype i = 0; i < names.size(); ++i) {
-    QuantityWords words = quantityWords(names[i].toStdString());
+  for (const QuantityAddress& column : result.result->uncertainty.columns) {
+    QuantityWords words = quantityWords(column, result);
     words_ << QString::fromStdString(quantitySentence(words));
     words.part.clear();
     const QString label = QString::fromStdString(quantitySentence(words));
-    if (groups_.empty() || groups_.back().label != label) groups_.push_back({label, i, 0});
+    if (groups_.empty() || groups_.back().label != label) groups_.push_back({label, words_.size() - 1, 0});
     ++groups_.back().count;
   }
   hovered_.reset();

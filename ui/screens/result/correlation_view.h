@@ -3,6 +3,8 @@
 // words, a name for all parts of a quantity.
 #pragma once
 
+#include "core/report/result_yaml.h"
+
 #include <Eigen/Core>
 
 #include <QStringList>
@@ -22,8 +24,7 @@ class CorrelationView : public QWidget {
  public:
   explicit CorrelationView(QWidget* parent = nullptr);
 
-  // Names as in UncertaintyReport.
-  void setCorrelation(const QStringList& names, const Eigen::MatrixXd& correlation);
+  void setResult(const NamedResult& result);
   QStringList axisLabels() const;
   QString csv() const;
   // "left: translation x and left: time offset: 0.94" of the largest, without those of one with itself.

@@ -299,9 +299,7 @@ void ResultScreen::showDetails() {
   if (directions.isEmpty()) directions << QString::fromStdString(report.weakest);
   observability_->setObservability(report.observability, directions);
   observed_->setText(observability_->text());
-  QStringList names;
-  for (const std::string& name : report.names) names << QString::fromStdString(name);
-  correlation_->setCorrelation(names, report.correlation);
+  correlation_->setResult(*result_);
   const QStringList pairs = correlation_->strongestPairs(kPairs);
   pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
   notes_->clear();

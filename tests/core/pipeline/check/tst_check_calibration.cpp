@@ -186,7 +186,7 @@ class TestCheckCalibration : public QObject {
   // Results of before they had covariances.
   void resultWithoutCovariance_isTaken() {
     CalibrationResult older = *before_.result;
-    older.uncertainty.names.clear();
+    older.uncertainty.columns.clear();
     older.uncertainty.standard_deviations.resize(0);
     older.uncertainty.correlation.resize(0, 0);
     const NamedResult kept = before_;

@@ -78,7 +78,8 @@ class TestJointIntrinsics : public QObject {
     const double after_px = projectionDifference(truth_, solved).rms_px;
     QVERIFY2(after_px < 0.02 && after_px < 0.2 * before_px, qPrintable(QString::number(after_px)));
     QVERIFY(holds(run_.result.notes, "solved with everything else, which moved the projection by"));
-    QVERIFY(holds(run_.result.uncertainty.names, "left.focal_length.x [px]"));
+    QVERIFY(columnOf({QuantityOwner::Camera, 0, QuantityId::Intrinsics, 0, solved.model},
+                     run_.result.uncertainty.columns));
   }
 
   void errors_areThoseThatTheSigmasSay() {

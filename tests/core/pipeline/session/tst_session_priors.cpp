@@ -54,16 +54,12 @@ const char* const kPasted = R"(  cameras:
         translation_std_m: [0.0001, 0.0002, 0.0003]
       time_offset_s: 0.005
       time_offset_std_s: 0
-      time_offset_drift_ppm: 12
-      time_offset_drift_std_ppm: 1
       clock_drift_ppm: 12
       clock_drift_std_ppm: 1
       kind: events
       latency_s: 0.001
       latency_std_s: 0.0001
       latency_against: right
-      event_latency_s: 0.001
-      event_latency_std_s: 0.0001
       edge_lead_px: 0.1
       intrinsics: {model: pinhole_radtan}
       reprojection_rms_px: 0.05
@@ -124,16 +120,6 @@ class TestSessionPriors : public QObject {
     QCOMPARE(right.gyroscope_mapping->value(0, 1), 0.002);
     QCOMPARE((*right.gyroscope_mapping->sigma)(1, 2), 0.003);
     QVERIFY(right.accelerometer_bias->isGiven() && right.accelerometer_mapping->isGiven());
-  }
-
-  void secondNames_areReadWhereTheFirstAreNot() {
-    const Session session = read(
-        "  cameras:\n    left: {clock_drift_ppm: -20, clock_drift_std_ppm: 5}\n  imus:\n    right_imu: "
-        "{accelerometer_delay_s: 0.003, accelerometer: {bias_m_s2: [0.1, 0, 0]}}\n");
-    QCOMPARE(session.cameras[0].prior.time_offset_drift->value, -20.0);
-    QCOMPARE(*session.cameras[0].prior.time_offset_drift->sigma, 5.0);
-    QCOMPARE(session.imus[1].prior.accelerometer_delay->value, 0.003);
-    QVERIFY(session.imus[1].prior.accelerometer_delay->isGiven());
   }
 
   void priors_writtenAndRead_areTheSame() {
