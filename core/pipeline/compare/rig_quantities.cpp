@@ -5,6 +5,7 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/lens_prior.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/compare/compared_quantities.h"
 
 #include <fmt/format.h>
@@ -157,7 +158,7 @@ WeighedPrior around(const Row& row, const SensorIn<Sensor>& sensor, const Value&
 class Priors {
  public:
   Priors(const Session& session, const CalibrationState& state)
-      : session_(session), options_(session.options.optimisation), state_(state) {}
+      : session_(session), options_(*session.options.optimisation), state_(state) {}
 
   // As the batch has them (prior_residuals.cpp).
   template <class Row>
