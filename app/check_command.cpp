@@ -6,6 +6,7 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_calibration.h"
 #include "core/pipeline/check/check_files.h"
 #include "core/pipeline/session/check_options.h"
@@ -63,7 +64,7 @@ CheckInput inputFrom(const CheckArguments& arguments) {
     options.no_board = true;
     input.session.options.check = options;
   }
-  if (arguments.threads > 0) input.session.options.optimisation.threads = arguments.threads;
+  if (arguments.threads > 0) input.session.options.optimisation.edit().threads = arguments.threads;
   return input;
 }
 

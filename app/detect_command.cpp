@@ -8,6 +8,7 @@
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/frontend/stage_image_writer.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/recording_pass.h"
@@ -41,7 +42,7 @@ class ImageWriters final : public CalibrationObserver {
     const std::filesystem::path folder = output_ / "images" / session_.cameras[camera].name;
     makeOutputFolder(folder);
     writers_.push_back(std::make_unique<StageImageWriter>(folder, arguments_.every_nth, tracker.scene(),
-                                                          &tracker.history(), session_.options.front_end));
+                                                          &tracker.history(), *session_.options.front_end));
     return writers_.back().get();
   }
 

@@ -5,6 +5,7 @@
 #include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/error.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/repeat/repeat_files.h"
 #include "core/report/repeat_report.h"
 
@@ -30,7 +31,7 @@ RepeatInput inputFrom(const RepeatArguments& arguments) {
   RepeatInput input = readRepeat(files);
   for (Session& session : input.sessions) {
     applySettings(arguments.settings, session);
-    if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
+    if (arguments.threads > 0) session.options.optimisation.edit().threads = arguments.threads;
   }
   return input;
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/shell_word.h"
+#include "core/optimisation/optimisation_options.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +35,7 @@ void applySettings(const std::vector<std::string>& settings, Session& session) {
 Session sessionFrom(const SessionArguments& arguments) {
   Session session = readSession(arguments.session);
   applySettings(arguments.settings, session);
-  if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
+  if (arguments.threads > 0) session.options.optimisation.edit().threads = arguments.threads;
   return session;
 }
 

@@ -18,6 +18,13 @@ class SharedOptions {
     options_ = std::make_shared<const Options>(std::move(options));
     return *this;
   }
+  // A copy of its own, for a change at once: it must not be kept, since later copies share it.
+  Options& edit() {
+    auto copy = std::make_shared<Options>(*options_);
+    Options& own = *copy;
+    options_ = std::move(copy);
+    return own;
+  }
   bool operator==(const SharedOptions& other) const {
     return options_ == other.options_ || *options_ == *other.options_;
   }

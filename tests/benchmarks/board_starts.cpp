@@ -3,6 +3,7 @@
 // moments of it, with all of the board to be seen and with a third of it silent at first, along its columns or along
 // its rows. Fails where circles are named wrongly in more than 2 % of the windows found.
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/geometry/camera_model.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
@@ -120,7 +121,7 @@ Counts run(const Scenario& scenario, const SinusoidMotion& motion, const std::ve
            const Start& start) {
   const Session session = test::sessionFor(scenario);
   const CameraIntrinsics& camera = *session.cameras.front().intrinsics;
-  BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
+  BoardTracker tracker(session.board, camera.resolution_px, camera, *session.options.front_end,
                        scenario.start_ns);
   Cover cover(scenario, motion, start.hidden);
   const auto at_ns = [&](double time_s) { return scenario.start_ns + std::llround(1e9 * time_s); };

@@ -10,6 +10,7 @@
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/check_report.h"
+#include "core/report/report_options.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/benchmarks/benchmark_program.h"
@@ -186,7 +187,7 @@ NamedResult resultBefore(const Arguments& arguments, int five) {
   scenario.duration_s = arguments.before_s;
   scenario.seed += static_cast<std::uint64_t>(five);
   Session session = test::sessionFor(scenario);
-  session.options.report.cross_validation = false;
+  session.options.report.edit().cross_validation = false;
   RecordingPass pass = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
   const CalibrationRun run = calibrate(session, std::move(pass), {});
   return namedResult(session, std::make_shared<const CalibrationResult>(run.result), "benchmark");

@@ -6,6 +6,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/simulate/simulation.h"
@@ -117,8 +118,8 @@ void davisWithFrames(Table& table, std::optional<double> seconds) {
   const std::string name = "davis346_frames";
   const Scenario scenario = scenarioOf(name, seconds);
   const Outcome both = runScenario(scenario);
-  const Outcome apart =
-      runScenario(scenario, [](Session& session) { session.options.optimisation.share_sensors = false; });
+  const Outcome apart = runScenario(
+      scenario, [](Session& session) { session.options.optimisation.edit().share_sensors = false; });
   Scenario of_events = scenario;
   of_events.cameras.resize(1);
   const Outcome events = runScenario(of_events);

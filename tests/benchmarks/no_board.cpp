@@ -3,6 +3,7 @@
 #include "core/base/in_parallel.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_without_board.h"
 #include "core/report/check_report.h"
 #include "core/synthetic/imu_simulator.h"
@@ -82,7 +83,7 @@ struct Outcome {
 // In one thread, so that what it takes is this thread's time.
 Outcome checked(const Scenario& scenario) {
   CheckInput input = checkInputOf(test::truthOf(scenario), test::sessionFor(scenario));
-  input.session.options.optimisation.threads = 1;
+  input.session.options.optimisation.edit().threads = 1;
   Seen seen = see(scenario, input.session.options);
   const double before_s = test::threadCpu_s();
   Outcome outcome{checkWithoutBoard(input, std::move(seen.pass)).check, 0.0, scenario.duration_s};

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/pass/camera_views.h"
@@ -24,7 +25,7 @@ namespace {
 // The front end over the events as they are simulated; its own time is measured apart.
 BoardObservations fromEvents(const Scenario& scenario, const Session& session, std::size_t k,
                              const CameraIntrinsics& camera, double& busy_s) {
-  BoardTracker tracker(session.boardOf(k), camera.resolution_px, camera, session.options.front_end,
+  BoardTracker tracker(session.boardOf(k), camera.resolution_px, camera, *session.options.front_end,
                        scenario.start_ns);
   simulateEvents(scenario, k, [&](EventSpan events) {
     const Stopwatch stopwatch;

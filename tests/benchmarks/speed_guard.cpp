@@ -8,14 +8,19 @@
 #include "core/base/yaml_node.h"
 #include "core/frontend/board_search.h"
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"
 #include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/rig/cross_validation.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/recording/recording_reader.h"
+#include "core/report/report_options.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_folders.h"
@@ -71,7 +76,7 @@ class Stages {
     test::SimulatedPass simulated = test::simulatePass(kBatch_s, scenario);
     session_ = simulated.session;
     // One thread: waiting for another is no work.
-    session_.options.optimisation.threads = 1;
+    session_.options.optimisation.edit().threads = 1;
     start_ = startCalibration(session_, std::move(simulated.pass), context_);
   }
 
@@ -116,16 +121,16 @@ class Stages {
       searchBoard(history, events_.front().time_ns + nanosecondsFrom(part * kEvents_s), scene, options());
   }
 
-  void initialisation() { initialise(start_.input, session_.options.initialisation, context_); }
+  void initialisation() { initialise(start_.input, *session_.options.initialisation, context_); }
   void batch() {
-    solution_ = optimiseBatch(start_.input, start_.initial.state, session_.options.optimisation, context_);
+    solution_ = optimiseBatch(start_.input, start_.initial.state, *session_.options.optimisation, context_);
   }
   void uncertainty() {
-    estimateUncertainty(start_.input, solution_, session_.options.optimisation, context_);
+    estimateUncertainty(start_.input, solution_, *session_.options.optimisation, context_);
   }
   void halves() {
-    crossValidate(start_.input, solution_.state, session_.options.optimisation,
-                  session_.options.report.cross_validation_block_s, context_);
+    crossValidate(start_.input, solution_.state, *session_.options.optimisation,
+                  session_.options.report->cross_validation_block_s, context_);
   }
   void lens() {
     estimateIntrinsics({lens_.session.board,
@@ -133,11 +138,11 @@ class Stages {
                         lens_.pass.cameras.front(),
                         lens_.truth.cameras.front().intrinsics,
                         {}},
-                       lens_.session.options.intrinsics, context_);
+                       *lens_.session.options.intrinsics, context_);
   }
 
  private:
-  const FrontEndOptions& options() const { return session_.options.front_end; }
+  const FrontEndOptions& options() const { return *session_.options.front_end; }
 
   QTemporaryDir folder_;
   Scenario scenario_;

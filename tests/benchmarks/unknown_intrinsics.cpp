@@ -4,9 +4,11 @@
 // and solved with everything else.
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/simulate/simulation.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "tests/benchmarks/benchmark_program.h"
 
@@ -80,7 +82,7 @@ std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, cons
   runs[kTrue] = calibrate(given, RunContext{});
   runs[kJoint] = calibrate(unknown, RunContext{});
   Session held = unknown;
-  held.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+  held.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
   runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, runs[kJoint].intrinsics);
   return runs;
 }
@@ -127,7 +129,7 @@ int run(int argc, char** argv) {
       scenario.intrinsics_in_session = false;
       const SimulationSummary made = simulate(scenario, folder, {});
       Session session = readSession(made.session);
-      session.options.report.cross_validation = false;
+      session.options.report.edit().cross_validation = false;
       const NamedResult truth = readResultYaml(made.truth);
       const std::array<CalibrationRun, kWays> runs = calibrateEveryWay(session, scenario);
       std::filesystem::remove_all(folder);

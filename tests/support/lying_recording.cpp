@@ -1,6 +1,7 @@
 #include "tests/support/lying_recording.h"
 
 #include "core/recording/recording_writer.h"
+#include "core/report/report_options.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/support/scenario_session.h"
@@ -147,7 +148,7 @@ Session LyingRecording::tell(std::span<const std::uint8_t> lies) const {
   write(std::move(content));
   Session session = sessionFor(scenario_);
   session.recording = folder_ / "lies.bag";
-  session.options.report.cross_validation = false;
+  session.options.report.edit().cross_validation = false;
   return session;
 }
 

@@ -1,6 +1,7 @@
 #include "tests/support/real_recordings.h"
 
 #include "core/base/error.h"
+#include "core/intrinsics/intrinsics_options.h"
 
 #include <QFile>
 #include <QProcess>
@@ -144,7 +145,7 @@ Session dvs128Blinking(const QString& real, int rows, int cols) {
   session.more_recordings.erase(session.more_recordings.begin());
   session.cameras.push_back({"camera", "events", {}, {}});
   session.reference = "camera";
-  session.options.intrinsics.least_views = 8;
+  session.options.intrinsics.edit().least_views = 8;
   return session;
 }
 
@@ -159,7 +160,7 @@ cameras:
   camera: {stream: pictures}
 reference: camera
 )");
-  session.options.intrinsics.least_views = 5;
+  session.options.intrinsics.edit().least_views = 5;
   return session;
 }
 

@@ -1,6 +1,7 @@
 #include "tests/support/scenario_session.h"
 
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
@@ -64,7 +65,7 @@ Session sessionFor(const Scenario& truth) {
 
 RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
   const CameraIntrinsics camera = asSessionSays(scenario).cameras.front().intrinsics;
-  BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
+  BoardTracker tracker(session.board, camera.resolution_px, camera, *session.options.front_end,
                        scenario.start_ns);
   simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
   return passWith(scenario, camera, tracker.finish());

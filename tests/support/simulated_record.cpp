@@ -1,5 +1,6 @@
 #include "tests/support/simulated_record.h"
 
+#include "core/frontend/front_end_options.h"
 #include "core/pipeline/check/camera_motion.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/support/processor_time.h"
@@ -12,7 +13,7 @@ SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptio
   SimulatedRecord seen;
   const SimulatedCamera& camera = scenario.cameras.front();
   CameraMotion motion(camera.intrinsics, options, scenario.start_ns);
-  BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end.bursts);
+  BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end->bursts);
   std::vector<EdgeBurst> found;
   simulateEvents(
       scenario, 0,

@@ -2,6 +2,7 @@
 #include "ui/document/calibration_document.h"
 
 #include "core/base/error.h"
+#include "core/frontend/front_end_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 
@@ -93,17 +94,17 @@ class TestCalibrationDocument : public QObject {
     document.open(evical::ui::test::simulatedSession());
     QSignalSpy changed(&document, &CalibrationDocument::sessionChanged);
     document.setOption("grid.least_circles", "9");
-    QCOMPARE(document.session().options.front_end.grid.least_circles, 9);
+    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
     document.undoStack().undo();
     QCOMPARE(document.session().options, CalibrationOptions{});
     QVERIFY(!document.modified());
     document.undoStack().redo();
-    QCOMPARE(document.session().options.front_end.grid.least_circles, 9);
+    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
     QCOMPARE(changed.count(), 3);
     document.resetOptions();
     QCOMPARE(document.session().options, CalibrationOptions{});
     document.undoStack().undo();
-    QCOMPARE(document.session().options.front_end.grid.least_circles, 9);
+    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
   }
 
   void stepsOfOneOption_areOneUndo() {
@@ -130,13 +131,13 @@ class TestCalibrationDocument : public QObject {
     QVERIFY(!document.modified());
     document.setOption("detection.longest_window_s", "0.15");
     document.setOption("detection.shortest_window_s", "0.1");
-    QCOMPARE(document.session().options.front_end.detection.shortest_window_s, 0.1);
+    QCOMPARE(document.session().options.front_end->detection.shortest_window_s, 0.1);
   }
 
   void sessionWithOptionsThatExcludeEachOther_hasAProblem() {
     Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     QCOMPARE(sessionProblems(session).size(), std::size_t(0));
-    session.options.front_end.tracking.least_polarity_cosine = 0.9;
+    session.options.front_end.edit().tracking.least_polarity_cosine = 0.9;
     const std::vector<SessionProblem> problems = sessionProblems(session);
     QCOMPARE(problems.size(), std::size_t(1));
     QVERIFY2(problems[0].text.contains("tuning.tracking.full_polarity_cosine (0.7)"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames on the detection screen: the picture at the cursor, what is found in it, and why it has no board.
 #include "core/base/time.h"
+#include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
@@ -230,7 +231,7 @@ class TestDetectionFrames : public QObject {
     settleFrame(screen);
     const std::size_t points = screen.analysis()->points().size();
     Session edited = recorded_->session;
-    edited.options.frames.smallest_sigma_px = 1.5;
+    edited.options.frames.edit().smallest_sigma_px = 1.5;
     screen.setSession(edited);
     const auto sigma_px = [&] {
       return std::sqrt(0.5 * screen.analysis()->points().front().covariance_px2.trace());

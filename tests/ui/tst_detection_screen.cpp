@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/base/time.h"
+#include "core/frontend/front_end_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/recorded_windows.h"
@@ -304,7 +305,7 @@ class TestDetectionScreen : public QObject {
     showGoodWindow(screen, *recorded_);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
     Session changed = recorded_->session;
-    changed.options.front_end.grid.least_circles = 500;
+    changed.options.front_end.edit().grid.least_circles = 500;
     screen.setSession(changed);
     QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000 * kSlowdown);
     QVERIFY2(screen.panel().text().contains("Lost at moving circles"), qPrintable(screen.panel().text()));
@@ -422,8 +423,8 @@ class TestDetectionScreen : public QObject {
     screen.setMode(SurfaceMode::Accumulated);
     for (std::size_t k = 0; k < kLayerCount; ++k) screen.setLayerVisible(static_cast<Layer>(k), true);
     Session changed = recorded_->session;
-    changed.options.front_end.grid.ambiguity_margin = 100;
-    changed.options.front_end.tracking.least_inliers = 0.97;
+    changed.options.front_end.edit().grid.ambiguity_margin = 100;
+    changed.options.front_end.edit().tracking.least_inliers = 0.97;
     screen.setSession(changed);
     QTest::qWait(500);
     QVERIFY(save("detection_all_layers"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Events drawn over a frame through a calibration: the way of one pixel, and the picture of a rig.
 #include "core/base/time.h"
+#include "core/frames/frame_options.h"
 #include "core/geometry/camera_model.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
@@ -93,7 +94,7 @@ class TestEventsOverFrame : public QObject {
  private slots:
   void initTestCase() {
     recorded_ = std::make_unique<Recorded>("davis346_frames", 5.0);
-    recorded_->session.options.frames.rate_hz = 20.0;
+    recorded_->session.options.frames.edit().rate_hz = 20.0;
     run_ = std::make_shared<CalibrationRun>(calibrate(recorded_->session, {}));
   }
 

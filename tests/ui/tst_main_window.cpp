@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole story, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export, reopen.
+#include "core/frontend/front_end_options.h"
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"
@@ -130,7 +131,7 @@ class TestMainWindow : public QObject {
     openTheReport(test);
 
     test.window.files().open(session);
-    QCOMPARE(test.document().session().options.front_end.grid.least_circles, 9);
+    QCOMPARE(test.document().session().options.front_end->grid.least_circles, 9);
     QVERIFY(!test.document().last().run);
     QVERIFY(test.window.close());
   }
@@ -400,7 +401,7 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.isWindowModified());
     test.press(Qt::Key_S, Qt::ControlModifier);
     QVERIFY(!test.window.isWindowModified());
-    QCOMPARE(readSession(session.toStdString()).options.front_end.grid.least_circles, 9);
+    QCOMPARE(readSession(session.toStdString()).options.front_end->grid.least_circles, 9);
   }
 
   void exportTheResult(WindowFixture& test) {

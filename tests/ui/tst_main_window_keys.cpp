@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys work wherever the focus is after what people do with the mouse.
+#include "core/optimisation/optimisation_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
@@ -120,13 +121,13 @@ class TestMainWindowKeys : public QObject {
     field->selectAll();
     QTest::keyClicks(field, "0.07");
     QTest::keyClick(field, Qt::Key_Return);
-    QCOMPARE(test.document().session().options.optimisation.needed_rotation_deg, 0.07);
+    QCOMPARE(test.document().session().options.optimisation->needed_rotation_deg, 0.07);
     QVERIFY(field->hasFocus());
     pressKey(Qt::Key_Z, Qt::ControlModifier);
     QCOMPARE(field->text(), before);
     QVERIFY(!test.document().undoStack().canUndo());
     pressKey(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
-    QCOMPARE(test.document().session().options.optimisation.needed_rotation_deg, 0.07);
+    QCOMPARE(test.document().session().options.optimisation->needed_rotation_deg, 0.07);
     QCOMPARE(field->text(), QString("0.07"));
   }
 

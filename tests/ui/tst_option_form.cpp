@@ -2,6 +2,8 @@
 #include "ui/forms/option_form.h"
 
 #include "core/base/error.h"
+#include "core/frontend/front_end_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/calibration_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
@@ -85,15 +87,15 @@ class TestOptionForm : public QObject {
     OptionFormFixture test;
     test.type("grid.least_circles", "9");
     QCOMPARE(test.edited.count(), 1);
-    QCOMPARE(test.options.front_end.grid.least_circles, 9);
+    QCOMPARE(test.options.front_end->grid.least_circles, 9);
     QVERIFY(test.form.editor("grid.least_circles")->isChanged());
   }
 
   void numberOutOfRange_isRefusedNextToTheField_untilItIsMended() {
     OptionFormFixture test;
-    const int before = test.options.front_end.grid.least_circles;
+    const int before = test.options.front_end->grid.least_circles;
     test.type("grid.least_circles", "-3");
-    QCOMPARE(test.options.front_end.grid.least_circles, before);
+    QCOMPARE(test.options.front_end->grid.least_circles, before);
     QVERIFY(test.allText("grid.least_circles").contains("below the least"));
     QVERIFY(test.allText("grid.least_circles").contains(QString("It stays at %1").arg(before)));
     QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
@@ -102,21 +104,21 @@ class TestOptionForm : public QObject {
     QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
     test.type("grid.least_circles", "9");
     QVERIFY(!test.allText("grid.least_circles").contains("below the least"));
-    QCOMPARE(test.options.front_end.grid.least_circles, 9);
+    QCOMPARE(test.options.front_end->grid.least_circles, 9);
   }
 
   void slider_turnsTheNumber_andIsTurnedByIt() {
     OptionFormFixture test;
     auto* const slider = test.form.editor("detection.window_travel_px")->findChild<OptionSlider*>();
     slider->setValue(slider->maximum());
-    QCOMPARE(test.options.front_end.detection.window_travel_px, 20.0);
+    QCOMPARE(test.options.front_end->detection.window_travel_px, 20.0);
     QCOMPARE(test.field("detection.window_travel_px")->text(), QString("20"));
     slider->setValue(slider->minimum());
-    QCOMPARE(test.options.front_end.detection.window_travel_px, 0.5);
+    QCOMPARE(test.options.front_end->detection.window_travel_px, 0.5);
     const int before = slider->value();
     test.type("detection.window_travel_px", "10");
     QVERIFY(slider->value() > before);
-    QCOMPARE(test.options.front_end.detection.window_travel_px, 10.0);
+    QCOMPARE(test.options.front_end->detection.window_travel_px, 10.0);
   }
 
   void slider_ofWholeNumbersHasNoOthers_andOfSeveralPowersStepsInPowers() {
@@ -126,7 +128,7 @@ class TestOptionForm : public QObject {
     auto* const powers =
         test.form.editor("optimisation.priors.smooth_rotation_rad_s2")->findChild<OptionSlider*>();
     powers->setValue(powers->maximum() / 2);  // the geometric middle of 0.1 and 1 000 000
-    QVERIFY(std::abs(test.options.optimisation.smooth_rotation_rad_s2 / 316.0 - 1.0) < 0.01);
+    QVERIFY(std::abs(test.options.optimisation->smooth_rotation_rad_s2 / 316.0 - 1.0) < 0.01);
     for (const OptionRow& row : documentedOptions()) {
       if (const auto* const slider =
               test.form.editor(QString::fromStdString(row.name))->findChild<OptionSlider*>())
@@ -178,7 +180,7 @@ class TestOptionForm : public QObject {
     test.type(upper, "0.15");  // taken, as the value that was refused doesn't count
     for (const QString& name : {lower, upper}) QVERIFY2(!test.allText(name).contains(said), qPrintable(name));
     test.type(lower, "0.1");
-    QCOMPARE(test.options.front_end.detection.shortest_window_s, 0.1);
+    QCOMPARE(test.options.front_end->detection.shortest_window_s, 0.1);
     QVERIFY(!test.allText(lower).contains(said));
     test.type(upper, "0.05");
     QVERIFY(test.allText(lower).contains(said));
@@ -196,7 +198,7 @@ class TestOptionForm : public QObject {
     test.type("detection.shortest_window_s", "0.1");
     QTest::mouseClick(test.form.editor("detection.longest_window_s")->findChild<QToolButton*>(),
                       Qt::LeftButton);
-    QCOMPARE(test.options.front_end.detection.longest_window_s, 0.15);
+    QCOMPARE(test.options.front_end->detection.longest_window_s, 0.15);
     for (const QString name : {"detection.shortest_window_s", "detection.longest_window_s"})
       QVERIFY2(test.allText(name).contains("is above"), qPrintable(name));
   }
@@ -231,11 +233,11 @@ class TestOptionForm : public QObject {
 
   void reset_bringsTheDefaultBack() {
     OptionFormFixture test;
-    const int before = test.options.front_end.grid.least_circles;
+    const int before = test.options.front_end->grid.least_circles;
     test.type("grid.least_circles", "9");
     OptionEditor* const editor = test.form.editor("grid.least_circles");
     QTest::mouseClick(editor->findChild<QToolButton*>(), Qt::LeftButton);
-    QCOMPARE(test.options.front_end.grid.least_circles, before);
+    QCOMPARE(test.options.front_end->grid.least_circles, before);
     QVERIFY(!editor->isChanged());
     QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
   }

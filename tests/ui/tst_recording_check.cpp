@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The recording is looked through by itself after it is opened: what the page says then, and that nothing waits for it.
+#include "core/optimisation/optimisation_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
@@ -130,7 +131,7 @@ class TestRecordingCheck : public QObject {
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
     const double detect_s = test.check.checked()->detected->pass.detect_s;
     Session stricter = test.document().session();
-    stricter.options.optimisation.needed_translation_mm = 0.01;
+    stricter.options.optimisation.edit().needed_translation_mm = 0.01;
     test.document().edit(stricter, "Need more");
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
     QCOMPARE(test.check.checked()->detected->pass.detect_s, detect_s);

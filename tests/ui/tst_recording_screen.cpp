@@ -3,6 +3,7 @@
 
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session_guess.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
@@ -217,12 +218,12 @@ class TestRecordingScreen : public QObject {
     spacings->setValue(8);
     QCOMPARE(test.session.board.spacing_m, 0.352 / 8);
     RecordingScreenFixture::type(sigma, "0.2");
-    QCOMPARE(test.session.options.optimisation.board_spacing_sigma, 0.0002 / 0.352);
+    QCOMPARE(test.session.options.optimisation->board_spacing_sigma, 0.0002 / 0.352);
     QCOMPARE(test.edits.size(), 4);
     measured->click();
     QVERIFY(!test.session.measured && spacing->isEnabled());
     QCOMPARE(test.session.board.spacing_m, 0.352 / 8);
-    QCOMPARE(test.session.options.optimisation.board_spacing_sigma, PriorOptions().board_spacing_sigma);
+    QCOMPARE(test.session.options.optimisation->board_spacing_sigma, PriorOptions().board_spacing_sigma);
   }
 
   void timeRange_isEdited_andEmptyMeansAll() {

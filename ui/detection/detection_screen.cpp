@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/detection_screen.h"
 
+#include "core/frames/frame_options.h"
+#include "core/frontend/front_end_options.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/second_camera.h"
@@ -93,8 +95,8 @@ void DetectionScreen::setSession(const Session& session) {
   const bool same = session_ && sameEvents(*session_, session) &&
                     !(lens_may_help && givenLenses(*session_) != givenLenses(session));
   session_ = session;
-  options_ = session.options.front_end;
-  engine_->setOptions(options_, session.options.frames);
+  options_ = *session.options.front_end;
+  engine_->setOptions(options_, *session.options.frames);
   timeline_->setUsedRange(session.time_range_s);
   if (same) {
     engine_->setSight(sightOf(camera_));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two cameras of a rig in one sight: of the two kinds, or of the same.
+#include "core/optimisation/optimisation_options.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
@@ -132,7 +133,7 @@ std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, dou
   if (!run || !hasPoses(*run) || !shown(Layer::Reprojection)) return {};
   return reprojectBoard(run->result.state, camera, run_session_.seenBoard(camera), time_s,
                         viewAt(run->pass.cameras, camera, time_s),
-                        run_session_.options.optimisation.slow_edge_speed_px_s);
+                        run_session_.options.optimisation->slow_edge_speed_px_s);
 }
 
 std::shared_ptr<const BoardObservations> DetectionScreen::seenBy(std::size_t camera) const {

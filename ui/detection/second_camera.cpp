@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/second_camera.h"
 
+#include "core/frames/frame_options.h"
+#include "core/frontend/front_end_options.h"
 #include "ui/detection/event_view.h"
 
 #include <QPainter>
@@ -42,7 +44,7 @@ void SecondCamera::close() {
 void SecondCamera::know(const Session& session, const Sight& sight,
                         std::shared_ptr<const BoardObservations> seen) {
   if (!engine_) return;
-  engine_->setOptions(session.options.front_end, session.options.frames);
+  engine_->setOptions(*session.options.front_end, *session.options.frames);
   engine_->setSight(sight);
   engine_->setObservations(std::move(seen));
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/pass/session_recording.h"
 #include "ui/jobs/mailbox.h"
 
@@ -113,7 +114,7 @@ bool IntrinsicsJob::start(const Session& session, std::size_t camera) {
     PassNames names(context.progress);
     live->found = find(session, camera, RunContext{names, context.stop, live.get()});
   };
-  if (!runner_.start(tr("Calibrate the camera"), lensStages(session.options.intrinsics.most_passes), job)) {
+  if (!runner_.start(tr("Calibrate the camera"), lensStages(session.options.intrinsics->most_passes), job)) {
     live_.reset();
     return false;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/signals_screen.h"
 
+#include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
 #include "ui/jobs/latest_job.h"
@@ -178,7 +179,7 @@ void SignalsScreen::compute() {
     if (lens.seen_with) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
                                      session.boardOf(camera), state.cameras[camera], samples, state.imus[imu],
-                                     run->pass.start_ns, session.options.initialisation, context);
+                                     run->pass.start_ns, *session.options.initialisation, context);
     }
     return [this, drawing] { draw(*drawing); };
   });

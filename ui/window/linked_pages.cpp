@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/linked_pages.h"
 
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
@@ -105,7 +106,7 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
 }
 
 NeededAccuracy neededBy(const Session& session) {
-  const OptimisationOptions& options = session.options.optimisation;
+  const OptimisationOptions& options = *session.options.optimisation;
   return {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms};
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/data/calibration_stage.h"
+#include "core/frontend/front_end_options.h"
 #include "core/pipeline/check/camera_motion.h"
 #include "core/pipeline/pass/event_intake.h"
 #include "core/pipeline/pass/recording_pass.h"
@@ -41,7 +42,7 @@ MotionIntake intakeOf(std::size_t camera, const Session& session, const SessionR
   const Resolution resolution_px = recording.resolution_px(camera);
   const CameraIntrinsics& lens = *session.sensor(camera).intrinsics;
   intake.events = std::make_unique<EventIntake>(camera, session.cameras[camera], resolution_px,
-                                                session.options.front_end.bursts, EventUse::Bursts);
+                                                session.options.front_end->bursts, EventUse::Bursts);
   intake.motion = std::make_unique<CameraMotion>(lens, session.options, recording.start_ns());
   return intake;
 }

@@ -1,6 +1,7 @@
 #include "core/pipeline/check/check_calibration.h"
 
 #include "core/base/error.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_verdict.h"
 #include "core/pipeline/check/check_without_board.h"
 #include "core/pipeline/compare/compared_quantities.h"
@@ -8,6 +9,7 @@
 #include "core/pipeline/rig/recording_assessment.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/session/check_options.h"
+#include "core/report/report_options.h"
 
 #include <fmt/format.h>
 
@@ -20,9 +22,9 @@ namespace {
 // The session as a calibration takes it; that a short recording leaves sigmas large is judged here, not there.
 Session freeSession(const CheckInput& input) {
   Session session = input.session;
-  session.options.optimisation.judge_sigmas = false;
-  session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Free;
-  session.options.report.cross_validation = false;
+  session.options.optimisation.edit().judge_sigmas = false;
+  session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Free;
+  session.options.report.edit().cross_validation = false;
   return session;
 }
 

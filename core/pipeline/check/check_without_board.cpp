@@ -8,6 +8,7 @@
 #include "core/egomotion/rotation_alignment.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_verdict.h"
 #include "core/pipeline/compare/compared_quantities.h"
 #include "core/pipeline/session/check_options.h"
@@ -139,7 +140,7 @@ class BoardlessCheck {
     const RotationAlignment alignment = alignRotation(
         pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
         {before.reference_from_camera.rotation, before.time_offset_s}, *input_.session.options.egomotion,
-        input_.session.options.optimisation.threads, context_);
+        input_.session.options.optimisation->threads, context_);
     const CheckOptions& limits = *input_.session.options.check;
     const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));

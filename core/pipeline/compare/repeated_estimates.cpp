@@ -3,6 +3,7 @@
 #include "core/data/pixel_delay.h"
 #include "core/geometry/gravity_tilts.h"
 #include "core/numerics/dense.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/calibration_options.h"
 
 #include <algorithm>
@@ -225,7 +226,7 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
   joint.uncertainty.weakest.clear();
   for (std::size_t k = 0; k < session_.cameras.size(); ++k) {
     const std::size_t sensor = session_.sensorOf(k);
-    if (sensor == k || !session_.options.optimisation.share_sensors) continue;
+    if (sensor == k || !session_.options.optimisation->share_sensors) continue;
     joint.state.cameras[k].reference_from_camera = joint.state.cameras[sensor].reference_from_camera;
     joint.state.cameras[k].lens.solved = joint.state.cameras[sensor].lens.solved;
     joint.uncertainty.cameras[k].rotation_std_rad = joint.uncertainty.cameras[sensor].rotation_std_rad;
@@ -248,7 +249,7 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
   if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||
       !holdsPixelDelay(recorded_[recording].cameras, quantity.first.sensor, !session_.imus.empty()))
     return sigma;
-  return std::sqrt(withoutPixelDelay_s2(sigma * sigma, 1e-3 * session_.options.optimisation.pixel_delay_ms));
+  return std::sqrt(withoutPixelDelay_s2(sigma * sigma, 1e-3 * session_.options.optimisation->pixel_delay_ms));
 }
 
 void RepeatedEstimates::fillStatistics(std::span<const std::size_t> chosen, const CalibrationResult& joint,

@@ -5,6 +5,7 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/lens_prior.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/weak_priors.h"
 #include "core/pipeline/compare/compared_quantities.h"
 
@@ -82,7 +83,7 @@ class Listing {
     forEachQuantity(kCameraQuantities, [&](const auto& row) {
       add(row, camera.name, k, owner, state_.cameras.at(k));
       if (row.info.id == QuantityId::Intrinsics)
-        setLensPrior(session_.options.optimisation, out_.prior_means.cameras[k].lens, out_.all.back());
+        setLensPrior(*session_.options.optimisation, out_.prior_means.cameras[k].lens, out_.all.back());
       else
         setPrior(row, owner, camera.prior, out_.prior_means.cameras[k]);
     });
@@ -97,7 +98,7 @@ class Listing {
 
   void addBoard(std::size_t k) {
     const SessionBoard* const further = k == 0 ? nullptr : &session_.further_boards[k - 1];
-    const double spacing_sigma = session_.options.optimisation.board_spacing_sigma;
+    const double spacing_sigma = session_.options.optimisation->board_spacing_sigma;
     const PriorOwner owner{0, further == nullptr ? &session_.board : &further->board,
                            further == nullptr ? spacing_sigma : further->spacing_std.value_or(spacing_sigma)};
     forEachQuantity(kBoardQuantities, [&](const auto& row) {
@@ -129,7 +130,7 @@ class Listing {
         quantity.prior_information = informationOf(quantityNumbers(*known->sigma));
         return;
       }
-    const std::optional<double> sigma = weakSigma(row.info, session_.options.optimisation, owner);
+    const std::optional<double> sigma = weakSigma(row.info, *session_.options.optimisation, owner);
     if (!sigma) return;
     const State none;
     row.value(mean) = row.value(none);

@@ -5,8 +5,10 @@
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
+#include "core/frontend/front_end_options.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/lens/lens_pilot.h"
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/board_size_check.h"
@@ -52,9 +54,9 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
   try {
     return estimateIntrinsics(
         {alone.board, pass.resolutions_px.front(), observations, pass.lenses.front().seen_with, start},
-        alone.options.intrinsics, context, &story);
+        *alone.options.intrinsics, context, &story);
   } catch (const CalibrationError&) {
-    checkBoardSize(observations, alone.board, alone.options.front_end.extent);
+    checkBoardSize(observations, alone.board, alone.options.front_end->extent);
     throw;
   }
 }
@@ -128,7 +130,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   lens.seen_with = lookThroughPlainLenses(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
-  for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
+  for (int pass = 1; pass <= alone.options.intrinsics->most_passes; ++pass) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
     run.pass = readAndDetect(alone, {lens}, context);
     if (run.pass.cameras.front().views.empty())
@@ -148,7 +150,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
     if (!moved) continue;
     context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,
                                                       run.result.views_found, moved->rms_px));
-    if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;
+    if (kRefitShare * moved->rms_px < alone.options.intrinsics->settled_px) break;
   }
   return run;
 }
@@ -160,7 +162,7 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
   const Session alone = cameraAlone(session, camera);
   const bool events = SessionRecording(alone).camera(0).type == StreamType::Events && !alone.board_blinks;
   IntrinsicsRun run = events ? fromEvents(alone, context) : fromSensorPixels(alone, context);
-  checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
+  checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end->extent);
   run.result.elapsed_s = stopwatch.elapsed_s();
   return run;
 }

@@ -2,7 +2,9 @@
 
 #include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/pass/session_recording.h"
 
 #include <fmt/format.h>
@@ -57,7 +59,7 @@ class Pilot {
   Pilot(const Session& session, const RunContext& context)
       : session_(session),
         context_(context),
-        options_(session.options.intrinsics),
+        options_(*session.options.intrinsics),
         length_ns_(nanosecondsFrom(options_.first_look_length_s)),
         period_ns_(nanosecondsFrom(options_.first_look_period_s)),
         recording_(session),
@@ -105,7 +107,7 @@ class Pilot {
   void lookAtSlice() {
     if (slice_.empty() || enough()) return;
     std::vector<EdgeBurst> bursts;
-    BurstExtractor extractor(resolution_px_, session_.options.front_end.bursts);
+    BurstExtractor extractor(resolution_px_, session_.options.front_end->bursts);
     extractor.add(slice_, bursts);
     extractor.finish(bursts);
     slice_.clear();
@@ -145,7 +147,7 @@ class Pilot {
   Look through(const CameraIntrinsics& lens, const std::vector<EdgeBurst>& bursts) const {
     context_.throwIfStopped();
     const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
-    FrontEndOptions options = session_.options.front_end;
+    FrontEndOptions options = *session_.options.front_end;
     options.detection.search_interval_s = options_.first_look_length_s;  // once
     BoardTracker tracker(session_.board, resolution_px_, camera, options, recording_.start_ns());
     tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched * options_.first_look_length_s),

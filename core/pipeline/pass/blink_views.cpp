@@ -1,6 +1,8 @@
 #include "core/pipeline/pass/blink_views.h"
 
 #include "core/base/time.h"
+#include "core/frames/blink_options.h"
+#include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/session_recording.h"
@@ -16,8 +18,8 @@ BlinkViews::BlinkViews(const CameraBatch& first, const ViewRequest& request)
     : camera_(request.session.cameras[first.camera]),
       context_(request.context),
       lens_(request.lens.seen_with),
-      tracker_(camera_.name, request.session.board, *first.opened_px, request.session.options.frames,
-               request.session.options.blink, first.start_ns) {}
+      tracker_(camera_.name, request.session.board, *first.opened_px, *request.session.options.frames,
+               *request.session.options.blink, first.start_ns) {}
 
 BoardObservations BlinkViews::finish(std::vector<RecordingFault>& faults) {
   const BoardObservations observations = tracker_.finish();
@@ -56,8 +58,8 @@ std::optional<CalibrationError> unexpectedBlink(const Session& session, std::siz
   if (recording.camera(camera).type != StreamType::Events) return std::nullopt;
   const Resolution size_px = recording.resolution_px(camera);
   const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
-  const double end_s = begin_s + kLooks * session.options.blink.look_s;
-  BlinkNotice notice(size_px, session.options.blink);
+  const double end_s = begin_s + kLooks * session.options.blink->look_s;
+  BlinkNotice notice(size_px, *session.options.blink);
   SensorPacket packet;
   std::int64_t last_ns = recording.start_ns();
   for (bool more = true; more && !notice.blink() && recording.read(packet);) {

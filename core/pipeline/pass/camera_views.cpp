@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/data/calibration_observer.h"
 #include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/frame_views.h"
 #include "core/pipeline/pass/point_views.h"
@@ -14,7 +15,7 @@ class EventViews final : public CameraViews {
  public:
   EventViews(const CameraBatch& first, const ViewRequest& request)
       : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.seen_with,
-                 request.session.options.front_end, first.start_ns) {
+                 *request.session.options.front_end, first.start_ns) {
     tracker_.stopWith(request.context.stop);
     if (request.context.observer != nullptr)
       tracker_.observeWith(request.context.observer->windowObserver(first.camera, tracker_));

@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/pipeline/session/given_points.h"
 
 #include <fmt/format.h>
@@ -205,7 +206,7 @@ void checkOverlap(const Session& session, const RecordingPass& pass) {
     first_s = std::min(first_s, camera.views.front().time_s);
     last_s = std::max(last_s, camera.views.back().time_s);
   }
-  const double apart_s = session.options.initialisation.time_offset_search_s;
+  const double apart_s = session.options.initialisation->time_offset_search_s;
   for (const ImuData& imu : pass.imus) {
     const double begin_s = secondsSince(pass.start_ns, imu.samples.front().time_ns),
                  end_s = secondsSince(pass.start_ns, imu.samples.back().time_ns);

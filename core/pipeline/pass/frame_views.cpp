@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ FrameViews::FrameViews(const CameraBatch& first, const ViewRequest& request)
       context_(request.context),
       start_ns_(first.start_ns),
       lens_(request.lens.seen_with),
-      tracker_(camera_.name, request.session.boardOf(first.camera), request.session.options.frames),
+      tracker_(camera_.name, request.session.boardOf(first.camera), *request.session.options.frames),
       resolution_px_(*first.opened_px) {
   so_far_.kind = CameraKind::Frames;
 }

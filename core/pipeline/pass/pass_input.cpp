@@ -1,5 +1,8 @@
 #include "core/pipeline/pass/pass_input.h"
 
+#include "core/initialisation/initialisation_options.h"
+#include "core/optimisation/optimisation_options.h"
+
 #include <cstddef>
 #include <utility>
 
@@ -35,8 +38,8 @@ CalibrationInput takeInput(const Session& session, RecordingPass& pass) {
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
-  input.gravity_norm_m_s2 = session.options.initialisation.gravity_m_s2;
-  if (!session.options.optimisation.free_time_offsets) holdTimeOffsets(input);
+  input.gravity_norm_m_s2 = session.options.initialisation->gravity_m_s2;
+  if (!session.options.optimisation->free_time_offsets) holdTimeOffsets(input);
   return input;
 }
 

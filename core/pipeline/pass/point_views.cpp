@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ PointViews::PointViews(const CameraBatch& first, const ViewRequest& request)
       stream_(request.session.cameras[first.camera].stream),
       resolution_px_(*first.opened_px),
       start_ns_(first.start_ns),
-      unsaid_sigma_px_(request.session.options.frames.point_sigma_px),
+      unsaid_sigma_px_(request.session.options.frames->point_sigma_px),
       lens_(request.lens.seen_with) {
   so_far_.kind = CameraKind::Points;
 }

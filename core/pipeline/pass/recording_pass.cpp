@@ -5,6 +5,7 @@
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/second_clock.h"
+#include "core/frontend/front_end_options.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/bounded_queue.h"
 #include "core/pipeline/pass/camera_views.h"
@@ -107,7 +108,7 @@ class ReadingPass {
       intake.kind = recording_.kind(camera);
       if (intake.kind == CameraKind::Events)
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
-                              session.options.front_end.bursts,
+                              session.options.front_end->bursts,
                               session.board_blinks ? EventUse::AsTheyAre : EventUse::Bursts);
     }
   }

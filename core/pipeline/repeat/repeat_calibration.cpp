@@ -5,12 +5,14 @@
 #include "core/data/doubt.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/chi_squared.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/compare/compared_quantities.h"
 #include "core/pipeline/compare/repeated_estimates.h"
 #include "core/pipeline/rig/prefixed_progress.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/session/check_options.h"
 #include "core/report/html/html_text.h"
+#include "core/report/report_options.h"
 
 #include <fmt/format.h>
 
@@ -273,7 +275,7 @@ class Repeat {
 
   // What a calibration is for, and all recordings together do not tell well enough.
   std::string sigmaDoubt(const CalibrationResult& result) const {
-    const OptimisationOptions& needs = input_.sessions.front().options.optimisation;
+    const OptimisationOptions& needs = *input_.sessions.front().options.optimisation;
     const auto doubt = [](const std::string& what, double sigma, double needed, const char* unit) {
       return sigma > needed ? fmt::format("{} is known to {} {} only, {} {} are needed", what,
                                           html::significant(sigma, 2), unit, html::plain(needed), unit)
@@ -343,8 +345,8 @@ std::string partOfRepeat(const RepeatInput& input, std::size_t recording) {
 }
 
 Session sessionOfRepeat(Session session) {
-  session.options.optimisation.judge_sigmas = false;
-  session.options.report.cross_validation = false;
+  session.options.optimisation.edit().judge_sigmas = false;
+  session.options.report.edit().cross_validation = false;
   return session;
 }
 

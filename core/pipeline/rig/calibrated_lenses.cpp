@@ -2,6 +2,7 @@
 
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/lens/joint_intrinsics.h"
 
 #include <fmt/format.h>
@@ -29,10 +30,10 @@ void tellLenses(const Session& session, CalibrationRun& run) {
     const std::string name = "intrinsics of " + session.cameras[k].name;
     const CameraLens& lens = run.result.state.cameras[k].lens;
     if (k < run.intrinsics.size() && run.intrinsics[k]) {
-      const IntrinsicsResult found = lens.solved
-                                         ? jointIntrinsics(*run.intrinsics[k], k, *lens.solved,
-                                                           run.result.uncertainty, session.options.intrinsics)
-                                         : *run.intrinsics[k];
+      const IntrinsicsResult found =
+          lens.solved ? jointIntrinsics(*run.intrinsics[k], k, *lens.solved, run.result.uncertainty,
+                                        *session.options.intrinsics)
+                      : *run.intrinsics[k];
       notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
                                   name, found.views_used, found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));

@@ -2,7 +2,9 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/frontend/front_end_options.h"
 #include "core/initialisation/agreement_check.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/numerics/robust.h"
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/board_size_check.h"
@@ -106,7 +108,7 @@ double durationOf(const ImuData& imu) {
 }
 
 void checkDuration(const Session& session, const RecordingPass& pass) {
-  const double least_s = session.options.initialisation.least_overlap_s;
+  const double least_s = session.options.initialisation->least_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
     if (duration_s >= least_s) return;
     throw withClockRate(
@@ -202,7 +204,7 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
     if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);
     checkStampsApart(imu);
     checkAxesAlive(imu);
-    checkUnits(imu, session.options.initialisation);
+    checkUnits(imu, *session.options.initialisation);
     for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
   }
   for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
@@ -218,7 +220,7 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
       if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
         throw CalibrationError(*blink);
     checkBoardSeen(camera, session.boardOf(k));
-    checkBoardSize(camera, session.boardOf(k), session.options.front_end.extent);
+    checkBoardSize(camera, session.boardOf(k), session.options.front_end->extent);
   }
 }
 

@@ -7,9 +7,11 @@
 #include "core/data/calibration_stage.h"
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/circle_errors.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
@@ -23,6 +25,7 @@
 #include "core/pipeline/rig/detected_recording.h"
 #include "core/pipeline/rig/misfit.h"
 #include "core/pipeline/session/session_keys.h"
+#include "core/report/report_options.h"
 
 #include <fmt/format.h>
 
@@ -37,8 +40,8 @@ namespace {
 // A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
 void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
                       CalibrationResult& result) {
-  result.cross_validation = crossValidate(input, result.state, session.options.optimisation,
-                                          session.options.report.cross_validation_block_s, context);
+  result.cross_validation = crossValidate(input, result.state, *session.options.optimisation,
+                                          session.options.report->cross_validation_block_s, context);
   const CrossValidation& validation = *result.cross_validation;
   context.progress.log(
       LogLevel::Info,
@@ -125,7 +128,7 @@ class Calibration {
   void runFrom(CalibrationStage first) {
     for (const StageWork& each : kWork) {
       if (each.stage < first) continue;
-      if (each.stage == CalibrationStage::CrossValidate && !session_.options.report.cross_validation)
+      if (each.stage == CalibrationStage::CrossValidate && !session_.options.report->cross_validation)
         continue;
       const StageRow& row = rowOf(each.stage);
       context_.progress.stageStarted(row.name);
@@ -159,7 +162,7 @@ class Calibration {
 
   void initialiseState() {
     try {
-      initial_ = initialise(input_, session_.options.initialisation, context_);
+      initial_ = initialise(input_, *session_.options.initialisation, context_);
     } catch (const CalibrationError& error) {
       if (input_.cameras.empty()) throw;
       throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
@@ -186,13 +189,13 @@ class Calibration {
           doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
     }
     if (doubt.empty()) return;
-    initial_ = initialise(input_, session_.options.initialisation, context_);
+    initial_ = initialise(input_, *session_.options.initialisation, context_);
     initial_.warnings.push_back(doubt);
     clock_doubt_ = doubt;
   }
 
   void optimise() {
-    const OptimisationOptions& options = session_.options.optimisation;
+    const OptimisationOptions& options = *session_.options.optimisation;
     CalibrationResult& result = run_.result;
     BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
     giveBackFreeMemory();
@@ -262,7 +265,7 @@ class Calibration {
   // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
   // much that is not modelled looks like it, a bent board, too.
   void judge(const BatchSolution& solution, const Doubt& held, const Doubt& change) {
-    const OptimisationOptions& options = session_.options.optimisation;
+    const OptimisationOptions& options = *session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
     if (misfit.doubt.empty() && held.text.empty() && change.text.empty()) return;
     Doubt cause = change;
@@ -281,7 +284,7 @@ class Calibration {
 
   void compareHalves() {
     validateByHalves(session_, input_, context_, run_.result);
-    const std::string doubt = doubtOfHalves(*run_.result.cross_validation, session_.options.optimisation);
+    const std::string doubt = doubtOfHalves(*run_.result.cross_validation, *session_.options.optimisation);
     if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result, "halves");
   }
 

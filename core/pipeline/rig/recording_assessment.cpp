@@ -1,9 +1,11 @@
 #include "core/pipeline/rig/recording_assessment.h"
 
 #include "core/base/error.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/pipeline/rig/assessed_motion.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -105,7 +107,7 @@ class Assessment {
   }
 
   void assessDuration() {
-    const double least_s = session_.options.initialisation.least_overlap_s;
+    const double least_s = session_.options.initialisation->least_overlap_s;
     double duration_s = 0.0;
     for (const BoardObservations& camera : pass_.cameras)
       if (!camera.windows.empty())
@@ -197,7 +199,7 @@ class Assessment {
 
   // The estimator's own covariance, at a state that is near the solution's.
   void expectSigmas(const CalibrationStart& start) {
-    const OptimisationOptions& options = session_.options.optimisation;
+    const OptimisationOptions& options = *session_.options.optimisation;
     const RunContext unobserved = context_.unobserved();
     const BatchSolution near =
         optimiseBatch(start.input, start.initial.state, shortened(options), unobserved);
@@ -213,7 +215,7 @@ class Assessment {
   }
 
   void judge(const ExpectedSigmas& sigmas, const std::string& weakest) {
-    const OptimisationOptions& options = session_.options.optimisation;
+    const OptimisationOptions& options = *session_.options.optimisation;
     const auto say = [&](AssessedThing thing, double sigma, double needed, const char* unit,
                          const char* remedy) {
       // What is no number is not known at all.

@@ -5,6 +5,7 @@
 #include "core/base/files_together.h"
 #include "core/base/progress.h"
 #include "core/export/export_target.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/saved_detections.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/bias_csv.h"
@@ -36,7 +37,7 @@ std::vector<SeenBoard> seenBoards(const Session& session) {
 std::vector<FileContent> reportOf(const Session& session, const NamedResult& named, const RecordingPass& pass,
                                   std::span<const std::optional<IntrinsicsResult>> intrinsics,
                                   const CalibrationCheck* check) {
-  const OptimisationOptions& options = session.options.optimisation;
+  const OptimisationOptions& options = *session.options.optimisation;
   const ReportData data{
       named,
       session.recording.filename().string(),

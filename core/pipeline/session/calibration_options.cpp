@@ -2,9 +2,16 @@
 
 #include "core/base/option_table.h"
 #include "core/egomotion/egomotion_options.h"
+#include "core/frames/blink_options.h"
+#include "core/frames/frame_options.h"
 #include "core/frontend/edge_slopes.h"
+#include "core/frontend/front_end_options.h"
+#include "core/initialisation/initialisation_options.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/maintenance/maintenance_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/check_options.h"
+#include "core/report/report_options.h"
 
 #include <fmt/format.h>
 
@@ -14,26 +21,27 @@
 namespace evical {
 namespace {
 
+// The options of a group, const where all are.
+template <class Shared>
+auto& optionsOf(Shared& shared) {
+  if constexpr (std::is_const_v<Shared>)
+    return *shared;
+  else
+    return shared.edit();
+}
+
 // One group of the batch's options, const where these are.
 template <class Part, class Options>
 auto& partOf(Options& options) {
   return static_cast<std::conditional_t<std::is_const_v<Options>, const Part, Part>&>(options);
 }
 
-// Visits a copy of shared options and stores it if the visitor changed it.
-template <class Shared, class Visitor>
-void visitShared(const char* name, Applies applies, const char* help, Shared& shared, Visitor&& visit) {
-  auto options = *shared;
-  visit(name, applies, help, options);
-  if constexpr (!std::is_const_v<Shared>)
-    if (options != *shared) shared = options;
-}
-
 // The one list of groups: visit(name, what all of it needs, help, options of the group).
 template <class Options, class Visitor>
 void forEachGroup(Options& all, Visitor&& visit) {
   using enum Applies;
-  auto& front_end = all.front_end;
+  auto& front_end = optionsOf(all.front_end);
+  auto& batch = optionsOf(all.optimisation);
   visit("detection", WithEvents, "The front end as a whole", front_end.detection);
   visit("bursts", WithEvents, "Edge timing: events of one edge at one pixel", front_end.bursts);
   visit("ring_vote", WithRingVotes, "Circle candidates", front_end.ring_vote);
@@ -44,28 +52,30 @@ void forEachGroup(Options& all, Visitor&& visit) {
         front_end.tracking);
   visit("extent", WithEvents, "Does the board have the rows and columns that the session says?",
         front_end.extent);
-  visit("frames", WithFrames, "Frame cameras: how their pictures are searched for the board", all.frames);
+  visit("frames", WithFrames, "Frame cameras: how their pictures are searched for the board",
+        optionsOf(all.frames));
   visit("blink", WithBlinkingBoard,
-        "Blinking boards before event cameras: how the blink is noticed and the flashes added up", all.blink);
-  visit("intrinsics", WithUnknownLens, "Camera intrinsics, where the session gives none", all.intrinsics);
-  visit("initialisation", Always, "From single views to a first trajectory", all.initialisation);
+        "Blinking boards before event cameras: how the blink is noticed and the flashes added up",
+        optionsOf(all.blink));
+  visit("intrinsics", WithUnknownLens, "Camera intrinsics, where the session gives none",
+        optionsOf(all.intrinsics));
+  visit("initialisation", Always, "From single views to a first trajectory", optionsOf(all.initialisation));
   visit("optimisation.model", Always, "Batch optimisation: what is estimated, and how measurements are taken",
-        partOf<ModelOptions>(all.optimisation));
+        partOf<ModelOptions>(batch));
   visit("optimisation.priors", Always,
         "Batch optimisation: how weakly what a recording may leave open is held",
-        partOf<PriorOptions>(all.optimisation));
-  visit("optimisation.solver", Always, "Batch optimisation: how it is solved",
-        partOf<SolverOptions>(all.optimisation));
+        partOf<PriorOptions>(batch));
+  visit("optimisation.solver", Always, "Batch optimisation: how it is solved", partOf<SolverOptions>(batch));
   visit("optimisation.verdict", Always, "Uncertainty, and what makes a result doubtful",
-        partOf<VerdictOptions>(all.optimisation));
-  visit("report", Always, "What is worked out for the report only", all.report);
-  visitShared("check", InCheck, "Whether an old calibration still holds", all.check, visit);
-  visitShared("edge_slopes", InCheckWithoutBoard, "Without a board: the speed of edges in the scene",
-              all.edge_slopes, visit);
-  visitShared("egomotion", InCheckWithoutBoard,
-              "Without a board: how the camera turns, compared with the gyroscope", all.egomotion, visit);
-  visitShared("maintain", InMaintain, "Logs of IMUs over time: what has changed since the calibration",
-              all.maintain, visit);
+        partOf<VerdictOptions>(batch));
+  visit("report", Always, "What is worked out for the report only", optionsOf(all.report));
+  visit("check", InCheck, "Whether an old calibration still holds", optionsOf(all.check));
+  visit("edge_slopes", InCheckWithoutBoard, "Without a board: the speed of edges in the scene",
+        optionsOf(all.edge_slopes));
+  visit("egomotion", InCheckWithoutBoard,
+        "Without a board: how the camera turns, compared with the gyroscope", optionsOf(all.egomotion));
+  visit("maintain", InMaintain, "Logs of IMUs over time: what has changed since the calibration",
+        optionsOf(all.maintain));
 }
 
 template <class Options>

@@ -3,13 +3,6 @@
 
 #include "core/base/option_row.h"
 #include "core/base/shared_options.h"
-#include "core/frames/blink_options.h"
-#include "core/frames/frame_options.h"
-#include "core/frontend/front_end_options.h"
-#include "core/initialisation/initialisation_options.h"
-#include "core/intrinsics/intrinsics_options.h"
-#include "core/optimisation/optimisation_options.h"
-#include "core/report/report_options.h"
 
 #include <string>
 #include <string_view>
@@ -17,20 +10,28 @@
 
 namespace evical {
 
+struct BlinkOptions;
 struct CheckOptions;
 struct EdgeSlopeOptions;
 struct EgomotionOptions;
+struct FrameOptions;
+struct FrontEndOptions;
+struct InitialisationOptions;
+struct IntrinsicsOptions;
 struct MaintenanceOptions;
+struct OptimisationOptions;
+struct ReportOptions;
 
+// Groups by pointer: only sources that read a group include its header, and are rebuilt if it changes.
 struct CalibrationOptions {
-  FrontEndOptions front_end;
-  FrameOptions frames;
-  BlinkOptions blink;
-  IntrinsicsOptions intrinsics;
-  InitialisationOptions initialisation;
-  OptimisationOptions optimisation;
-  ReportOptions report;
-  // Options of other commands. Code that reads them includes their headers.
+  SharedOptions<FrontEndOptions> front_end;
+  SharedOptions<FrameOptions> frames;
+  SharedOptions<BlinkOptions> blink;
+  SharedOptions<IntrinsicsOptions> intrinsics;
+  SharedOptions<InitialisationOptions> initialisation;
+  SharedOptions<OptimisationOptions> optimisation;
+  SharedOptions<ReportOptions> report;
+  // Of other commands:
   SharedOptions<CheckOptions> check;
   SharedOptions<EdgeSlopeOptions> edge_slopes;
   SharedOptions<EgomotionOptions> egomotion;

@@ -1,5 +1,8 @@
 #include "core/pipeline/session/idle_options.h"
 
+#include "core/frontend/front_end_options.h"
+#include "core/optimisation/optimisation_options.h"
+
 #include <algorithm>
 
 namespace evical {
@@ -38,13 +41,13 @@ std::string whereOfImus(const Session& session, bool idle, const char* reason) {
 // The candidates of one source, of which the other one is looked for first, or alone.
 std::string withoutCandidates(CandidateSource source, const Session& session, const StreamTypes& types,
                               const char* alone, const char* fallback) {
-  const DetectionOptions& detection = session.options.front_end.detection;
+  const DetectionOptions& detection = session.options.front_end->detection;
   if (std::string reason = without(StreamType::Events, session, types); !reason.empty()) return reason;
   return where(detection.method != source, detection.try_both ? fallback : alone);
 }
 
 std::string whyNot(Applies applies, const Session& session, const StreamTypes& types) {
-  const OptimisationOptions& optimisation = session.options.optimisation;
+  const OptimisationOptions& optimisation = *session.options.optimisation;
   switch (applies) {
     case Applies::Always:
       return {};

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/yaml_node.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/given_points.h"
 
 #include <fmt/format.h>
@@ -112,7 +113,7 @@ double worldsSpacingStd(const OptimisationOptions& options) {
 
 // Those that are as well known as the world's stay so where the options come to say it of another board.
 void setWorldsSpacingStd(double spacing_std, Session& session) {
-  OptimisationOptions& options = session.options.optimisation;
+  OptimisationOptions& options = session.options.optimisation.edit();
   const double before = worldsSpacingStd(options);
   if (spacing_std == before) return;
   for (SessionBoard& further : session.further_boards)
@@ -128,7 +129,7 @@ void makeWorlds(std::size_t index, Session& session) {
   SessionBoard world = std::move(*place);
   session.further_boards.erase(place);
   SessionBoard before{{session.board_name, session.board}, session.measured};
-  if (before.measured) before.spacing_std = worldsSpacingStd(session.options.optimisation);
+  if (before.measured) before.spacing_std = worldsSpacingStd(*session.options.optimisation);
   session.further_boards.insert(session.further_boards.begin(), std::move(before));
   if (world.spacing_std) setWorldsSpacingStd(*world.spacing_std, session);
   session.board_name = world.name;
@@ -184,8 +185,8 @@ void setBoardAt(std::size_t index, const Board& board, Session& session) {
 }
 
 void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session) {
-  OptimisationOptions& options = session.options.optimisation;
-  if (tellsSigma(session.measured, options)) forgetSigma(options);
+  if (tellsSigma(session.measured, *session.options.optimisation))
+    forgetSigma(session.options.optimisation.edit());
   session.measured = measured;
   if (!measured) return;
   session.board.spacing_m = measured->spacing_m();
@@ -282,8 +283,8 @@ std::string boardsYaml(const Session& session) {
 
 CalibrationOptions optionsBesideBoards(const Session& session) {
   CalibrationOptions options = session.options;
-  if (tellsSpacing(session.measured, session.board) && tellsSigma(session.measured, options.optimisation))
-    forgetSigma(options.optimisation);
+  if (tellsSpacing(session.measured, session.board) && tellsSigma(session.measured, *options.optimisation))
+    forgetSigma(options.optimisation.edit());
   return options;
 }
 

@@ -1,6 +1,7 @@
 #include "core/pipeline/session/session_boards_reader.h"
 
 #include "core/base/error.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/given_points.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_keys.h"
@@ -103,8 +104,8 @@ Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measur
 void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
   const auto node = board.find("spacing_std");
   if (!node) return;
-  options.optimisation.free_board_size = node->real(0.0, 1.0, "") > 0.0;
-  if (options.optimisation.free_board_size)
+  options.optimisation.edit().free_board_size = node->real(0.0, 1.0, "") > 0.0;
+  if (options.optimisation->free_board_size)
     setFromSession(*node, options, "optimisation.board_spacing_sigma");
 }
 

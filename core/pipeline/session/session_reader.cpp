@@ -1,7 +1,9 @@
 #include "core/base/nearest_name.h"
 #include "core/export/export_target.h"
 #include "core/format/intrinsics_yaml.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/numerics/normal_gravity.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_boards_reader.h"
 #include "core/pipeline/session/session_keys.h"
@@ -217,7 +219,7 @@ void readSharing(const YamlNode& cameras, Session& session) {
                                      "Check all of them, or none");
     checked = check;
   }
-  if (checked && *checked) session.options.optimisation.share_sensors = false;
+  if (checked && *checked) session.options.optimisation.edit().share_sensors = false;
 }
 
 // Where on earth it was recorded.
@@ -226,8 +228,8 @@ void readGravity(const YamlNode& map, CalibrationOptions& options) {
   const double latitude_deg = map["latitude_deg"].real(-90.0, 90.0, "deg");
   const auto height = map.find("height_m");
   const double height_m = height ? height->real(-1000.0, 10000.0, "m") : 0.0;
-  options.initialisation.gravity_m_s2 = normalGravity_m_s2(latitude_deg, height_m);
-  options.optimisation.gravity_norm_sigma_m_s2 = kGravityAnomaly_m_s2;
+  options.initialisation.edit().gravity_m_s2 = normalGravity_m_s2(latitude_deg, height_m);
+  options.optimisation.edit().gravity_norm_sigma_m_s2 = kGravityAnomaly_m_s2;
 }
 
 void readPriors(const YamlNode& map, Session& session) {
@@ -237,7 +239,7 @@ void readPriors(const YamlNode& map, Session& session) {
   const auto gravity_std = map.find("gravity_norm_std_m_s2");
   if (const auto node = map.find("gravity_norm_m_s2")) {
     setFromSession(*node, session.options, "initialisation.gravity_m_s2");
-    session.options.optimisation.free_gravity_norm = gravity_std.has_value();  // else it is given
+    session.options.optimisation.edit().free_gravity_norm = gravity_std.has_value();  // else it is given
   }
   if (gravity_std) setFromSession(*gravity_std, session.options, "optimisation.gravity_norm_sigma_m_s2");
   readSensorPriors(map, session);

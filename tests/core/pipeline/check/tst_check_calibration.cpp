@@ -7,6 +7,7 @@
 #include "core/pipeline/check/check_files.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/check_report.h"
+#include "core/report/report_options.h"
 #include "tests/support/seen_through.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
@@ -74,7 +75,7 @@ class TestCheckCalibration : public QObject {
   void initTestCase() {
     SimulatedPass first = simulatePass(20.0, briskForCheckCalibration(3));
     session_ = first.session;
-    session_.options.report.cross_validation = false;
+    session_.options.report.edit().cross_validation = false;
     const CalibrationRun run = calibrate(session_, first.pass, {});
     QVERIFY(run.result.status == CalibrationStatus::Ok);
     before_ = namedResult(session_, std::make_shared<const CalibrationResult>(run.result), "test");

@@ -1,8 +1,10 @@
 // A camera whose intrinsics were found first, and are solved for with everything else: what results, files
 // and halves make of it.
 #include "core/geometry/projection_difference.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "tests/support/own_result.h"
 #include "tests/support/seen_through.h"
@@ -134,8 +136,8 @@ class TestJointIntrinsics : public QObject {
 
   void fixed_keepsWhatWasFoundFirst() {
     Session session = simulated_.session;
-    session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    session.options.report.cross_validation = false;
+    session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    session.options.report.edit().cross_validation = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {}, {foundFirst()});
     QVERIFY(!run.result.state.cameras[0].lens.solved);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
@@ -147,8 +149,8 @@ class TestJointIntrinsics : public QObject {
 
   void givenIntrinsics_stayAsTheyAreWhereAsked() {
     Session session = simulated_.session;
-    session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    session.options.report.cross_validation = false;
+    session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    session.options.report.edit().cross_validation = false;
     session.cameras[0].intrinsics = found_;
     RecordingPass pass = simulated_.pass;
     pass.lenses = givenLenses(session);

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/frames/frame_options.h"
 #include "core/pipeline/pass/point_views.h"
 #include "tests/support/test_program.h"
 
@@ -44,7 +45,7 @@ Fixture::Fixture(const std::optional<CameraIntrinsics>& intrinsics, double point
     : lens(givenLens(intrinsics)) {
   session.board = squares();
   session.cameras.push_back({"camera", "points", {}, {}});
-  session.options.frames.point_sigma_px = point_sigma_px;
+  session.options.frames.edit().point_sigma_px = point_sigma_px;
   views.emplace(batchAt(0.0, 0), ViewRequest{session, lens, context});
 }
 

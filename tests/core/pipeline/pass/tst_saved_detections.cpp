@@ -5,6 +5,7 @@
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/simulate/simulation.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/file_content.h"
@@ -88,7 +89,7 @@ class TestSavedDetections : public QObject {
     simulate(eventsAndFrames(), path(), RunContext{});
     session_ = readSession(path() / "session.yaml");
     session_.cameras[1].intrinsics.reset();
-    session_.options.report.cross_validation = false;
+    session_.options.report.edit().cross_validation = false;
     run_ = calibrate(session_, RunContext{});
     QVERIFY(run_.intrinsics[1].has_value());
     writeResultFiles(result(), session_, std::make_shared<const CalibrationRun>(run_), "test", "");

@@ -9,6 +9,7 @@
 #include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 #include "core/recording/separate_imu.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
@@ -288,7 +289,7 @@ class TestSeparateImu : public QObject {
       pass_ = test::perfectPass(scenario_, 0.05, 0.015);
       writeTwoTopics();
       Session session = test::sessionFor(scenario_);
-      session.options.report.cross_validation = false;
+      session.options.report.edit().cross_validation = false;
       session.imus[0].stream = kGyroscope;
       session.imus[0].accelerometer_stream = kAccelerometer;
       pass_.imus.front().samples = readTwoTopics();

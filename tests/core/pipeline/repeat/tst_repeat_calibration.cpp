@@ -3,6 +3,7 @@
 #include "core/base/yaml_node.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/repeat/repeat_calibration.h"
 #include "core/pipeline/repeat/repeat_files.h"
 #include "core/report/repeat_report.h"
@@ -101,7 +102,7 @@ class TestRepeatCalibration : public QObject {
   void initTestCase() { good_ = repeatOf(3); }
 
   void otherOptions_areRefused() {
-    verifyRejected([](Session& session) { session.options.optimisation.pixel_delay_ms *= 2.0; },
+    verifyRejected([](Session& session) { session.options.optimisation.edit().pixel_delay_ms *= 2.0; },
                    "results computed with different options cannot be combined");
   }
 

@@ -1,6 +1,7 @@
 // A calibration that is asked to stop does so soon, whatever it is doing. Latencies are measured in the
 // process's own computing time, which other programs on the machine do not change.
 #include "core/base/progress.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/processor_time.h"
@@ -120,7 +121,7 @@ class TestCancelling : public QObject {
                                            ? qEnvironmentVariableIntValue("EVICAL_CANCEL_S")
                                            : 10.0);
     Session session = test::sessionFor(scenario);
-    session.options.optimisation.threads = 1;
+    session.options.optimisation.edit().threads = 1;
     const RecordingPass pass = test::perfectPass(scenario, 0.05, 0.02);
     const QStringList stages =
         stopEverywhere([&](const RunContext& context) { calibrate(session, pass, context); });

@@ -1,8 +1,10 @@
 // One thing at a time that is not as the session says: the result is not wrong and called ok, and the first reason
 // names what was spoilt. Circles are those of a perfect front end, so that a case takes a second or two.
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/rig/misfit.h"
 #include "core/pipeline/runs/result_files.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/perturbations.h"
@@ -21,7 +23,7 @@ class TestCauses : public QObject {
   void initTestCase() {
     base_.scenario = readScenario(test::scenarioPath("davis346_10s"));
     base_.session = test::sessionFor(base_.scenario);
-    base_.session.options.report.cross_validation = false;  // half of the time, and no part of this
+    base_.session.options.report.edit().cross_validation = false;  // half of the time, and no part of this
     base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);
   }
 
@@ -229,7 +231,7 @@ class TestCauses : public QObject {
       test::Recorded recorded = base_;
       const test::Perturbation& bow = test::perturbation("board bow");
       bow.apply(recorded, height_mm);
-      recorded.session.options.optimisation.board_bow = false;
+      recorded.session.options.optimisation.edit().board_bow = false;
       const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
       QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
       QVERIFY2(bow.isNamedIn(test::firstReason(run.result.reason)), run.result.reason.c_str());

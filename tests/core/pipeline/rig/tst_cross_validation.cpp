@@ -1,6 +1,8 @@
 #include "core/base/time.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/rig/cross_validation.h"
+#include "core/report/report_options.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 
@@ -116,7 +118,7 @@ class TestCrossValidation : public QObject {
     const CameraState& found = run_.result.state.cameras[0];
     session.cameras[0].prior.time_offset = KnownNumber{found.time_offset_s};
     session.cameras[0].prior.translation = KnownVector{found.reference_from_camera.translation_m};
-    session.options.optimisation.free_imu_intrinsics = false;
+    session.options.optimisation.edit().free_imu_intrinsics = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == found.time_offset_s);
     QCOMPARE(run.result.uncertainty.given.size(), std::size_t{5});
@@ -139,8 +141,8 @@ class TestCrossValidation : public QObject {
 
   void timeOffsetsThatAreNotFree_areNotLookedFor() {
     Session session = simulated_.session;
-    session.options.optimisation.free_time_offsets = false;
-    session.options.report.cross_validation = false;
+    session.options.optimisation.edit().free_time_offsets = false;
+    session.options.report.edit().cross_validation = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == 0.0);
     QVERIFY(std::abs(run_.result.state.cameras[0].time_offset_s) > 1e-3);
@@ -159,7 +161,7 @@ class TestCrossValidation : public QObject {
       if (static_cast<int>((view.time_s - start_s) / block_s) % 2 == 1)
         for (CircleObservation& circle : view.circles) circle.centre_px.x() += 1.0;
     const CrossValidation validation =
-        crossValidate(slipped, run_.result.state, simulated_.session.options.optimisation, block_s, {});
+        crossValidate(slipped, run_.result.state, *simulated_.session.options.optimisation, block_s, {});
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     double largest = 0.0;
     for (const QuantityDifference& each : validation.quantities)
@@ -171,7 +173,7 @@ class TestCrossValidation : public QObject {
 
   void switchedOff_costsNothing() {
     Session session = simulated_.session;
-    session.options.report.cross_validation = false;
+    session.options.report.edit().cross_validation = false;
     const CalibrationRun without = calibrate(session, simulated_.pass, {});
     QVERIFY(!without.result.cross_validation.has_value());
     QCOMPARE(without.result.timing.cross_validate_s, 0.0);
@@ -186,7 +188,7 @@ class TestCrossValidation : public QObject {
     const double start_s = run_.result.state.world_from_imu_rotation.start_s;
     std::erase_if(views, [&](const BoardView& view) { return view.time_s > start_s + 0.8 * block_s; });
     const CrossValidation validation =
-        crossValidate(half, run_.result.state, simulated_.session.options.optimisation, block_s, {});
+        crossValidate(half, run_.result.state, *simulated_.session.options.optimisation, block_s, {});
     QVERIFY(QString::fromStdString(validation.failure).contains("does not show the board"));
     QVERIFY(validation.quantities.empty());
   }

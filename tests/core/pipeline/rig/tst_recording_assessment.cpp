@@ -3,7 +3,9 @@
 #include "core/pipeline/rig/recording_assessment.h"
 
 #include "core/base/error.h"
+#include "core/frontend/front_end_options.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
@@ -199,12 +201,12 @@ class TestRecordingAssessment : public QObject {
       change(other);
       return detectsTheSame(session, other);
     };
-    QVERIFY(changed([](Session& other) { other.options.optimisation.needed_rotation_deg = 1.0; }));
+    QVERIFY(changed([](Session& other) { other.options.optimisation.edit().needed_rotation_deg = 1.0; }));
     QVERIFY(changed([](Session& other) { other.exports = {"openvins"}; }));
     QVERIFY(!changed([](Session& other) { other.board.rows = 9; }));
     QVERIFY(!changed([](Session& other) { other.time_range_s = {1.0, 2.0}; }));
     QVERIFY(!changed([](Session& other) { other.cameras.front().intrinsics.reset(); }));
-    QVERIFY(!changed([](Session& other) { other.options.front_end.grid.least_circles += 1; }));
+    QVERIFY(!changed([](Session& other) { other.options.front_end.edit().grid.least_circles += 1; }));
     QVERIFY(!changed([](Session& other) { other.imus.front().stream = "/other"; }));
   }
 

@@ -1,6 +1,7 @@
 // Hands that shake: splines follow, and sigmas hold the errors.
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
@@ -34,7 +35,7 @@ class TestShakyHands : public QObject {
     scenario.seed = static_cast<std::uint64_t>(seed);
     scenario.imus.front().rate_hz = rate_hz;
     Session session = test::sessionFor(scenario);
-    session.options.report.cross_validation = false;
+    session.options.report.edit().cross_validation = false;
     const CalibrationRun run = calibrate(session, test::perfectPass(scenario, 0.05, 0.015), RunContext{});
     const ImuData& imu = run.pass.imus.front();
     const double sigma_m_s2 = imu.noise.accelerometer_density * std::sqrt(imu.rate_hz());

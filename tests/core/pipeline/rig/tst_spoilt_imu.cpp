@@ -1,6 +1,7 @@
 // IMU samples that lie cost no accuracy, and are named.
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
+#include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
@@ -90,7 +91,7 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 10.0;
   Session session = test::sessionFor(scenario);
-  session.options.report.cross_validation = false;
+  session.options.report.edit().cross_validation = false;
   RecordingPass pass = test::perfectPass(scenario, 0.05, 0.015);
   spoil(pass.imus.front().samples);
   const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});

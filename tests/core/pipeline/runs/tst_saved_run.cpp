@@ -2,6 +2,8 @@
 // what it has, and says what it lacks.
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/frontend/front_end_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
@@ -60,7 +62,7 @@ class TestSavedRun : public QObject {
     simulated_ = simulatePass(5.0);
     writeForSavedRun(scratch() / "recording.bag", "a recording");
     simulated_.session.recording = scratch() / "recording.bag";
-    simulated_.session.options.optimisation.max_iterations += 1;
+    simulated_.session.options.optimisation.edit().max_iterations += 1;
     const RecordingPass pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, pass, {}));
     std::filesystem::create_directories(result());
@@ -319,7 +321,7 @@ class TestSavedRun : public QObject {
     const std::filesystem::path place = scratch() / "list";
     Session session = simulated_.session;
     for (int k = 0; k < 4; ++k) {
-      session.options.front_end.grid.least_circles = 8 + k / 2;
+      session.options.front_end.edit().grid.least_circles = 8 + k / 2;
       keepRun(place / std::to_string(k), session, run_, "test", "", 1000 + k);
     }
     renameRun(place / "1", "the \"good\": one");

@@ -71,8 +71,8 @@ class TestCalibrationOptions : public QObject {
     CalibrationOptions options;
     setOption(options, "optimisation.threads", "7");
     setOption(options, "optimisation.needed_rotation_deg", "0.25");
-    QCOMPARE(options.optimisation.threads, 7);
-    QCOMPARE(options.optimisation.needed_rotation_deg, 0.25);
+    QCOMPARE(options.optimisation->threads, 7);
+    QCOMPARE(options.optimisation->needed_rotation_deg, 0.25);
     const std::vector<OptionRow> differing = differingOptions(options);
     QCOMPARE(differing.size(), std::size_t(2));
     QCOMPARE(differing[0].name, std::string("optimisation.solver.threads"));
@@ -100,7 +100,7 @@ class TestCalibrationOptions : public QObject {
   void tuning_isSetByItsPrefixOnly() {
     CalibrationOptions options;
     setOption(options, "tuning.optimisation.max_rounds", "3");  // a middle part left out
-    QCOMPARE(options.optimisation.max_rounds, 3);
+    QCOMPARE(options.optimisation->max_rounds, 3);
     QCOMPARE(differingOptions(options)[0].name, std::string("tuning.optimisation.solver.max_rounds"));
     for (const auto& [name, other] : {std::pair("grid.least_sine", "tuning.grid.least_sine"),
                                       std::pair("optimisation.max_rounds", "tuning.optimisation.max_rounds"),

@@ -1,3 +1,4 @@
+#include "core/frontend/front_end_options.h"
 #include "core/pipeline/session/idle_options.h"
 
 #include "core/pipeline/session/calibration_options.h"
@@ -26,11 +27,11 @@ class TestIdleOptions : public QObject {
     Session session = test::simulatePass(0.5).session;
     QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
              std::string("ring votes are used only where normal flow finds no board"));
-    session.options.front_end.detection.try_both = false;
+    session.options.front_end.edit().detection.try_both = false;
     QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
              std::string("circles are looked for by normal flow alone"));
     QVERIFY(whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
-    session.options.front_end.detection.method = CandidateSource::RingVote;
+    session.options.front_end.edit().detection.method = CandidateSource::RingVote;
     QVERIFY(whyIdle(session, "tuning.ring_vote.least_score").empty());
     QVERIFY(!whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
   }

@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/format/intrinsics_yaml.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/pipeline/session/import_session.h"
 #include "tests/support/test_program.h"
 
@@ -211,8 +212,8 @@ class TestImportSession : public QObject {
     QCOMPARE(session.imus[1].noise.accelerometer_density, 0.002);
     QCOMPARE(session.reference, std::string("davis_right_imu"));
     QVERIFY((*session.time_range_s == std::array<double, 2>{2.0, 12.0}));
-    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.1);
-    QCOMPARE(session.options.initialisation.gravity_m_s2, 9.79);
+    QCOMPARE(session.options.initialisation->time_offset_search_s, 0.1);
+    QCOMPARE(session.options.initialisation->gravity_m_s2, 9.79);
   }
 
   void kalibrsOtherTargets_becomeBoards() {

@@ -1,3 +1,6 @@
+#include "core/frontend/front_end_options.h"
+#include "core/initialisation/initialisation_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session.h"
 
 #include "core/pipeline/session/option_pages.h"
@@ -119,9 +122,9 @@ class TestSession : public QObject {
     QVERIFY(std::abs(metresPerSecond2(session.imus[0].acceleration_unit.value()) + 9.80665) < 1e-12);
     QVERIFY(std::abs(180.0 * radiansPerSecond(session.imus[0].angular_rate_unit.value()) - 3.14159265358979) <
             1e-12);
-    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.5);
-    QCOMPARE(session.options.front_end.grid.least_circles, 7);
-    QCOMPARE(session.options.front_end.bursts.least_events, 3);
+    QCOMPARE(session.options.initialisation->time_offset_search_s, 0.5);
+    QCOMPARE(session.options.front_end->grid.least_circles, 7);
+    QCOMPARE(session.options.front_end->bursts.least_events, 3);
   }
 
   void optionInAGroupOfGroups_isReadInEveryForm_data() {
@@ -135,7 +138,7 @@ class TestSession : public QObject {
   void optionInAGroupOfGroups_isReadInEveryForm() {
     QFETCH(QString, text);
     const Session session = sessionWith("tuning.bursts.least_events: 3", text);
-    QCOMPARE(session.options.optimisation.threads, 7);
+    QCOMPARE(session.options.optimisation->threads, 7);
     QVERIFY(sessionYaml(session, folder()).find("optimisation.solver.threads: 7") != std::string::npos);
   }
 
@@ -143,7 +146,7 @@ class TestSession : public QObject {
     for (const char* const text : {"tuning.bursts.least_events: 4", "tuning: {bursts.least_events: 4}",
                                    "tuning: {bursts: {least_events: 4}}"}) {
       const Session session = sessionWith("tuning.bursts.least_events: 3", text);
-      QCOMPARE(session.options.front_end.bursts.least_events, 4);
+      QCOMPARE(session.options.front_end->bursts.least_events, 4);
       QVERIFY(sessionYaml(session, folder()).find("\n  tuning.bursts.least_events: 4\n") !=
               std::string::npos);
     }
@@ -283,7 +286,7 @@ class TestSession : public QObject {
     const Session session = readSession(write("session.yaml", text.toStdString()));
     QCOMPARE(session.board_name, std::string("plate"));  // which the first camera sees: the world
     QCOMPARE(session.board.spacing_m, 0.0502);
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.0005 / 0.502);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, 0.0005 / 0.502);
     QCOMPARE(session.further_boards.size(), std::size_t{1});
     QCOMPARE(session.further_boards[0].name, std::string("tags"));
     QCOMPARE(session.further_boards[0].spacing_std, std::optional(0.001));
@@ -368,7 +371,7 @@ class TestSession : public QObject {
   void camerasOfOneSensor_mayBeCompared() {
     const QString camera = "  frames:\n    stream: /left/image_raw\n    same_sensor_as: left\n";
     const auto sharing = [&](const QString& key) {
-      return sessionWith("imus:\n", camera + key + "imus:\n").options.optimisation.share_sensors;
+      return sessionWith("imus:\n", camera + key + "imus:\n").options.optimisation->share_sensors;
     };
     QVERIFY(sharing(""));
     QVERIFY(sharing("    same_sensor_check: false\n"));
@@ -409,10 +412,10 @@ class TestSession : public QObject {
 
   void spacingsSigma_isAnOption() {
     const Session exact = sessionWith("radius_m: 0.02", "radius_m: 0.02\n  spacing_std: 0");
-    QVERIFY(!exact.options.optimisation.free_board_size);
+    QVERIFY(!exact.options.optimisation->free_board_size);
     const Session measured = sessionWith("radius_m: 0.02", "radius_m: 0.02\n  spacing_std: 0.0005");
-    QVERIFY(measured.options.optimisation.free_board_size);
-    QCOMPARE(measured.options.optimisation.board_spacing_sigma, 0.0005);
+    QVERIFY(measured.options.optimisation->free_board_size);
+    QCOMPARE(measured.options.optimisation->board_spacing_sigma, 0.0005);
   }
 
   void sigmasOfALens_comeWithItsFile_andAreWritten() {
@@ -480,7 +483,7 @@ correlation:
     setInSession(session, "imus.left_imu.accelerometer_axes", "-x,-y,-z");
     QVERIFY((session.imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
     setInSession(session, "optimisation.gyroscope_rotation", "true");
-    QVERIFY(session.options.optimisation.gyroscope_rotation);
+    QVERIFY(session.options.optimisation->gyroscope_rotation);
     setInSession(session, "time_range_s", "[2,11.5]");
     QVERIFY((session.time_range_s == std::array<double, 2>{2.0, 11.5}));
     for (const auto& [key, value] :
@@ -511,14 +514,14 @@ correlation:
     const Session session =
         sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0.0005}");
     QCOMPARE(session.board.spacing_m, 0.352 / 10);
-    QVERIFY(session.options.optimisation.free_board_size);
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.0005 / 0.352);
+    QVERIFY(session.options.optimisation->free_board_size);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, 0.0005 / 0.352);
     QVERIFY(session.measured == (MeasuredLength{10, 0.352, 0.0005}));
     const Session rough = sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352}");
-    QCOMPARE(rough.options.optimisation.board_spacing_sigma, 0.0005 / 0.352);  // half a millimetre
+    QCOMPARE(rough.options.optimisation->board_spacing_sigma, 0.0005 / 0.352);  // half a millimetre
     const Session exact =
         sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0}");
-    QVERIFY(!exact.options.optimisation.free_board_size);
+    QVERIFY(!exact.options.optimisation->free_board_size);
     const Session both = sessionWith(
         "spacing_m: 0.05", "spacing_m: 0.05\n  measured: {spacings: 10, length_m: 0.501, std_m: 0.0005}");
     QCOMPARE(both.board.spacing_m, 0.501 / 10);  // within the ruler's sigmas
@@ -546,11 +549,11 @@ correlation:
         sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0.0005}");
     setMeasuredLength(std::nullopt, session);
     QCOMPARE(session.board.spacing_m, 0.352 / 10);
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, PriorOptions().board_spacing_sigma);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, PriorOptions().board_spacing_sigma);
     setMeasuredLength(MeasuredLength{10, 0.352, 0.0}, session);
-    QVERIFY(!session.options.optimisation.free_board_size);
+    QVERIFY(!session.options.optimisation->free_board_size);
     setMeasuredLength(MeasuredLength{10, 0.352, 0.0005}, session);
-    QVERIFY(session.options.optimisation.free_board_size);
+    QVERIFY(session.options.optimisation->free_board_size);
     session.board.spacing_m = 0.04;
     const QString text = QString::fromStdString(sessionYaml(session, folder()));
     QVERIFY(text.contains("spacing_m: 0.04") && !text.contains("measured"));
@@ -631,7 +634,7 @@ correlation:
         {"options.grid.least_circles", "least of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
     row("part of a group", "tuning.bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
-        {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
+        {"options.optimisation->solve (line 32)", "'optimisation.solver'"});
     row("tuning without its name", "tuning.bursts.least_events: 3", "bursts: {least_events: 3}",
         {"options.bursts.least_events (line 32)", "Write tuning.bursts.least_events"});
     row("options that exclude each other", "tuning.bursts.least_events: 3",

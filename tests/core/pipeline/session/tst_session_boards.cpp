@@ -1,6 +1,7 @@
 #include "core/pipeline/session/session_boards.h"
 
 #include "core/base/error.h"
+#include "core/optimisation/optimisation_options.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -87,7 +88,7 @@ class TestSessionBoards : public QObject {
     removeBoard(0, session);
     QCOMPARE(boardNames(session), (Names{"tags", "wall"}));
     QVERIFY(session.board.type == BoardType::AprilGrid);
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.004);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, 0.004);
     QCOMPARE(seen(session), (Names{"tags", "tags", "wall"}));
     validateBoards(session, "session");
   }
@@ -133,20 +134,20 @@ class TestSessionBoards : public QObject {
   // Each board is as well known as before, whichever of them the options speak of.
   void worldCameraThatSeesAnother_makesThatTheWorlds() {
     Session session = threeBoards();
-    const double of_plate = session.options.optimisation.board_spacing_sigma;
+    const double of_plate = session.options.optimisation->board_spacing_sigma;
     session.cameras[0].board = "tags";
     session.cameras[1].board = "plate";
     QVERIFY_EXCEPTION_THROWN(validateBoards(session, "session"), CalibrationError);
     settleBoards(session);
     validateBoards(session, "session");
     QCOMPARE(boardNames(session), (Names{"tags", "plate", "wall"}));
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.004);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, 0.004);
     QCOMPARE(session.further_boards[0].spacing_std, std::optional(of_plate));
     QCOMPARE(session.further_boards[1].spacing_std, std::optional(of_plate));
     std::swap(session.cameras[0].board, session.cameras[1].board);
     settleBoards(session);
     QCOMPARE(boardNames(session), (Names{"plate", "tags", "wall"}));
-    QCOMPARE(session.options.optimisation.board_spacing_sigma, of_plate);
+    QCOMPARE(session.options.optimisation->board_spacing_sigma, of_plate);
     QCOMPARE(session.further_boards[0].spacing_std, std::optional(0.004));
   }
 
@@ -161,7 +162,7 @@ class TestSessionBoards : public QObject {
     session.cameras[1].board = "plate";
     settleBoards(session);
     QVERIFY(session.measured == of_tags && measuredAt(session, 1) == of_plate);
-    QVERIFY(!session.options.optimisation.free_board_size);
+    QVERIFY(!session.options.optimisation->free_board_size);
     QCOMPARE(session.further_boards[0].spacing_std, std::optional(of_plate.relativeStd()));
     setMeasuredAt(1, std::nullopt, session);
     QVERIFY(!session.further_boards[0].spacing_std && boardAt(session, 1).spacing_m == 0.0502);
@@ -193,7 +194,7 @@ class TestSessionBoards : public QObject {
     }
     for (std::size_t i = 0; i < 3; ++i)
       QCOMPARE(again.further_boards[i].spacing_std, session.further_boards[i].spacing_std);
-    QCOMPARE(again.options.optimisation.board_spacing_sigma, 0.0004 / 0.3216);
+    QCOMPARE(again.options.optimisation->board_spacing_sigma, 0.0004 / 0.3216);
   }
 };
 

@@ -1,4 +1,6 @@
+#include "core/initialisation/initialisation_options.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session_priors.h"
 #include "tests/core/pipeline/session/refused_session.h"
 #include "tests/support/test_program.h"
@@ -101,9 +103,9 @@ class TestSessionPriors : public QObject {
 
   void priors_areRead() {
     const Session session = read(kPriors);
-    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.5);
-    QCOMPARE(session.options.initialisation.gravity_m_s2, 9.7803);
-    QVERIFY(!session.options.optimisation.free_gravity_norm);
+    QCOMPARE(session.options.initialisation->time_offset_search_s, 0.5);
+    QCOMPARE(session.options.initialisation->gravity_m_s2, 9.7803);
+    QVERIFY(!session.options.optimisation->free_gravity_norm);
     const SensorPrior& left = session.cameras[0].prior;
     QVERIFY(left.rotation->value.isApprox(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5)));
     QVERIFY((kDegPerRad * *left.rotation->sigma - Eigen::Vector3d(0.1, 0.2, 0.3)).norm() < 1e-12);
@@ -136,8 +138,8 @@ class TestSessionPriors : public QObject {
 
   void gravityWithASigma_isFree() {
     const Session session = read("  gravity_norm_m_s2: 9.79\n  gravity_norm_std_m_s2: 0.01\n");
-    QVERIFY(session.options.optimisation.free_gravity_norm);
-    QCOMPARE(session.options.optimisation.gravity_norm_sigma_m_s2, 0.01);
+    QVERIFY(session.options.optimisation->free_gravity_norm);
+    QCOMPARE(session.options.optimisation->gravity_norm_sigma_m_s2, 0.01);
     writeSession(session, file());
     QVERIFY(readSession(file()).options == session.options);
   }
@@ -145,9 +147,9 @@ class TestSessionPriors : public QObject {
   void gravityByPlace_isNormalGravity() {
     const Session session = read("  time_offset_search_s: 1\ngravity: {latitude_deg: 45, height_m: 1000}\n");
     // GRS 80 has 9.80620 m/s^2 at 45 deg on the ellipsoid, and 3.086e-6 m/s^2 less for each metre above it.
-    QVERIFY(std::abs(session.options.initialisation.gravity_m_s2 - 9.80311) < 2e-5);
-    QCOMPARE(session.options.optimisation.gravity_norm_sigma_m_s2, 1e-3);
-    QVERIFY(session.options.optimisation.free_gravity_norm);
+    QVERIFY(std::abs(session.options.initialisation->gravity_m_s2 - 9.80311) < 2e-5);
+    QCOMPARE(session.options.optimisation->gravity_norm_sigma_m_s2, 1e-3);
+    QVERIFY(session.options.optimisation->free_gravity_norm);
     writeSession(session, file());
     QVERIFY(readSession(file()).options == session.options);
   }
