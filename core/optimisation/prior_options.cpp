@@ -2,6 +2,8 @@
 
 #include "core/base/option_table.h"
 
+#include <numbers>
+
 namespace evical {
 namespace {
 
@@ -68,6 +70,10 @@ constexpr std::tuple kPriorFields{
 constexpr auto kPriorDefaults = defaultsOf<PriorOptions, kPriorFields>();
 
 }  // namespace
+
+double boardStretchSigma(double spacing_sigma) {
+  return std::numbers::sqrt2 * spacing_sigma;
+}
 
 PriorOptions::PriorOptions() : PriorOptions(kPriorDefaults) {}
 

@@ -3,8 +3,6 @@
 
 #include "core/base/option_struct.h"
 
-#include <numbers>
-
 namespace evical {
 
 struct PriorOptions {
@@ -36,8 +34,6 @@ struct PriorOptions {
 };
 
 // Of the ratio of a board's two directions, each of which was measured.
-inline double boardStretchSigma(double spacing_sigma) {
-  return std::numbers::sqrt2 * spacing_sigma;
-}
+double boardStretchSigma(double spacing_sigma);
 
 }  // namespace evical

@@ -7,7 +7,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/pipeline/session/calibration_options.h"
+#include "core/optimisation/verdict_options.h"
 #include "core/report/truth_comparison.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ double covarianceOf(const UncertaintyReport& report, const Uncertain& a, const U
 // What light does to pixels' delays is in the sigmas of time offsets; of one camera it is the same in both, to
 // within the stability.
 double pixelDelay_s(const NamedResult& named) {
-  double delay_ms = CalibrationOptions().optimisation.pixel_delay_ms;
+  double delay_ms = VerdictOptions().pixel_delay_ms;
   for (const OptionRow& row : named.options)
     if (row.name == "optimisation.verdict.pixel_delay_ms") delay_ms = realFrom(row.value).value_or(delay_ms);
   return 1e-3 * delay_ms;

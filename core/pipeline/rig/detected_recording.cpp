@@ -1,8 +1,11 @@
 #include "core/pipeline/rig/detected_recording.h"
 
 #include "core/data/calibration_stage.h"
+#include "core/initialisation/initialisation_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/pass/session_recording.h"
+#include "core/report/report_options.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,9 +15,9 @@ namespace {
 
 // Only what detection depends on.
 Session withoutLaterStages(Session session) {
-  session.options.initialisation = {};
-  session.options.optimisation = {};
-  session.options.report = {};
+  session.options.initialisation = InitialisationOptions();
+  session.options.optimisation = OptimisationOptions();
+  session.options.report = ReportOptions();
   session.exports.clear();
   for (SessionCamera& camera : session.cameras) camera.prior = {};
   for (SessionImu& imu : session.imus) {

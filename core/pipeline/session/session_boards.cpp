@@ -190,6 +190,7 @@ void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& s
   session.measured = measured;
   if (!measured) return;
   session.board.spacing_m = measured->spacing_m();
+  OptimisationOptions& options = session.options.optimisation.edit();
   options.free_board_size = measured->std_m > 0.0;
   if (options.free_board_size) options.board_spacing_sigma = measured->relativeStd();
 }
