@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs missing packages, checks the format and the texts, builds with warnings as errors, runs clang-tidy on what has
-# changed, and every test. Prints at its end the wall time and the processor time of each step. Fails if a build that took nothing from ccache
-# needed much more processor time than its budget.
+# Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
+# clang-tidy on what has changed, and every test. Prints at its end the wall time and the processor time of each step. Fails if
+# a build that took nothing from ccache needed much more processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -62,6 +62,7 @@ check_build_budget() {
 step install packaging/install-dependencies.sh test
 step format packaging/check-format.sh
 step texts packaging/check_texts.py
+step weight packaging/weight.sh --check
 step configure cmake --preset ci
 rm -f build/ccache.log
 CCACHE_STATSLOG=$PWD/build/ccache.log step build cmake --build --preset ci

@@ -519,7 +519,7 @@ std::vector<QuantityPart> quantityParts(const QuantityInfo& info, const Value&) 
 }
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info,
                                         const std::optional<CameraIntrinsics>& value);
-// Throws std::out_of_range where there is none.
+// Throws std::out_of_range if it does not exist.
 QuantityPart quantityPart(const QuantityAddress& number);
 
 // Of its first number, `value` as in a state.
@@ -537,7 +537,7 @@ std::vector<QuantityAddress> quantityAddresses(const CalibrationState& state);
 // Each quantity's own sigmas, from the standard deviations of its columns.
 void setSigmas(UncertaintyReport& report);
 
-// Of a lens's numbers that are estimated, among those of `report`; empty where none is.
+// Of a lens's numbers that are estimated; empty if none is.
 Eigen::MatrixXd intrinsicsCovariance(const UncertaintyReport& report, std::size_t camera);
 
 // Those numbers, in SI units: rotations as vectors, upper triangles row by row; of intrinsics all nine.

@@ -83,7 +83,7 @@ void addCameraPriors(ProblemBuilder& builder) {
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const CameraData& data = builder.input.cameras[i];
-    if (data.same_sensor_as) continue;  // what is known of a sensor counts once
+    if (data.same_sensor_as) continue;  // a prior of the sensor counts once
     add(i, {QuantityId::Translation});
     holdTranslation(builder, cameras[i].reference_from_camera.translation_m.data(), data.prior.translation);
     if (builder.drifts(data.prior)) add(i, {QuantityId::TimeOffsetDrift});

@@ -1,5 +1,5 @@
-// What is believed of quantities of which a session says nothing: that they are near what a state has before anything is
-// known. The batch weighs it, and so does what combines the results of several.
+// The default priors: a quantity without a prior in the session is near its value in a new state. The batch and the
+// combination of several results use the same sigmas.
 #pragma once
 
 #include "core/data/quantity.h"
@@ -17,7 +17,7 @@ struct PriorOwner {
   double spacing_sigma = 0.0;  // of that board
 };
 
-// Of each of the quantity's numbers; nothing where there is no such prior, or it is one of its own kind.
+// The sigma of each of the quantity's numbers; empty without a weak prior. Lenses and gravity have other priors.
 std::optional<double> weakSigma(const QuantityInfo& info, const OptimisationOptions& options,
                                 const PriorOwner& owner);
 

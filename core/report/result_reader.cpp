@@ -202,7 +202,8 @@ std::vector<QuantityAddress> readColumns(const YamlNode& list, const NamedResult
     for (const char* const key : {"camera", "imu", "board", "quantity", "component"})
       if (const auto node = item.find(key))
         keys += fmt::format("{}{}: {}", keys.empty() ? "" : ", ", key, yamlText(node->text()));
-    if (!known.contains(keys)) throw item.error(fmt::format("{} is no number of this result", keys));
+    if (!known.contains(keys))
+      throw item.error(fmt::format("{} is not among the numbers of this result", keys));
     columns.push_back(known[keys]);
   }
   return columns;

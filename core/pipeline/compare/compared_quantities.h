@@ -37,8 +37,8 @@ struct ComparedResults {
   bool same_board = true;
 };
 
-// What a quantity may move by itself, in SI units; nothing for what no calibration is made for: biases, drifts, edges'
-// leads. Of a lens RMS pixels.
+// How much a quantity may move without a change of the rig, in SI units; of a lens in RMS pixels. Empty for biases,
+// drifts and edge leads, which every calibration estimates anew.
 std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options);
 
 // Of a lens's first `count` intrinsics that move its image by so much, by RMS, in no direction more than in others.

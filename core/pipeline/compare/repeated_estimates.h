@@ -54,7 +54,7 @@ class RepeatedEstimates {
   const Session& session_;
   std::vector<RecordedEstimate> recorded_;
   RigQuantities quantities_;
-  std::vector<Unknowns> unknowns_;        // of the common ones that any recording tells
+  std::vector<Unknowns> unknowns_;        // of the common ones that any recording estimates
   std::vector<QuantityAddress> columns_;  // of the unknowns
   CalibrationState at_;                   // where values are counted from
   std::optional<EstimateCombination> combination_;

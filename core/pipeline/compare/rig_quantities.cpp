@@ -35,7 +35,7 @@ QuantityShare shareOf(const QuantityInfo& info) {
 
 // As a check takes it: the stability is what all numbers together may move by.
 double ownStability(const QuantityInfo& info, const CheckOptions& options, const PriorOwner& owner) {
-  constexpr double kSheet_m = 1e-4;  // a sheet on a board bends by so much by itself
+  constexpr double kSheet_m = 1e-4;  // the natural bend of a sheet on a board
   if (info.release == QuantityRelease::BoardBow) return kSheet_m / bowHeight_m2(info.id, *owner.board);
   return stabilityOf(info, options).value_or(0.0);
 }
@@ -63,8 +63,8 @@ Eigen::MatrixXd informationOf(const Eigen::VectorXd& sigmas) {
   return sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
-// A lens that each recording finds first has its prior around what that recording itself says: it says nothing of its
-// own. Coefficients that the model does without are held, which is what the others' information is for.
+// Only a given lens has a prior: a lens from the recording adds no information. The information of the estimated
+// coefficients is that with all others fixed.
 void setLensPrior(const OptimisationOptions& options, CameraLens& mean, RigQuantity& quantity) {
   if (!mean.given || !mean.seen_with) return;
   quantity.prior_information =

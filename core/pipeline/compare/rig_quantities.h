@@ -27,7 +27,7 @@ struct RigQuantity {
   QuantityAddress first;  // its first number's
   std::vector<QuantityPart> parts;
   QuantityShare share = QuantityShare::Own;
-  double stability = 0.0;  // what each number moves by itself; of a lens RMS pixels
+  double stability = 0.0;  // as stabilityOf: of each number; of a lens RMS pixels
   // What a session and its options tell of a common one beforehand, around what RigQuantities::prior_means has. Empty:
   // nothing.
   Eigen::MatrixXd prior_information = {};
@@ -39,7 +39,7 @@ struct RigQuantity {
                              const CalibrationState& b) const;  // as sigmas count it
   void move(const Eigen::VectorXd& by, CalibrationState& state) const;
   void copy(const CalibrationState& from, CalibrationState& to) const;
-  // Covariance of what it moves by itself from one recording to the next (CheckOptions).
+  // Covariance of its motion between recordings, by its stability.
   Eigen::MatrixXd moving(const CalibrationState& at) const;
 };
 

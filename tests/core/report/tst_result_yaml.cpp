@@ -246,7 +246,7 @@ class TestResultYaml : public QObject {
       QTest::newRow(column)
           << QString("evical_result: 1\nuncertainty: {columns: [{%1}], std: [1], correlation: [[1]]}\n")
                  .arg(column)
-          << QString("%1 is no number of this result").arg(column);
+          << QString("%1 is not among the numbers of this result").arg(column);
   }
   void result_thatIsNone_isRefused() {
     QFETCH(QString, text);
