@@ -259,12 +259,13 @@ std::optional<IntrinsicsMatrix> correlationInResult(const YamlNode& root, const 
                                                     int count) {
   const auto uncertainty = root.find("uncertainty");
   if (!uncertainty) return std::nullopt;
-  const std::vector<YamlNode> names = (*uncertainty)["names"].items();
-  const std::string first_name = camera + ".focal_length.x ";
-  const auto first = std::find_if(names.begin(), names.end(),
-                                  [&](const YamlNode& name) { return name.text().starts_with(first_name); });
-  if (first == names.end()) return std::nullopt;
-  return readCorrelation((*uncertainty)["correlation"], first - names.begin(), count);
+  const std::vector<YamlNode> columns = (*uncertainty)["columns"].items();
+  const auto first = std::ranges::find_if(columns, [&](const YamlNode& column) {
+    const auto owner = column.find("camera");
+    return owner && owner->text() == camera && column["quantity"].text() == "intrinsics";
+  });
+  if (first == columns.end()) return std::nullopt;
+  return readCorrelation((*uncertainty)["correlation"], first - columns.begin(), count);
 }
 
 // `beside`: the map that has intrinsics, and sigmas where they are known.

@@ -27,6 +27,7 @@ groups = {"tuning"} | {setting.removeprefix("tuning.").split(".")[0] for setting
 short_names = {".".join([parts[0], parts[2]]) for parts in (setting.split(".") for setting in settings) if len(parts) == 3}
 commands = re.findall(r"^  ([a-z]+) ", output(program, "--help").split("Subcommands:")[1], re.MULTILINE)
 options = {command: options_in(output(program, command, "--help")) for command in commands}
+options["options"].add("--tuning")  # for developers: not in its help
 options[""] = options_in(output(program, "--help"))
 
 

@@ -634,7 +634,7 @@ correlation:
         {"options.grid.least_circles", "least of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
     row("part of a group", "tuning.bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
-        {"options.optimisation->solve (line 32)", "'optimisation.solver'"});
+        {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
     row("tuning without its name", "tuning.bursts.least_events: 3", "bursts: {least_events: 3}",
         {"options.bursts.least_events (line 32)", "Write tuning.bursts.least_events"});
     row("options that exclude each other", "tuning.bursts.least_events: 3",
