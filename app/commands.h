@@ -10,9 +10,8 @@ class Command;
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;    // failed or cancelled
 inline constexpr int kBadInput = 2;  // usage, session or recording; nothing was written
-inline constexpr int kChanged =
-    3;  // of a check: the old result does not hold; of a repeat: recordings differ
-inline constexpr int kCannotTell = 4;  // of a check: this recording does not say
+inline constexpr int kChanged = 3;     // of a check, a maintenance, a repeat: what was compared differs
+inline constexpr int kCannotTell = 4;  // of these: the data do not say
 
 void addBatchCommand(Command& app, int& exit_code);
 void addBoardCommand(Command& app, int& exit_code);

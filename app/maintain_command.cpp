@@ -1,16 +1,10 @@
-#include "app/command_line.h"
+#include "app/assessment_command.h"
 #include "app/commands.h"
-#include "app/console.h"
-#include "app/output.h"
 #include "app/version.h"
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
 #include "core/pipeline/maintain/maintain_files.h"
 #include "core/pipeline/maintain/maintain_imus.h"
 #include "core/pipeline/session/calibration_options.h"
-#include "core/report/maintenance_report.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -23,23 +17,10 @@
 namespace evical {
 namespace {
 
-struct MaintainArguments {
-  std::vector<std::string> logs, imus, settings;
-  std::string result, output, trajectory, acceleration_unit, angular_rate_unit;
-  bool json = false, quiet = false;
+struct MaintainArguments : AssessmentArguments {
+  std::vector<std::string> logs, imus;
+  std::string result, trajectory, acceleration_unit, angular_rate_unit;
 };
-
-int exitCodeOf(MaintenanceVerdict verdict) {
-  switch (verdict) {
-    case MaintenanceVerdict::Unchanged:
-      return kDone;
-    case MaintenanceVerdict::Changed:
-      return kChanged;
-    case MaintenanceVerdict::CannotTell:
-      break;
-  }
-  return kCannotTell;
-}
 
 std::pair<std::string, std::string> splitAtEquals(const std::string& flag, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -79,15 +60,12 @@ MaintainInput inputFrom(const MaintainArguments& arguments) {
 
 int run(const MaintainArguments& arguments) {
   const MaintainInput input = inputFrom(arguments);
-  Console console(arguments.quiet || arguments.json);
-  const NewFolder folder(arguments.output);
-  Maintenance maintenance = maintainImus(input, RunContext{console, stopOnSignals()});
-  maintenance.version = kVersion;
-  writeMaintenanceFiles(arguments.output, maintenance, console.logText());
-  console.stageStarted("done");
-  print("{}", arguments.json ? maintenanceJson(maintenance) : maintenanceTable(maintenance));
-  if (!arguments.quiet && !arguments.json) print("Files are in {}\n", arguments.output);
-  return exitCodeOf(maintenance.verdict);
+  return runAssessment(arguments, [&](const Console& console, const RunContext& context) {
+    Maintenance maintenance = maintainImus(input, context);
+    maintenance.version = kVersion;
+    writeMaintenanceFiles(arguments.output, maintenance, console.logText());
+    return maintenance;
+  });
 }
 
 void addUnits(Command& command, MaintainArguments& arguments) {
@@ -114,7 +92,9 @@ void addMaintainCommand(Command& app, int& exit_code) {
       .required();
   command.option("--result", arguments->result, "Folder of the old calibration, or its result.yaml")
       .required();
-  command.option("-o,--output", arguments->output, "Folder for maintenance.yaml and report.html").required();
+  addAssessmentArguments(command, *arguments, "Folder for maintenance.yaml and report.html",
+                         "the group is maintain")
+      .required();
   command
       .option("--imu", arguments->imus,
               "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell; "
@@ -124,14 +104,6 @@ void addMaintainCommand(Command& app, int& exit_code) {
       "--trajectory", arguments->trajectory,
       "Poses of the reference IMU from elsewhere: trajectory.csv of a calibration, or TUM's format");
   addUnits(command, *arguments);
-  command
-      .option("--set", arguments->settings, "group.option=value, see 'evical options': the group is maintain")
-      .repeated();
-  command.flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
-  command.flag("--quiet", arguments->quiet, "Only the tables and errors");
-  command.footer(
-      "Exit codes: 0 nothing has changed; 3 something has; 4 cannot tell, the last lines say what to do; 1 "
-      "cancelled; 2 bad usage, result or log.");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

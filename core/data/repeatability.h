@@ -1,15 +1,13 @@
 // How well a calibration comes out the same from several recordings of one rig, and what they say together.
 #pragma once
 
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/data/calibration_status.h"
 
 #include <string>
 #include <vector>
 
 namespace evical {
-
-enum class RepeatVerdict { Agree, Disagree, Failed };
 
 // One number of a quantity, in shown units; lists by recording, those that were calibrated. Where a recording does not
 // tell it, value and sigma are NaN.
@@ -41,21 +39,18 @@ struct RepeatedRecording {
   std::string reason;                                // why it failed or is doubtful, in plain words
   // Against all others that fit: by chance it is above the limit as seldom as repeat says (false_alarms).
   double chi_square = 0.0, limit = 0.0;
-  int freedom = 0;                       // 0: there is nothing to compare it with
-  std::vector<CheckedQuantity> differs;  // from the others; `before` is theirs
+  int freedom = 0;                // 0: there is nothing to compare it with
+  std::vector<Finding> findings;  // what differs from the others; `before` is theirs
 };
 
-struct Repeatability {
-  RepeatVerdict verdict = RepeatVerdict::Failed;
-  std::string reason;  // a sentence without its full stop
+// Unchanged: the recordings agree. Cannot tell: there are fewer than two of them.
+struct Repeatability : Assessment {
   std::vector<RepeatedRecording> recordings;
   std::vector<std::string> columns;  // those that were calibrated, as the lists of numbers have them
   std::vector<RepeatedQuantity> quantities;
   double rms_ratio = 0.0;     // over all numbers that the recordings tell
   std::string own_values_of;  // the recording whose biases, gravity and time offsets the joint result has
-  std::vector<std::string> notes;
-  double false_alarms = 0.0, took_s = 0.0;
-  std::string version;
+  double took_s = 0.0;
 };
 
 }  // namespace evical

@@ -11,16 +11,12 @@ namespace evical {
 // A column of Repeatability, or all that fit together.
 inline constexpr std::size_t kAllTogether = static_cast<std::size_t>(-1);
 
-struct ComparedNumber {
-  double value = 0.0, sigma = 0.0;
-};
-
 // Nothing where this one does not tell the number.
-std::optional<ComparedNumber> numberOf(const RepeatedNumber& number, std::size_t column);
+std::optional<ValueWithSigma> numberOf(const RepeatedNumber& number, std::size_t column);
 
 // `b` minus `a`. What all recordings were told alike counts in both sigmas, so that the difference's is rather too large.
 // All together hold what a recording that fits says: what both have in common is no difference.
-std::optional<ComparedNumber> differenceOf(const Repeatability& repeat, const RepeatedNumber& number,
+std::optional<ValueWithSigma> differenceOf(const Repeatability& repeat, const RepeatedNumber& number,
                                            std::size_t a, std::size_t b);
 
 }  // namespace evical

@@ -9,7 +9,7 @@
 #include "core/pipeline/check/check_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 #include "core/report/report_options.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -110,36 +110,35 @@ struct Tally {
   int poor = 0, poor_open = 0, poor_good = 0, poor_alarms = 0;
 
   void add(const Row& row) {
-    const CheckVerdict verdict = row.check.verdict;
+    const Verdict verdict = row.check.verdict;
     if (row.kind == "unchanged") {
       ++unchanged;
-      good += verdict == CheckVerdict::StillGood;
-      false_alarms += verdict == CheckVerdict::Changed;
-      cannot_tell += verdict == CheckVerdict::CannotTell;
+      good += verdict == Verdict::Unchanged;
+      false_alarms += verdict == Verdict::Changed;
+      cannot_tell += verdict == Verdict::CannotTell;
     } else if (row.kind == "changed") {
       ++changed;
-      found += verdict == CheckVerdict::Changed;
-      open += verdict == CheckVerdict::CannotTell;
-      missed += verdict != CheckVerdict::Changed && claimed(row);
+      found += verdict == Verdict::Changed;
+      open += verdict == Verdict::CannotTell;
+      missed += verdict != Verdict::Changed && claimed(row);
     } else {
       ++poor;
-      poor_open += verdict == CheckVerdict::CannotTell;
-      poor_good += verdict == CheckVerdict::StillGood;
-      poor_alarms += verdict == CheckVerdict::Changed;
+      poor_open += verdict == Verdict::CannotTell;
+      poor_good += verdict == Verdict::Unchanged;
+      poor_alarms += verdict == Verdict::Changed;
     }
   }
   static bool claimed(const Row& row) {
-    return std::any_of(row.check.quantities.begin(), row.check.quantities.end(),
-                       [&](const CheckedQuantity& q) {
-                         return q.name == row.change.quantity && q.would_notice <= row.change.size;
-                       });
+    return std::any_of(row.check.findings.begin(), row.check.findings.end(), [&](const Finding& q) {
+      return q.quantity == row.change.quantity && q.smallest_detectable_change <= row.change.size;
+    });
   }
   int all() const { return unchanged + changed + poor; }
   void print() const {
     fmt::print(
-        "\nunchanged: {} still good, {} cannot tell, {} false alarms of {}\nchanged: {} found, {} cannot "
+        "\nunchanged: {} called so, {} cannot tell, {} false alarms of {}\nchanged: {} found, {} cannot "
         "tell, {} "
-        "missed that would have been noticed, of {}\npoor: {} cannot tell, {} still good, {} false alarms of "
+        "missed that would have been noticed, of {}\npoor: {} cannot tell, {} unchanged, {} false alarms of "
         "{}\n",
         good, cannot_tell, false_alarms, unchanged, found, open, missed, changed, poor_open, poor_good,
         poor_alarms, poor);
@@ -148,8 +147,9 @@ struct Tally {
 };
 
 std::string noticeText(const CalibrationCheck& check, const char* quantity) {
-  for (const CheckedQuantity& each : check.quantities)
-    if (each.name == quantity) return fmt::format("{:.3g} ({:.3g})", each.would_notice, each.change);
+  for (const Finding& each : check.findings)
+    if (each.quantity == quantity)
+      return fmt::format("{:.3g} ({:.3g})", each.smallest_detectable_change, each.change);
   return "";
 }
 

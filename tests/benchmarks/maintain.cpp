@@ -52,16 +52,16 @@ struct Bench {
 struct Errors {
   double bias = 0.0, scale = 0.0, squares = 0.0, count = 0.0;
 
-  void add(const DriveScenario& drive, const Maintenance& found, MaintenanceSource source) {
+  void add(const DriveScenario& drive, const Maintenance& found, FindingSource source) {
     const AccelerometerVector truth = accelerometerNumbers(drive.imuAt(0, drive.duration_s));
     Eigen::Index n = 0;
-    for (const MaintainedQuantity& quantity : found.quantities) {
-      if (quantity.source != source || !quantity.name.starts_with("accelerometer")) continue;
-      for (const MaintainedNumber& number : quantity.numbers) {
-        const double error = number.now - truth[n++];
-        if (quantity.name == "accelerometer_bias") bias = std::max(bias, std::abs(error));
-        if (quantity.name == "accelerometer_scale") scale = std::max(scale, std::abs(error));
-        squares += std::pow(error / number.now_sigma, 2);
+    for (const Finding& quantity : found.findings) {
+      if (quantity.source != source || !quantity.quantity.starts_with("accelerometer")) continue;
+      for (const ComparedNumber& number : quantity.numbers) {
+        const double error = number.now.value - truth[n++];
+        if (quantity.quantity == "accelerometer_bias") bias = std::max(bias, std::abs(error));
+        if (quantity.quantity == "accelerometer_scale") scale = std::max(scale, std::abs(error));
+        squares += std::pow(error / number.now.sigma, 2);
         count += 1.0;
       }
     }
@@ -69,7 +69,7 @@ struct Errors {
   double ratio() const { return count > 0.0 ? std::sqrt(squares / count) : 0.0; }
 };
 
-void accelerometer(Bench& bench, const std::string& name, MaintenanceSource source, int seeds) {
+void accelerometer(Bench& bench, const std::string& name, FindingSource source, int seeds) {
   constexpr double kMilliG_m_s2 = 9.81e-3;
   Errors errors;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -80,8 +80,8 @@ void accelerometer(Bench& bench, const std::string& name, MaintenanceSource sour
   bench.row(name + ": accelerometer bias, worst", fmt::format("{:.2f} mg", errors.bias / kMilliG_m_s2),
             "2 mg", errors.count == all && errors.bias < 2.0 * kMilliG_m_s2);
   bench.row(name + ": scale, worst", fmt::format("{:.1e}", errors.scale),
-            source == MaintenanceSource::Stops ? "5e-4" : "1e-3",
-            errors.count == all && errors.scale < (source == MaintenanceSource::Stops ? 5e-4 : 1e-3));
+            source == FindingSource::Stops ? "5e-4" : "1e-3",
+            errors.count == all && errors.scale < (source == FindingSource::Stops ? 5e-4 : 1e-3));
   bench.row(name + ": errors over sigmas", fmt::format("{:.2f}", errors.ratio()), "0.7 to 1.4",
             errors.ratio() > 0.7 && errors.ratio() < 1.4);
 }
@@ -93,7 +93,7 @@ void step(Bench& bench, const std::string& name, const std::string& quantity, in
     const DriveScenario scenario = bench.scenario(name, seed);
     const double at_s = scenario.steps.front().at_s;
     const Maintenance found = bench.run(scenario);
-    if (found.steps.size() != 1 || found.steps.front().name != quantity) continue;
+    if (found.steps.size() != 1 || found.steps.front().quantity != quantity) continue;
     ++named;
     latest = std::max(latest, found.steps.front().noticed_s - at_s);
     furthest = std::max(furthest, std::abs(found.steps.front().at_s - at_s));
@@ -109,7 +109,7 @@ void nothing(Bench& bench, const std::string& name, int runs) {
   for (int seed = 1; seed <= runs; ++seed) {
     const Maintenance found = bench.run(bench.scenario(name, 1000 + seed));
     rate = found.false_alarms;
-    alarms += found.verdict == MaintenanceVerdict::Changed ? 1 : 0;
+    alarms += found.verdict == Verdict::Changed ? 1 : 0;
   }
   // At the stated rate more than this many happen once in a hundred such tables.
   const int most = static_cast<int>(std::floor(rate * runs + 2.33 * std::sqrt(rate * runs) + 0.5));
@@ -135,7 +135,7 @@ int maintainOnly(const std::filesystem::path& folder) {
             residentPeak_mb() < 200.0);
   bench.row("three_imus_hour: processor time", fmt::format("{:.1f} s", took_s), "30 s", took_s < 30.0);
   bench.row("three_imus_hour: verdict", found.reason, "nothing has changed",
-            found.verdict == MaintenanceVerdict::Unchanged);
+            found.verdict == Verdict::Unchanged);
   return bench.missed == 0 ? 0 : 1;
 }
 
@@ -156,8 +156,8 @@ int run(int argc, char** argv) {
   if (!only.empty()) return maintainOnly(only);
   bench.scratch = std::filesystem::temp_directory_path() / fmt::format("evical_maintain_{}", ::getpid());
   std::filesystem::create_directories(bench.scratch);
-  accelerometer(bench, "drive_stops", MaintenanceSource::Stops, seeds);
-  accelerometer(bench, "drive_trajectory", MaintenanceSource::Trajectory, seeds);
+  accelerometer(bench, "drive_stops", FindingSource::Stops, seeds);
+  accelerometer(bench, "drive_trajectory", FindingSource::Trajectory, seeds);
   step(bench, "step_rotation", "rotation", seeds);
   step(bench, "step_lever", "translation", seeds);
   step(bench, "step_bias", "accelerometer_bias", seeds);

@@ -5,7 +5,7 @@
 #include "core/numerics/angles.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_without_board.h"
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/processor_time.h"
@@ -58,21 +58,22 @@ Seen see(const Scenario& scenario, const CalibrationOptions& options) {
 }
 
 // Rotations: about the IMU's axes, as sigmas are.
-void addErrors(const CheckedQuantity& quantity, Spread& turns, Spread& delays) {
-  const std::vector<CheckedNumber>& numbers = quantity.numbers;
-  if (quantity.name != "rotation") {
-    for (const CheckedNumber& number : numbers) delays.add(number.now - number.before, number.now_sigma);
+void addErrors(const Finding& quantity, Spread& turns, Spread& delays) {
+  const std::vector<ComparedNumber>& numbers = quantity.numbers;
+  if (quantity.quantity != "rotation") {
+    for (const ComparedNumber& number : numbers)
+      delays.add(number.now.value - number.before.value, number.now.sigma);
     return;
   }
   Eigen::Vector3d before_deg, now_deg;
   for (int k = 0; k < 3; ++k) {
-    before_deg[k] = numbers.at(static_cast<std::size_t>(k)).before;
-    now_deg[k] = numbers.at(static_cast<std::size_t>(k)).now;
+    before_deg[k] = numbers.at(static_cast<std::size_t>(k)).before.value;
+    now_deg[k] = numbers.at(static_cast<std::size_t>(k)).now.value;
   }
   const Eigen::Vector3d error_rad =
       so3Log(so3Exp(kRadPerDeg * now_deg) * so3Exp(kRadPerDeg * before_deg).transpose());
   for (int k = 0; k < 3; ++k)
-    turns.add(error_rad[k] / kRadPerDeg, numbers.at(static_cast<std::size_t>(k)).now_sigma);
+    turns.add(error_rad[k] / kRadPerDeg, numbers.at(static_cast<std::size_t>(k)).now.sigma);
 }
 
 struct Outcome {
@@ -102,7 +103,7 @@ class Table {
       const CalibrationCheck& check = outcomes[k].check;
       const std::lock_guard lock(saying);
       fmt::print("{} {:.0f} s, seed {}: {}\n{}", scenario.name, scenario.duration_s, scenario.seed,
-                 check.windows.empty() ? "" : windowsText(check.windows.front()), checkTable(check));
+                 check.windows.empty() ? "" : windowsText(check.windows.front()), assessmentTable(check));
       std::fflush(stdout);
     });
     Spread turns, delays, told_turns, told_delays;
@@ -112,9 +113,9 @@ class Table {
       own_s += outcome.own_s;
       duration_s += outcome.duration_s;
       ++verdicts.at(static_cast<std::size_t>(outcome.check.verdict));
-      for (const CheckedQuantity& quantity : outcome.check.quantities) {
+      for (const Finding& quantity : outcome.check.findings) {
         addErrors(quantity, turns, delays);
-        if (outcome.check.verdict != CheckVerdict::CannotTell) addErrors(quantity, told_turns, told_delays);
+        if (outcome.check.verdict != Verdict::CannotTell) addErrors(quantity, told_turns, told_delays);
       }
     }
     rows_ += fmt::format(

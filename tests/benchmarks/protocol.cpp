@@ -134,7 +134,7 @@ Protocol runRig(const std::filesystem::path& file, const Arguments& arguments) {
     joint = fmt::format("{:.4f}, {:.4f} ({:.2f})", rotation_deg, kCentimetres * translation_mm,
                         truth.normalisedRms());
   }
-  protocol.good = repeat.verdict == RepeatVerdict::Agree &&
+  protocol.good = repeat.verdict == Verdict::Unchanged &&
                   repeat.columns.size() == static_cast<std::size_t>(arguments.recordings);
   fmt::print("| {} | {} | {} | {} | {} | {:.2f} | {} | {:.0f} | {} |\n", file.stem().string(),
              repeat.columns.size(), cell(rotation, 1.0, 4), cell(translation, kCentimetres, 4),

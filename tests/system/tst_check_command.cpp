@@ -12,7 +12,7 @@ using namespace evical::test;
 
 namespace {
 
-// A short recording tells little: what matters here is that much.
+// A short recording detects large changes only.
 const QStringList kCoarse = {
     "--set", "check.matters_rotation_deg=5",    "--set", "check.matters_translation_mm=500",
     "--set", "check.matters_time_offset_ms=50", "--set", "check.matters_lens_px=50"};
@@ -34,18 +34,18 @@ class TestCheckCommand : public QObject {
     VERIFY_OUTCOME(outcome, 0);
   }
 
-  // Its own recording tells of no change.
+  // Its own recording shows no change.
   void unchanged_endsWith0() {
     const Outcome outcome =
         runProgram(QStringList{"check", result(), recording(), "-o", path("good")} + kCoarse);
     VERIFY_OUTCOME(outcome, 0);
-    QVERIFY2(outcome.output.contains("still good"), qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains("unchanged: "), qPrintable(outcome.output));
     QVERIFY2(outcome.output.contains(
                  QRegularExpression("left.translation.x \\[mm\\] +[0-9.]+ \\+- [0-9.]+ +[0-9.]+ \\+-")),
              qPrintable(outcome.output));
     QVERIFY(!outcome.output.contains('<'));
     QCOMPARE(filesIn(path("good")), (QStringList{"check.yaml", "log.txt", "plots", "report.html"}));
-    QVERIFY(readFile(path("good") + "/check.yaml").startsWith("evical_check: 1\nstatus: still_good\n"));
+    QVERIFY(readFile(path("good") + "/check.yaml").startsWith("evical_check: 1\nverdict: unchanged\n"));
   }
 
   void changed_endsWith3() {
@@ -70,7 +70,7 @@ class TestCheckCommand : public QObject {
     VERIFY_OUTCOME(outcome, 4);
     QVERIFY2(outcome.output.contains(
                  QRegularExpression("cannot tell: .*translation of left below .* mm \\(0.5 matters\\)"
-                                    ".*\n  [A-Z]")),
+                                    ".*\nto do: [A-Z]")),
              qPrintable(outcome.output));
   }
 
@@ -78,9 +78,9 @@ class TestCheckCommand : public QObject {
     const Outcome outcome = runProgram(QStringList{"check", result(), recording(), "--json"} + kCoarse);
     VERIFY_OUTCOME(outcome, 0);
     const QJsonObject json = QJsonDocument::fromJson(outcome.output.toUtf8()).object();
-    QCOMPARE(json["status"].toString(), QString("still_good"));
-    QVERIFY(json["quantities"].toArray().size() >= 4);
-    QVERIFY(json["quantities"].toArray()[0].toObject()["would_notice"].toDouble() > 0.0);
+    QCOMPARE(json["verdict"].toString(), QString("unchanged"));
+    QVERIFY(json["findings"].toArray().size() >= 4);
+    QVERIFY(json["findings"].toArray()[0].toObject()["smallest_detectable_change"].toDouble() > 0.0);
     QVERIFY2(outcome.errors.isEmpty(), qPrintable(outcome.errors));
   }
 

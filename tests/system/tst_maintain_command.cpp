@@ -86,7 +86,8 @@ class TestMaintainCommand : public QObject {
     const Outcome outcome = runProgram(maintain("drive_stops"));
     VERIFY_OUTCOME(outcome, 3);
     const QString yaml = QString::fromUtf8(readFile(path("out/maintenance.yaml")));
-    QVERIFY2(yaml.startsWith("evical_maintenance: 1\nstatus: changed\nreason: "), qPrintable(yaml.left(200)));
+    QVERIFY2(yaml.startsWith("evical_maintenance: 1\nverdict: changed\nreason: "),
+             qPrintable(yaml.left(200)));
     QVERIFY(yaml.contains("accelerometer bias of imu by 0.2"));
     for (const char* const file : {"report.html", "stops.csv", "log.txt"})
       QVERIFY2(QFile::exists(path("out/") + file), file);
@@ -121,7 +122,7 @@ class TestMaintainCommand : public QObject {
     });
     QDir().mkpath(path("turned/calibration"));
     QFile::copy(path("stops_csv/calibration/result.yaml"), path("turned/calibration/result.yaml"));
-    const auto statusOf = [&](const QString& result, const QString& out) {
+    const auto verdictOf = [&](const QString& result, const QString& out) {
       const Outcome outcome =
           runProgram({"maintain", log, "--result", result, "-o", path(out), "--json", "--quiet"});
       return QJsonDocument::fromJson(outcome.output.toUtf8()).object();
@@ -138,9 +139,9 @@ class TestMaintainCommand : public QObject {
               "cameras: {left: {stream: events, resolution_px: [346, 260]}}\n"
               "imus: {imu: {stream: imu, accelerometer_noise_density: 0.01, gyroscope_noise_density: 0.001, "
               "gyroscope_axes: \"y,x,-z\", accelerometer_axes: \"y,x,-z\"}}\n");
-    const QJsonObject turned = statusOf(path("turned/calibration"), "out_turned");
-    QVERIFY(!as_it_was["status"].toString().isEmpty());
-    QCOMPARE(turned["status"], as_it_was["status"]);
+    const QJsonObject turned = verdictOf(path("turned/calibration"), "out_turned");
+    QVERIFY(!as_it_was["verdict"].toString().isEmpty());
+    QCOMPARE(turned["verdict"], as_it_was["verdict"]);
     QCOMPARE(turned["reason"], as_it_was["reason"]);
   }
 
@@ -156,7 +157,7 @@ class TestMaintainCommand : public QObject {
     QCOMPARE(steps[0].toObject()["quantity"].toString(), QStringLiteral("rotation"));
     QCOMPARE(steps[0].toObject()["sensor"].toString(), QStringLiteral("rear"));
     QVERIFY(std::abs(steps[0].toObject()["at_s"].toDouble() - 60.0) <= 2.0);
-    QVERIFY(std::abs(steps[0].toObject()["by"].toDouble() - 0.5) < 0.05);
+    QVERIFY(std::abs(steps[0].toObject()["change"].toDouble() - 0.5) < 0.05);
     QVERIFY(QFile::exists(path("out_step/track1.csv")));
   }
 
@@ -179,7 +180,7 @@ class TestMaintainCommand : public QObject {
     QCOMPARE(step.value("against").toString(), QString());
     QCOMPARE(step.value("quantity").toString(), QString("accelerometer_bias"));
     QVERIFY(std::abs(step.value("at_s").toDouble() - 55.0) <= 2.0);
-    QVERIFY(std::abs(step.value("by").toDouble() - 0.2166) < 0.02);
+    QVERIFY(std::abs(step.value("change").toDouble() - 0.2166) < 0.02);
   }
 
   void shakenMounts_areNoChange() {
@@ -205,7 +206,7 @@ class TestMaintainCommand : public QObject {
     const Outcome outcome = runProgram(maintain("drive_trajectory", {}, "out_moving"));
     VERIFY_OUTCOME(outcome, 4);
     QVERIFY2(outcome.output.contains("cannot tell"), qPrintable(outcome.output));
-    QVERIFY2(outcome.output.contains("To do: "), qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains("to do: "), qPrintable(outcome.output));
   }
 
   void oneLogTwice_isRefused() {

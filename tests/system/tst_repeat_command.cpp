@@ -60,7 +60,7 @@ class TestRepeatCommand : public QObject {
     const Outcome outcome =
         runProgram({"repeat", session("first"), session("second"), "-o", path("both"), "--quiet"});
     VERIFY_OUTCOME(outcome, 0);
-    QVERIFY2(outcome.output.contains("they agree: 2 recordings agree"), qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains("unchanged: 2 recordings agree"), qPrintable(outcome.output));
     QVERIFY2(outcome.output.contains(QRegularExpression(
                  "left.translation.x \\[mm\\] +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+ \\+- [0-9.]+\n")),
              qPrintable(outcome.output));
@@ -68,7 +68,7 @@ class TestRepeatCommand : public QObject {
              (QStringList{"log.txt", "plots", "recordings", "repeat.csv", "repeat.yaml", "report.html",
                           "result.yaml", "run_session.yaml"}));
     QCOMPARE(filesIn(path("both/recordings")).size(), 2);
-    QVERIFY(readFile(path("both/repeat.yaml")).startsWith("evical_repeat: 1\nstatus: agree\n"));
+    QVERIFY(readFile(path("both/repeat.yaml")).startsWith("evical_repeat: 1\nverdict: unchanged\n"));
     const QString result = path("both/result.yaml");
     VERIFY_OUTCOME(runProgram({"compare", result, simulated("short") + "/truth.yaml"}), 0);
     VERIFY_OUTCOME(runProgram({"export", result, "--to", "kalibr", "-o", path("kalibr")}), 0);
@@ -79,17 +79,19 @@ class TestRepeatCommand : public QObject {
         runProgram({"repeat", session("first"), session("second"), "-o", path("both"), "--json"});
     VERIFY_OUTCOME(json, 0);
     const QJsonObject object = QJsonDocument::fromJson(json.output.toUtf8()).object();
-    QCOMPARE(object["status"].toString(), QString("agree"));
+    QCOMPARE(object["verdict"].toString(), QString("unchanged"));
     QCOMPARE(object["recordings"].toArray().size(), 2);
     QVERIFY(object["quantities"].toArray().size() >= 5);
     QVERIFY2(json.errors.isEmpty(), qPrintable(json.errors));
   }
 
-  void fewerThanTwo_endsWith1AndSaysWhy() {
+  void fewerThanTwo_endsWith4AndSaysWhy() {
     const Outcome outcome = runProgram({"repeat", session("early"), session("late"), "-o", path("few")});
-    VERIFY_OUTCOME(outcome, 1);
-    VERIFY_SAYS(outcome, "1 of 2 recordings could be calibrated.*too short");
-    QVERIFY(readFile(path("few/repeat.yaml")).contains("status: failed"));
+    VERIFY_OUTCOME(outcome, 4);
+    QVERIFY2(outcome.output.contains(QRegularExpression(
+                 "cannot tell: 1 of 2 recordings could be calibrated.*too short.*\nto do: ")),
+             qPrintable(outcome.output));
+    QVERIFY(readFile(path("few/repeat.yaml")).contains("verdict: cannot_tell"));
     QVERIFY(!QFile::exists(path("few/result.yaml")));
   }
 

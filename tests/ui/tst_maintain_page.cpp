@@ -1,6 +1,6 @@
 // The story of who cannot go before a board again: logs of the IMUs are held against the old result.
 #include "core/pipeline/simulate/drive_simulation.h"
-#include "core/report/maintenance_report.h"
+#include "core/report/assessment_report.h"
 #include "core/synthetic/drive_scenario.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
@@ -12,8 +12,8 @@
 #include "ui/plots/maintenance_charts.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/screens/assessment/file_list.h"
+#include "ui/screens/assessment/finding_table.h"
 #include "ui/screens/assessment/maintain_screen.h"
-#include "ui/screens/assessment/maintain_table.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
@@ -124,15 +124,15 @@ class TestMaintainPage : public QObject {
 
   void story_somethingMoved() {
     WindowFixture test;
-    QSignalSpy maintained(&test.window.workbench().maintain, &MaintainJob::maintained);
+    const MaintainJob& job = test.window.workbench().maintain;
+    QSignalSpy done(&job, &TaskJob::done);
     const QString folder = simulated("step_lever");
     look(test, folder + "/recording.bag", folder + "/calibration");
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    QCOMPARE(maintained.size(), 1);
-    const auto found = maintained.takeLast().at(0).value<std::shared_ptr<const MaintainedLogs>>();
-    QVERIFY2(found->maintenance.verdict == MaintenanceVerdict::Changed, found->maintenance.reason.c_str());
-    shows(test, found->maintenance);
-    overTime(test, found->maintenance);
+    QCOMPARE(done.size(), 1);
+    QVERIFY2(job.found()->verdict == Verdict::Changed, job.found()->reason.c_str());
+    shows(test, *job.found());
+    overTime(test, *job.found());
     QVERIFY(unnamedControls(page(test)).isEmpty());
     saved(test);
     keepPictures(test, "maintain_over_time");
@@ -178,15 +178,13 @@ class TestMaintainPage : public QObject {
     QCOMPARE(verdict.toLower(), QString(verdictWords(maintenance.verdict)));
     const QString reason = QString::fromStdString(maintenance.reason);
     QVERIFY(screen.findChild<QLabel*>("maintain_reason")->text().contains(reason.mid(1)));
-    const auto* const table = test.child<MaintainTable>();
-    QCOMPARE(table->topLevelItemCount(), static_cast<int>(maintenance.quantities.size()));
-    for (std::size_t k = 0; k < maintenance.quantities.size(); ++k) {
+    const auto* const table = page(test).findChild<FindingTable*>();
+    QCOMPARE(table->topLevelItemCount(), static_cast<int>(maintenance.findings.size()));
+    for (std::size_t k = 0; k < maintenance.findings.size(); ++k) {
       const QTreeWidgetItem& row = *table->topLevelItem(static_cast<int>(k));
-      const MaintainedQuantity& quantity = maintenance.quantities[k];
+      const Finding& quantity = maintenance.findings[k];
       QCOMPARE(row.childCount(), static_cast<int>(quantity.numbers.size()));
-      QCOMPARE(row.text(MaintainTable::kVerdict), QString(quantity.changed  ? "changed"
-                                                          : quantity.told() ? "unchanged"
-                                                                            : "undecided"));
+      QCOMPARE(row.text(FindingTable::kVerdict), QString(verdictWords(quantity.verdict())));
     }
     const auto* const steps = test.child<StepTable>();
     QVERIFY(steps->isVisible());
@@ -205,9 +203,8 @@ class TestMaintainPage : public QObject {
     QCOMPARE(what->itemText(0), QString("rear against front"));
     QCOMPARE(charts->panels().size(), std::size_t{5});
     const MaintenanceTrack& track = maintenance.tracks.front();
-    const auto lever = std::find_if(track.columns.begin(), track.columns.end(),
-                                    [](const std::string& name) { return name.starts_with("translation"); });
-    QVERIFY(lever != track.columns.end());
+    QCOMPARE(track.quantities.size(), std::size_t{5});
+    QCOMPARE(track.quantities[1].title, std::string("lever arm"));
     QVERIFY(charts->panels()[1]->csv().contains("x,"));
     what->setCurrentIndex(1);
     QVERIFY(what->currentText().startsWith("Stops of "));
@@ -218,7 +215,7 @@ class TestMaintainPage : public QObject {
     const QString folder = scratch_.filePath("maintained");
     QDir().mkpath(folder);
     answerFileDialog(folder);
-    QTest::mouseClick(button(test, "save_maintenance"), Qt::LeftButton);
+    QTest::mouseClick(button(test, "save_maintain"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const name : {"maintenance.yaml", "report.html", "track1.csv", "stops.csv", "log.txt"})
       QVERIFY2(QFileInfo(QDir(folder).filePath(name)).size() > 0, name);

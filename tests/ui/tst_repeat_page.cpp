@@ -88,13 +88,13 @@ class TestRepeatPage : public QObject {
     const QString folder = scratch_.filePath("together");
     type(test, folder);
     cancelled(test);
-    QSignalSpy repeated(&test.window.workbench().repeat, &RepeatJob::repeated);
+    const RepeatJob& job = test.window.workbench().repeat;
+    QSignalSpy done(&job, &TaskJob::done);
     QTest::mouseClick(button(test, "start_repeat"), Qt::LeftButton);
     QVERIFY2(test.waitForJob() == JobOutcome::Done, qPrintable(test.child<ErrorPanel>()->text()));
-    QCOMPARE(repeated.size(), 1);
-    const auto found = repeated.at(0).at(0).value<std::shared_ptr<const RepeatedRecordings>>();
-    const Repeatability& repeat = found->run.repeatability;
-    QVERIFY2(repeat.verdict == RepeatVerdict::Disagree, repeat.reason.c_str());
+    QCOMPARE(done.size(), 1);
+    const Repeatability& repeat = job.found()->run.repeatability;
+    QVERIFY2(repeat.verdict == Verdict::Changed, repeat.reason.c_str());
     QVERIFY(repeat.recordings.at(3).outcome == RepeatOutcome::DoesNotFit);
     shows(test, repeat);
     compares(test, repeat);
@@ -136,7 +136,7 @@ class TestRepeatPage : public QObject {
   }
   void shows(WindowFixture& test, const Repeatability& repeat) {
     auto* const screen = test.child<RepeatScreen>();
-    QCOMPARE(screen->findChild<QLabel*>("repeat_verdict")->text(), QString("They do not agree"));
+    QCOMPARE(screen->findChild<QLabel*>("repeat_verdict")->text(), QString("Changed"));
     QVERIFY(screen->findChild<QLabel*>("repeat_reason")->text().contains("rotation"));
     const auto* const list = test.child<RepeatedList>();
     QCOMPARE(list->topLevelItemCount(), 4);

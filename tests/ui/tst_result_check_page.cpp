@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The story of who calibrated some time ago: a new recording is held against the old result.
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/page_pictures.h"
@@ -8,7 +8,7 @@
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
-#include "ui/screens/assessment/check_table.h"
+#include "ui/screens/assessment/finding_table.h"
 #include "ui/screens/assessment/result_check_screen.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/export_notice.h"
@@ -60,7 +60,7 @@ class TestResultCheckPage : public QObject {
     QVERIFY(test.runner().running());
   }
   static const QTreeWidgetItem* rowOf(WindowFixture& test, const QString& title) {
-    const auto* const table = test.child<CheckTable>();
+    const auto* const table = test.child<ResultCheckScreen>()->findChild<FindingTable*>();
     for (int row = 0; row < table->topLevelItemCount(); ++row)
       if (table->topLevelItem(row)->text(0).contains(title)) return table->topLevelItem(row);
     return nullptr;
@@ -107,24 +107,26 @@ class TestResultCheckPage : public QObject {
     QVERIFY(field(test, "new_recording").isEmpty());  // that of the result says nothing new
     cancelled(test);
 
-    QSignalSpy checked(&test.window.workbench().result_check, &ResultCheckJob::checked);
+    const ResultCheckJob& job = test.window.workbench().result_check;
+    QSignalSpy done(&job, &TaskJob::done);
     check(test, simulatedFurtherSession(2));
     QVERIFY(button(test, "cancel_check_result")->isVisible() &&
             !button(test, "start_check_result")->isVisible());
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    QCOMPARE(checked.size(), 1);
-    const auto same = checked.takeLast().at(0).value<std::shared_ptr<const CheckedResult>>();
-    QVERIFY2(same->run.check.verdict != CheckVerdict::Changed, same->run.check.reason.c_str());
+    QCOMPARE(done.size(), 1);
+    const auto same = job.found();
+    QVERIFY2(same->run.check.verdict != Verdict::Changed, same->run.check.reason.c_str());
     shows(test, same->run.check);
     keepPictures(test, "check_result_same");
     saved(test);
 
     check(test, simulatedFurtherSession(3, 1.5));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    const auto turned = checked.takeLast().at(0).value<std::shared_ptr<const CheckedResult>>();
-    QVERIFY2(turned->run.check.verdict == CheckVerdict::Changed, turned->run.check.reason.c_str());
+    QCOMPARE(done.size(), 2);
+    const auto turned = job.found();
+    QVERIFY2(turned->run.check.verdict == Verdict::Changed, turned->run.check.reason.c_str());
     shows(test, turned->run.check);
-    QCOMPARE(rowOf(test, "rotation")->text(CheckTable::kVerdict), QString("changed"));
+    QCOMPARE(rowOf(test, "rotation")->text(FindingTable::kVerdict), QString("changed"));
     QVERIFY(unnamedControls(*test.child<ResultCheckScreen>()).isEmpty());
     applyTheme(*qApp, Appearance::Dark);
     keepPictures(test, "check_result_changed");
@@ -144,27 +146,27 @@ class TestResultCheckPage : public QObject {
   }
   void shows(WindowFixture& test, const CalibrationCheck& check) {
     auto* const screen = test.child<ResultCheckScreen>();
-    const QString verdict = screen->findChild<QLabel*>("check_verdict")->text();
+    const QString verdict = screen->findChild<QLabel*>("check_result_verdict")->text();
     QCOMPARE(verdict.toLower(), QString(verdictWords(check.verdict)));
     const QString reason = QString::fromStdString(check.reason);
-    QVERIFY(screen->findChild<QLabel*>("check_reason")->text().contains(reason.mid(1)));
-    const auto* const table = test.child<CheckTable>();
-    QCOMPARE(table->topLevelItemCount(), static_cast<int>(check.quantities.size()));
-    for (std::size_t k = 0; k < check.quantities.size(); ++k) {
+    QVERIFY(screen->findChild<QLabel*>("check_result_reason")->text().contains(reason.mid(1)));
+    const auto* const table = test.child<ResultCheckScreen>()->findChild<FindingTable*>();
+    QCOMPARE(table->topLevelItemCount(), static_cast<int>(check.findings.size()));
+    for (std::size_t k = 0; k < check.findings.size(); ++k) {
       const QTreeWidgetItem& row = *table->topLevelItem(static_cast<int>(k));
-      QCOMPARE(row.childCount(), static_cast<int>(check.quantities[k].numbers.size()));
-      QVERIFY(std::abs(row.text(CheckTable::kSigmas).toDouble() - check.quantities[k].sigmas) < 0.06);
-      QVERIFY(!row.text(CheckTable::kNotice).isEmpty() && !row.text(CheckTable::kChange).isEmpty());
+      QCOMPARE(row.childCount(), static_cast<int>(check.findings[k].numbers.size()));
+      QVERIFY(std::abs(row.text(FindingTable::kSigmas).toDouble() - check.findings[k].sigmas) < 0.06);
+      QVERIFY(!row.text(FindingTable::kDetectable).isEmpty() && !row.text(FindingTable::kChange).isEmpty());
     }
-    QVERIFY(table->allText().contains("Would notice"));
-    QVERIFY(screen->findChild<QListWidget*>("check_notes")->count() >=
+    QVERIFY(table->allText().contains("Detectable"));
+    QVERIFY(screen->findChild<QListWidget*>("check_result_notes")->count() >=
             static_cast<int>(check.advice.size() + check.notes.size()));
   }
   void saved(WindowFixture& test) {
     const QString folder = scratch_.filePath("checked");
     QDir().mkpath(folder);
     answerFileDialog(folder);
-    QTest::mouseClick(button(test, "save_check"), Qt::LeftButton);
+    QTest::mouseClick(button(test, "save_check_result"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const name : {"check.yaml", "report.html", "log.txt"})
       QVERIFY2(QFileInfo(QDir(folder).filePath(name)).size() > 0, name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/maintenance_charts.h"
 
-#include "core/report/maintenance_report.h"
+#include "core/report/assessment_report.h"
 #include "ui/plots/plot_panel.h"
 
 #include <QComboBox>
@@ -23,10 +23,8 @@ QString text(const std::string& of_core) {
   return QString::fromStdString(of_core);
 }
 
-// "gyroscope_bias" gives "Gyroscope bias"; between IMUs a translation is what the table calls a lever arm.
-QString titleOf(const std::string& name) {
-  if (name == "translation") return QObject::tr("Lever arm");
-  QString title = text(name).replace('_', ' ');
+QString titleOf(const TrackedQuantity& quantity) {
+  QString title = text(quantity.title);
   if (!title.isEmpty()) title[0] = title[0].toUpper();
   return title;
 }
@@ -36,29 +34,29 @@ QString titleOf(const MaintenanceTrack& track) {
                                : QObject::tr("%1 against %2").arg(text(track.sensor), text(track.against));
 }
 
-void addNumber(PlotPanel& panel, const MaintenanceTrack& track, std::size_t column, const QString& name,
+void addNumber(PlotPanel& panel, const MaintenanceTrack& track, const TrackedNumber& number,
                PlotColour colour) {
-  const std::vector<double>&values = track.values[column], &sigmas = track.sigmas[column];
   std::vector<double> low, high;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    low.push_back(values[k] - sigmas[k]);
-    high.push_back(values[k] + sigmas[k]);
+  for (std::size_t k = 0; k < number.values.size(); ++k) {
+    low.push_back(number.values[k] - number.sigmas[k]);
+    high.push_back(number.values[k] + number.sigmas[k]);
   }
   const auto band = panel.addSeries(PlotPanel::SeriesKind::Band, {.colour = colour, .opacity = 0.18});
   panel.setBand(band, track.times_s, low, high);
+  const QString name = number.name.empty() ? QObject::tr("difference") : text(number.name);
   const auto line =
       panel.addSeries(PlotPanel::SeriesKind::Line, {.name = name, .colour = colour, .width_px = 1.4});
-  panel.setData(line, track.times_s, values);
+  panel.setData(line, track.times_s, number.values);
 }
 
 // Without the moments of which hardly anything is known, at the start and after changes: they would squeeze all others.
-void fitToMost(PlotPanel& panel, const MaintenanceTrack& track, const TrackPart& part) {
+void fitToMost(PlotPanel& panel, const MaintenanceTrack& track, const TrackedQuantity& quantity) {
   constexpr double kLeftOut = 0.04, kMargin = 0.06;
   std::vector<double> low, high;
-  for (std::size_t c = part.first; c < part.first + part.parts.size(); ++c)
+  for (const TrackedNumber& number : quantity.numbers)
     for (std::size_t k = 0; k < track.times_s.size(); ++k) {
-      low.push_back(track.values[c][k] - track.sigmas[c][k]);
-      high.push_back(track.values[c][k] + track.sigmas[c][k]);
+      low.push_back(number.values[k] - number.sigmas[k]);
+      high.push_back(number.values[k] + number.sigmas[k]);
     }
   if (low.empty()) return;
   const auto left_out = static_cast<std::ptrdiff_t>(kLeftOut * static_cast<double>(low.size()));
@@ -161,14 +159,13 @@ void MaintenanceCharts::showTrack(const MaintenanceTrack& track) {
   std::vector<PlotMark> marks;
   for (const MaintenanceStep& step : maintenance_.steps)
     if (isIn(step, track)) marks.push_back({step.at_s, text(step.title)});
-  for (const TrackPart& part : partsOf(track)) {
-    PlotPanel* const panel = addPanel(titleOf(part.name), part.unit == "1" ? QString() : text(part.unit));
-    for (std::size_t k = 0; k < part.parts.size(); ++k)
-      addNumber(*panel, track, part.first + k, part.parts[k].empty() ? tr("difference") : text(part.parts[k]),
-                kColours[k % kColours.size()]);
+  for (const TrackedQuantity& quantity : track.quantities) {
+    PlotPanel* const panel = addPanel(titleOf(quantity), text(shownUnit(quantity.unit)));
+    for (std::size_t k = 0; k < quantity.numbers.size(); ++k)
+      addNumber(*panel, track, quantity.numbers[k], kColours[k % kColours.size()]);
     panel->setLevels({0.0});
     panel->setMarks(marks);
-    fitToMost(*panel, track, part);
+    fitToMost(*panel, track, quantity);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/pages.h"
+#include "ui/window/assessment_pages.h"
 
 #include "core/pipeline/runs/result_files.h"
 #include "ui/detection/detection_screen.h"
@@ -19,11 +20,8 @@
 #include "ui/window/follow_recording.h"
 #include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
-#include "ui/window/maintain_page.h"
 #include "ui/window/print_board.h"
 #include "ui/window/recording_check.h"
-#include "ui/window/repeat_page.h"
-#include "ui/window/result_check_page.h"
 #include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"

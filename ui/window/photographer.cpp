@@ -94,21 +94,21 @@ void Photographer::checkResult() {
       !screen->recording().path().isEmpty())
     return;
   screen->recording().setPath(further_.front());
-  emit screen->checkRequested();
+  emit screen->startRequested();
 }
 
 void Photographer::repeat() {
   auto* const screen = window_.findChild<RepeatScreen*>();
   screen->files().add(QStringList{window_.workbench().document.file()} + further_);
   screen->folder().setPath(results_.filePath("together"));
-  emit screen->repeatRequested();
+  emit screen->startRequested();
 }
 
 void Photographer::maintain() {
   auto* const screen = window_.findChild<MaintainScreen*>();
   screen->logs().add({QString::fromStdString(window_.workbench().document.session().recording.string())});
   screen->result().setPath(further_.front());
-  emit screen->maintainRequested();
+  emit screen->startRequested();
 }
 
 void Photographer::jobDone() {

@@ -4,15 +4,13 @@
 
 #include "ui/document/calibration_document.h"
 #include "ui/document/lens_document.h"
+#include "ui/jobs/assessment_jobs.h"
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/growing_recording.h"
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
-#include "ui/jobs/maintain_job.h"
 #include "ui/jobs/recording_check_job.h"
-#include "ui/jobs/repeat_job.h"
-#include "ui/jobs/result_check_job.h"
 #include "ui/jobs/run_history.h"
 
 #include <QString>

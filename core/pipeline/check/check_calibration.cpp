@@ -47,17 +47,14 @@ BoardSeen boardSeen(const RecordingPass& pass) {
 }
 
 // As far as numbers go by name: of a run with the same session.
-void addTogether(const NamedResult& together, const CheckInput& input,
-                 std::vector<CheckedQuantity>& quantities) {
+void addJoint(const NamedResult& together, const CheckInput& input, std::vector<Finding>& findings) {
   const ComparedQuantities compared =
       compareQuantities({input.before, together, input.same_board}, *input.session.options.check);
-  for (CheckedQuantity& quantity : quantities)
+  for (Finding& finding : findings)
     for (const ComparedQuantity& other : compared.quantities) {
-      if (other.shown.sensor != quantity.sensor || other.shown.name != quantity.name) continue;
-      for (std::size_t k = 0; k < std::min(quantity.numbers.size(), other.shown.numbers.size()); ++k) {
-        quantity.numbers[k].together = other.shown.numbers[k].now;
-        quantity.numbers[k].together_sigma = other.shown.numbers[k].now_sigma;
-      }
+      if (other.shown.sensor != finding.sensor || other.shown.quantity != finding.quantity) continue;
+      for (std::size_t k = 0; k < std::min(finding.numbers.size(), other.shown.numbers.size()); ++k)
+        finding.numbers[k].joint = other.shown.numbers[k].now;
     }
 }
 
@@ -67,7 +64,7 @@ class Check {
     out_.check.notes = input.notes;
     out_.check.false_alarms = input.session.options.check->false_alarms;
     out_.check.before = input.before_name;
-    out_.check.recording = input.session.recording.filename().string();
+    out_.check.inputs = {input.session.recording.filename().string()};
   }
 
   // `calibrate`: the free run, of the session it is given.
@@ -120,7 +117,7 @@ class Check {
       return;
     }
     const auto result = std::make_shared<const CalibrationResult>(outcome.run->result);
-    addTogether(namedResult(weighed, result, {}), input_, out_.check.quantities);
+    addJoint(namedResult(weighed, result, {}), input_, out_.check.findings);
   }
 
   void judge() {
@@ -131,8 +128,8 @@ class Check {
       addAdvice("Mend what is said of the recording, and record again", out_.check);
       return;
     }
-    judgeQuantities(out_.check);
-    if (out_.check.verdict == CheckVerdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
+    judgeFindings(out_.check);
+    if (out_.check.verdict == Verdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
   }
 
   // As a recording is assessed before it is calibrated.

@@ -2,7 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 
 #include <memory>
 #include <utility>
@@ -29,7 +29,7 @@ void writeCheckFiles(const std::filesystem::path& folder, const CheckInput& inpu
   for (FileContent& file :
        reportOf(input.session, named, checked.run ? checked.run->pass : checked.pass, {}, &checked.check))
     files.push_back(std::move(file));
-  files.push_back({"check.yaml", checkYaml(checked.check)});  // the last tells that all are there
+  files.push_back({"check.yaml", assessmentYaml(checked.check)});  // the last tells that all are there
   writeExportedFiles(folder, files);
 }
 

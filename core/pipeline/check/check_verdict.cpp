@@ -12,19 +12,19 @@
 namespace evical {
 namespace {
 
-std::string wordsOf(const CheckedQuantity& quantity) {
-  return fmt::format("the {} of {}", quantity.title, quantity.sensor);
+std::string wordsOf(const Finding& finding) {
+  return fmt::format("the {} of {}", finding.title, finding.sensor);
 }
 
-std::string changeText(const CheckedQuantity& quantity) {
-  return fmt::format("{} by {} {} ({:.1f} sigmas)", wordsOf(quantity), html::significant(quantity.change, 2),
-                     quantity.unit, quantity.sigmas);
+std::string changeText(const Finding& finding) {
+  return fmt::format("{} by {} {} ({:.1f} sigmas)", wordsOf(finding), html::significant(finding.change, 2),
+                     finding.unit, finding.sigmas);
 }
 
-std::string openText(const CheckedQuantity& quantity) {
-  return fmt::format("a change of {} below {} {} ({} matters)", wordsOf(quantity),
-                     html::significant(quantity.would_notice, 2), quantity.unit,
-                     html::plain(quantity.matters));
+std::string openText(const Finding& finding) {
+  return fmt::format("a change of {} below {} {} ({} matters)", wordsOf(finding),
+                     html::significant(finding.smallest_detectable_change, 2), finding.unit,
+                     html::plain(finding.required_detectability));
 }
 
 }  // namespace
@@ -32,31 +32,34 @@ std::string openText(const CheckedQuantity& quantity) {
 void testQuantities(const ComparedQuantities& compared, const CheckOptions& options,
                     CalibrationCheck& check) {
   const GroupTestResults tests = testSingleChanges(compared.change, compared.groups, options.false_alarms);
-  std::size_t shown = 0;
+  std::size_t shown = 0, most_changed = 0;
   std::vector<std::string> names(compared.groups.size());
   for (std::size_t g = 0; g < compared.groups.size(); ++g) {
     if (!compared.groups[g].tested) continue;
     const ComparedQuantity& quantity = compared.quantities[shown++];
-    check.quantities.push_back(testedQuantity(quantity, tests.groups[g], compared.groups[g]));
+    check.findings.push_back(testedQuantity(quantity, tests.groups[g], compared.groups[g]));
     names[g] = wordsOf(quantity.shown);
+    if (g == tests.most_changed) most_changed = check.findings.size() - 1;
   }
-  for (const std::size_t g : tests.or_else) check.or_else.push_back(names[g]);
+  for (const std::size_t g : tests.alternatives)
+    check.findings.at(most_changed).alternatives.push_back(names[g]);
 }
 
-void judgeQuantities(CalibrationCheck& check) {
-  std::vector<std::string> changed, open;
-  for (const CheckedQuantity& quantity : check.quantities) {
-    if (quantity.changed) changed.push_back(changeText(quantity));
-    if (!quantity.toldEnough()) open.push_back(openText(quantity));
+void judgeFindings(CalibrationCheck& check) {
+  std::vector<std::string> changed, open, alternatives;
+  for (const Finding& finding : check.findings) {
+    if (finding.changed) changed.push_back(changeText(finding));
+    if (!finding.isConclusive()) open.push_back(openText(finding));
+    alternatives.insert(alternatives.end(), finding.alternatives.begin(), finding.alternatives.end());
   }
   if (!changed.empty()) {
-    check.verdict = CheckVerdict::Changed;
+    check.verdict = Verdict::Changed;
     check.reason = joined(changed) + " changed";
-    if (!check.or_else.empty())
-      check.reason += fmt::format(" (or {}: the recording does not tell which)", joined(check.or_else));
+    if (!alternatives.empty())
+      check.reason += fmt::format(" (or {}: the recording does not tell which)", joined(alternatives));
     addAdvice("Calibrate again, and look for what is loose", check);
   } else if (open.empty()) {
-    check.verdict = CheckVerdict::StillGood;
+    check.verdict = Verdict::Unchanged;
     check.reason = "nothing has changed, and a change that matters would have shown";
   } else {
     setCannotTell("nothing is seen to have changed, but this recording would not have shown " + joined(open),
@@ -65,7 +68,7 @@ void judgeQuantities(CalibrationCheck& check) {
 }
 
 void setCannotTell(const std::string& reason, CalibrationCheck& check) {
-  check.verdict = CheckVerdict::CannotTell;
+  check.verdict = Verdict::CannotTell;
   check.reason = reason;
 }
 

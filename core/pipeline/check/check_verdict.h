@@ -9,11 +9,11 @@
 
 namespace evical {
 
-// Fills the check's quantities and or_else.
+// Fills the check's findings.
 void testQuantities(const ComparedQuantities& compared, const CheckOptions& options, CalibrationCheck& check);
 
-// Verdict and reason from the quantities, and what to do where something has changed.
-void judgeQuantities(CalibrationCheck& check);
+// Verdict and reason from the findings, and what to do where something has changed.
+void judgeFindings(CalibrationCheck& check);
 
 void setCannotTell(const std::string& reason, CalibrationCheck& check);
 // As a sentence, once.

@@ -91,7 +91,7 @@ class BoardlessCheck {
     check.notes = input.notes;
     check.false_alarms = input.session.options.check->false_alarms;
     check.before = input.before_name;
-    check.recording = input.session.recording.filename().string();
+    check.inputs = {input.session.recording.filename().string()};
     check.without_board = true;
     check.notes.push_back(
         "without a board, rotations and time offsets of event cameras are checked, and nothing else");
@@ -205,11 +205,11 @@ class BoardlessCheck {
       options.matters_rotation_deg = options.without_board_rotation_deg;
       options.matters_time_offset_ms = options.without_board_time_offset_ms;
       testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);
-      for (CheckedQuantity& quantity : out_.check.quantities) addTogether(quantity);
-      judgeQuantities(out_.check);
-      if (out_.check.verdict == CheckVerdict::CannotTell) advise();
+      for (Finding& finding : out_.check.findings) addJoint(finding);
+      judgeFindings(out_.check);
+      if (out_.check.verdict == Verdict::CannotTell) advise();
     }
-    if (failures_.empty() || out_.check.verdict == CheckVerdict::Changed) return;
+    if (failures_.empty() || out_.check.verdict == Verdict::Changed) return;
     setCannotTell(joined(failures_), out_.check);
   }
 
@@ -221,17 +221,15 @@ class BoardlessCheck {
   }
 
   // Number by number, as two independent estimates of one.
-  static void addTogether(CheckedQuantity& quantity) {
-    for (CheckedNumber& number : quantity.numbers) {
-      const double before = number.before_sigma * number.before_sigma,
-                   now = number.now_sigma * number.now_sigma;
-      if (!(before > 0.0) || !(now > 0.0)) {
-        number.together = before > 0.0 ? number.before : number.now;
-        number.together_sigma = std::max(number.before_sigma, number.now_sigma);
-        continue;
-      }
-      number.together = (number.before * now + number.now * before) / (before + now);
-      number.together_sigma = std::sqrt(before * now / (before + now));
+  static void addJoint(Finding& finding) {
+    for (ComparedNumber& number : finding.numbers) {
+      const double before = number.before.sigma * number.before.sigma,
+                   now = number.now.sigma * number.now.sigma;
+      if (!(before > 0.0) || !(now > 0.0))
+        number.joint = before > 0.0 ? number.before : number.now;
+      else
+        number.joint = {(number.before.value * now + number.now.value * before) / (before + now),
+                        std::sqrt(before * now / (before + now))};
     }
   }
 

@@ -256,13 +256,13 @@ class Comparison {
                                  const std::vector<QuantityPart>& parts) const {
     const QuantityInfo& info = row.info;
     ComparedQuantity compared;
-    CheckedQuantity& shown = compared.shown;
+    Finding& shown = compared.shown;
     shown.sensor = pair.sensor;
-    shown.name = info.name;
+    shown.quantity = info.name;
     shown.title = titleOf(info);
     shown.unit = judged.unit;
-    shown.stability = judged.stability;
-    shown.matters = judged.matters;
+    shown.allowed_drift = judged.stability;
+    shown.required_detectability = judged.matters;
     const double factor = info.shown_factor;
     const Eigen::VectorXd before = factor * quantityNumbers(row.value(pair.before.state)),
                           now = factor * quantityNumbers(row.value(pair.now.state)),
@@ -270,9 +270,10 @@ class Comparison {
                           sigma_now = factor * quantityNumbers(row.sigma(pair.now.sigma));
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      shown.numbers.push_back({parts[k].name, parts[k].shown_unit, before[i],
-                               i < sigma_before.size() ? sigma_before[i] : 0.0, now[i],
-                               i < sigma_now.size() ? sigma_now[i] : 0.0});
+      shown.numbers.push_back({parts[k].name,
+                               parts[k].shown_unit,
+                               {before[i], i < sigma_before.size() ? sigma_before[i] : 0.0},
+                               {now[i], i < sigma_now.size() ? sigma_now[i] : 0.0}});
     }
     return compared;
   }
@@ -329,18 +330,18 @@ double sizeAlong(const GroupTestResult& test, const ChangeGroup& group) {
 
 }  // namespace
 
-CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
-                               const ChangeGroup& group) {
-  CheckedQuantity quantity = compared.shown;
-  quantity.change = (group.to_size * test.change).norm();
-  quantity.change_sigma = sizeAlong(test, group);
-  quantity.sigmas = test.sigmas;
-  quantity.limit_sigmas = test.limit;
-  quantity.would_notice = test.would_notice;
-  quantity.changed = test.changed;
+Finding testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
+                       const ChangeGroup& group) {
+  Finding finding = compared.shown;
+  finding.change = (group.to_size * test.change).norm();
+  finding.change_sigma = sizeAlong(test, group);
+  finding.sigmas = test.sigmas;
+  finding.limit_sigmas = test.limit;
+  finding.smallest_detectable_change = test.smallest_detectable_change;
+  finding.changed = test.changed;
   for (const Eigen::MatrixXd& place : compared.at_edge)
-    quantity.edge_px = std::max(quantity.edge_px, (place * test.change).norm());
-  return quantity;
+    finding.edge_px = std::max(finding.edge_px, (place * test.change).norm());
+  return finding;
 }
 
 std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options) {

@@ -1,7 +1,7 @@
 // Two results of one rig as two vectors with a covariance, quantity by quantity: what a check compares.
 #pragma once
 
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/data/quantity.h"
 #include "core/pipeline/compare/single_changes.h"
 #include "core/pipeline/session/check_options.h"
@@ -19,7 +19,7 @@ namespace evical {
 inline constexpr double kStableSheet = 2e-4;
 
 struct ComparedQuantity {
-  CheckedQuantity shown;  // but for what the tests say
+  Finding shown;  // but for what the tests say
   // Of the camera whose pixels its numbers move, at the image's border: pixels by numbers in SI units.
   std::vector<Eigen::MatrixXd> at_edge;
 };
@@ -48,7 +48,7 @@ Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index coun
 ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options);
 
 // With what the test of its group says.
-CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
+Finding testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
                                const ChangeGroup& group);
 
 }  // namespace evical

@@ -82,7 +82,7 @@ class SingleChanges {
     test.beyond = distanceFromBall(along, variances, group.stability);
     test.limit = std::sqrt(chiSquaredLimit(false_alarms_, static_cast<int>(group.size)));
     test.changed = test.beyond > test.limit;
-    test.would_notice =
+    test.smallest_detectable_change =
         group.stability + (test.limit + normalLimit(kMissed)) * std::sqrt(variances.maxCoeff());
     const Eigen::MatrixXd from_size = inverseOf(group.to_size);
     test.change = from_size * change;
@@ -139,17 +139,19 @@ GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<c
     return most;
   };
   testAll();
-  if (const auto first = mostChanged())
+  if (const auto first = mostChanged()) {
+    tests.most_changed = *first;
     for (std::size_t g = 0; g < groups.size(); ++g)
       if (const GroupTestResult& test = tests.groups[g]; g != *first && test.tested && test.changed)
-        if (excess(tests.groups[*first]) - excess(test) < kAsWell) tests.or_else.push_back(g);
+        if (excess(tests.groups[*first]) - excess(test) < kAsWell) tests.alternatives.push_back(g);
+  }
   while (const auto most = mostChanged()) {
     free[*most] = true;  // what has changed says nothing of the others
     testAll();
   }
   for (std::size_t g = 0; g < groups.size(); ++g) {
     tests.groups[g].changed = free[g];
-    if (free[g]) std::erase(tests.or_else, g);
+    if (free[g]) std::erase(tests.alternatives, g);
   }
   return tests;
 }

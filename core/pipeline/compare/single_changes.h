@@ -33,14 +33,15 @@ struct GroupTestResult {
   double sigmas = 0.0;         // by the covariance
   double beyond = 0.0;         // the same, of what goes beyond the stability
   double limit = 0.0;          // that chance does not reach
-  double would_notice = 0.0;   // the size that is found with a probability of 95 %, in whatever direction
+  double smallest_detectable_change =
+      0.0;  // the size that is found with a probability of 95 %, in whatever direction
   bool changed = false;
 };
 
 struct GroupTestResults {
   std::vector<GroupTestResult> groups;
-  // Those that explain the recording as well as the first of those that have changed.
-  std::vector<std::size_t> or_else;
+  std::size_t most_changed = 0;           // where any has
+  std::vector<std::size_t> alternatives;  // those that explain the recording as well as that one
 };
 
 // `false_alarms`: how often any group is called changed where none is.

@@ -12,7 +12,7 @@ namespace {
 constexpr double kTogether_s = 3.0;  // as exact as times of steps are known
 
 bool isAlike(const MaintenanceStep& a, const MaintenanceStep& b) {
-  return a.name == b.name && a.against == b.against && std::abs(a.at_s - b.at_s) <= kTogether_s;
+  return a.quantity == b.quantity && a.against == b.against && std::abs(a.at_s - b.at_s) <= kTogether_s;
 }
 
 std::set<std::string> sensorsAgainst(const Maintenance& maintenance, const std::string& reference) {
@@ -24,8 +24,9 @@ std::set<std::string> sensorsAgainst(const Maintenance& maintenance, const std::
 
 // The one that was known first, with the size that is known best.
 MaintenanceStep stepOfReference(const std::vector<MaintenanceStep>& alike) {
-  MaintenanceStep step = *std::min_element(
-      alike.begin(), alike.end(), [](const auto& a, const auto& b) { return a.size_sigma < b.size_sigma; });
+  MaintenanceStep step = *std::min_element(alike.begin(), alike.end(), [](const auto& a, const auto& b) {
+    return a.change_sigma < b.change_sigma;
+  });
   for (const MaintenanceStep& each : alike) step.noticed_s = std::min(step.noticed_s, each.noticed_s);
   step.sensor = step.against;
   step.against.clear();

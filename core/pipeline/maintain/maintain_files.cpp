@@ -2,8 +2,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/export/export_target.h"
-#include "core/report/html/maintenance_page.h"
-#include "core/report/maintenance_report.h"
+#include "core/report/assessment_report.h"
+#include "core/report/html/html_report.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +18,9 @@ void writeMaintenanceFiles(const std::filesystem::path& folder, const Maintenanc
   std::vector<FileContent> files = {{"log.txt", log}, {"stops.csv", stopsCsv(maintenance)}};
   for (std::size_t k = 0; k < maintenance.tracks.size(); ++k)
     files.push_back({fmt::format("track{}.csv", k + 1), trackCsv(maintenance.tracks[k])});
-  for (ReportFile& file : maintenanceReportFiles(maintenance))
+  for (ReportFile& file : reportFiles(maintenance))
     files.push_back({file.name, std::move(file.content)});
-  files.push_back({"maintenance.yaml", maintenanceYaml(maintenance)});  // the last tells that all are there
+  files.push_back({"maintenance.yaml", assessmentYaml(maintenance)});  // the last tells that all are there
   writeExportedFiles(folder, files);
 }
 

@@ -411,12 +411,12 @@ void Maintainer::advise() {
   }
   // Numbers of IMUs that do not move together mean nothing, changed or not.
   if (!disagreeing_.empty()) {
-    maintenance_.verdict = MaintenanceVerdict::CannotTell;
+    maintenance_.verdict = Verdict::CannotTell;
     maintenance_.reason =
         fmt::format("{} does not turn as {} does", disagreeing_.front(), name(imus_.front()));
     return;
   }
-  if (maintenance_.verdict != MaintenanceVerdict::CannotTell) return;
+  if (maintenance_.verdict != Verdict::CannotTell) return;
   for (const MaintainedImu& imu : maintenance_.imus) {
     if (imu.stops.empty() && imus_.size() < 2)
       maintenance_.advice.emplace_back(
@@ -453,7 +453,7 @@ MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
 
 Maintenance maintainImus(const MaintainInput& input, const RunContext& context) {
   Maintenance maintenance = Maintainer(input, context).run();
-  for (const std::filesystem::path& log : input.logs) maintenance.logs.push_back(log.string());
+  for (const std::filesystem::path& log : input.logs) maintenance.inputs.push_back(log.string());
   maintenance.before = input.before_name;
   return maintenance;
 }

@@ -1,5 +1,6 @@
 #include "core/pipeline/maintain/maintained_quantities.h"
 
+#include "core/base/nearest_name.h"
 #include "core/data/quantity.h"
 #include "core/geometry/so3.h"
 #include "core/maintenance/maintenance_options.h"
@@ -33,10 +34,21 @@ constexpr std::array<BlockWords, kAccelerometerBlocks.size()> kStopWords = {
      {"accelerometer_misalignment", "accelerometer misalignment", "1", 1.0}}};
 constexpr std::array<const char*, 3> kMisalignments = {"xy", "xz", "yz"};
 
-std::string numberName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
-  if (count == 1) return words.name;
+// Empty where there is no other.
+std::string partName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
+  if (count == 1) return {};
   const bool cross = std::string_view(words.name) == "accelerometer_misalignment";
-  return fmt::format("{}.{}", words.name, (cross ? kMisalignments : kAxes)[static_cast<std::size_t>(i)]);
+  return (cross ? kMisalignments : kAxes)[static_cast<std::size_t>(i)];
+}
+
+std::string numberName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
+  return count == 1 ? words.name : fmt::format("{}.{}", words.name, partName(words, i, count));
+}
+
+TrackedQuantity trackedQuantity(const BlockWords& words, Eigen::Index count) {
+  TrackedQuantity tracked{words.name, words.title, words.unit, {}};
+  for (Eigen::Index i = 0; i < count; ++i) tracked.numbers.push_back({partName(words, i, count), {}, {}});
+  return tracked;
 }
 
 double sigmaOfNorm(const Eigen::VectorXd& step, const Eigen::MatrixXd& covariance) {
@@ -45,51 +57,61 @@ double sigmaOfNorm(const Eigen::VectorXd& step, const Eigen::MatrixXd& covarianc
   return std::sqrt(std::max(0.0, (step.transpose() * covariance * step)(0, 0))) / norm;
 }
 
-double mattersOf(const std::string& name, const MaintenanceOptions& options) {
-  if (name == "rotation") return options.matters_rotation_deg;
-  if (name == "translation") return options.matters_translation_mm;
-  if (name == "time_offset") return options.matters_time_offset_ms;
-  if (name == "gyroscope_bias") return options.matters_gyroscope_bias_rad_s;
-  if (name == "accelerometer_bias") return options.matters_accelerometer_bias_m_s2;
-  return options.matters_imu_scale;
+// Size that is ignored, and size that must be detectable, in shown units.
+struct Asked {
+  double allowed_drift, required_detectability;
+};
+Asked askedOf(const std::string& name, const MaintenanceOptions& options) {
+  if (name == "rotation") return {options.stability_rotation_deg, options.matters_rotation_deg};
+  if (name == "translation") return {options.stability_translation_mm, options.matters_translation_mm};
+  if (name == "time_offset") return {options.stability_time_offset_ms, options.matters_time_offset_ms};
+  if (name == "gyroscope_bias")
+    return {options.stability_gyroscope_bias_rad_s, options.matters_gyroscope_bias_rad_s};
+  if (name == "accelerometer_bias")
+    return {options.stability_accelerometer_bias_m_s2, options.matters_accelerometer_bias_m_s2};
+  return {options.stability_imu_scale, options.matters_imu_scale};
+}
+
+void setWords(const BlockWords& words, Finding& finding) {
+  finding.quantity = words.name;
+  finding.title = words.title;
+  finding.unit = words.unit;
 }
 
 // One that no number has been put into yet.
-MaintainedQuantity quantityOf(const BlockWords& words, const std::string& sensor, MaintenanceSource source,
-                              const MaintenanceOptions& options) {
-  MaintainedQuantity quantity;
-  quantity.sensor = sensor;
-  quantity.source = source;
-  quantity.name = words.name;
-  quantity.title = words.title;
-  quantity.unit = words.unit;
-  quantity.matters = mattersOf(words.name, options);
-  return quantity;
+Finding findingOf(const BlockWords& words, const std::string& sensor, FindingSource source,
+                  const MaintenanceOptions& options) {
+  Finding finding;
+  finding.sensor = sensor;
+  finding.source = source;
+  setWords(words, finding);
+  const Asked asked = askedOf(words.name, options);
+  finding.allowed_drift = asked.allowed_drift;
+  finding.required_detectability = asked.required_detectability;
+  return finding;
 }
 
-void setChange(const BlockWords& words, const BlockChange& change, double limit, double worst_sigma,
-               MaintainedQuantity& quantity) {
-  quantity.change = words.factor * change.step.norm();
-  quantity.change_sigma = words.factor * sigmaOfNorm(change.step, change.covariance);
-  quantity.chi_square = change.chi_square;
-  quantity.limit = limit;
-  quantity.would_notice = words.factor * wouldNotice(worst_sigma, limit);
+void setChange(const BlockWords& words, const BlockChange& change, double limit, Finding& finding) {
+  finding.change = words.factor * change.step.norm();
+  finding.change_sigma = words.factor * sigmaOfNorm(change.step, change.covariance);
+  finding.sigmas = std::sqrt(change.chi_square);
+  finding.limit_sigmas = std::sqrt(limit);
 }
 
 // Of a block that was tested with others: as found where it has changed, else as it alone would have.
 // `wider`: by how much variances are larger than the test takes them.
 void setTested(const BlockWords& words, const StateBlock& block, const ChangeDetector& test,
                const std::vector<FoundChange>& changes, std::size_t which, double limit, double wider,
-               MaintainedQuantity& quantity) {
+               Finding& finding) {
   BlockChange change = test.of(block);
   for (const FoundChange& each : changes) {
     if (each.block != which) continue;
     change = each.change;
-    quantity.changed = true;
+    finding.changed = true;
   }
   change.covariance *= wider;
-  setChange(words, change, limit, test.worstSigma(block), quantity);
-  quantity.would_notice =
+  setChange(words, change, limit, finding);
+  finding.smallest_detectable_change =
       words.factor * wouldNotice(std::sqrt(wider) * test.worstSigma(block), limit / wider);
 }
 
@@ -103,23 +125,26 @@ void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, s
   constexpr BlockWords kWords = {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0};
   const ImuState& state = before.result->state.imus[imu];
   const Eigen::Vector3d sigma_before = before.result->uncertainty.imus[imu].gyroscope_bias_std_rad_s;
-  MaintainedQuantity quantity = quantityOf(kWords, before.imus[imu].name, MaintenanceSource::Stops, options);
+  Finding finding = findingOf(kWords, before.imus[imu].name, FindingSource::Stops, options);
   Eigen::Vector3d variance;
   for (Eigen::Index i = 0; i < 3; ++i) {
     variance[i] = squared(found.gyroscope_bias_sigma_rad_s[i]) + squared(sigma_before[i]) +
                   squared(options.stability_gyroscope_bias_rad_s);
-    quantity.numbers.push_back({numberName(kWords, i, 3), kWords.unit, state.gyroscope_bias_rad_s[i],
-                                sigma_before[i], found.gyroscope_bias_rad_s[i],
-                                found.gyroscope_bias_sigma_rad_s[i]});
+    finding.numbers.push_back({numberName(kWords, i, 3),
+                               kWords.unit,
+                               {state.gyroscope_bias_rad_s[i], sigma_before[i]},
+                               {found.gyroscope_bias_rad_s[i], found.gyroscope_bias_sigma_rad_s[i]}});
   }
   variance = variance.cwiseMax(1e-20);
   BlockChange change;
   change.step = found.gyroscope_bias_rad_s - state.gyroscope_bias_rad_s;
   change.covariance = variance.asDiagonal();
   change.chi_square = (change.step.array().square() / variance.array()).sum();
-  setChange(kWords, change, chiSquaredLimit(false_alarms, 3), std::sqrt(variance.maxCoeff()), quantity);
-  quantity.changed = change.chi_square > quantity.limit;
-  maintenance.quantities.push_back(quantity);
+  const double limit = chiSquaredLimit(false_alarms, 3);
+  setChange(kWords, change, limit, finding);
+  finding.smallest_detectable_change = wouldNotice(std::sqrt(variance.maxCoeff()), limit);
+  finding.changed = change.chi_square > limit;
+  maintenance.findings.push_back(finding);
 }
 
 // What a source says of an accelerometer.
@@ -127,7 +152,7 @@ struct AccelerometerEvidence {
   const AccelerometerMatrix& information;  // at the old numbers
   const AccelerometerVector &score, &now;
   const AccelerometerMatrix& covariance;  // of `now`
-  MaintenanceSource source;
+  FindingSource source;
 };
 
 void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& before, std::size_t imu,
@@ -143,15 +168,16 @@ void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& 
   const AccelerometerVector sigma_before = accelerometerVariances(sigma, exact).cwiseSqrt();
   for (std::size_t b = 0; b < kAccelerometerBlocks.size(); ++b) {
     const StateBlock& block = kAccelerometerBlocks[b];
-    MaintainedQuantity quantity = quantityOf(kStopWords[b], before.imus[imu].name, evidence.source, options);
+    Finding finding = findingOf(kStopWords[b], before.imus[imu].name, evidence.source, options);
     for (Eigen::Index i = 0; i < block.size; ++i) {
       const Eigen::Index n = block.first + i;
-      quantity.numbers.push_back({numberName(kStopWords[b], i, block.size), kStopWords[b].unit,
-                                  old_numbers[n], sigma_before[n], evidence.now[n],
-                                  std::sqrt(std::max(evidence.covariance(n, n), 0.0))});
+      finding.numbers.push_back({numberName(kStopWords[b], i, block.size),
+                                 kStopWords[b].unit,
+                                 {old_numbers[n], sigma_before[n]},
+                                 {evidence.now[n], std::sqrt(std::max(evidence.covariance(n, n), 0.0))}});
     }
-    setTested(kStopWords[b], block, test, changes, b, limits[b], 1.0, quantity);
-    maintenance.quantities.push_back(quantity);
+    setTested(kStopWords[b], block, test, changes, b, limits[b], 1.0, finding);
+    maintenance.findings.push_back(finding);
   }
 }
 
@@ -198,20 +224,17 @@ void addSteps(const TrackedPair& pair, const NamedResult& before, Maintenance& m
     MaintenanceStep step;
     step.sensor = before.imus[pair.imu].name;
     step.against = before.imus[pair.reference].name;
-    step.name = words.name;
-    step.title = words.title;
-    step.unit = words.unit;
+    step.source = FindingSource::OtherImu;
+    setWords(words, step);
+    step.changed = true;
     step.at_s = found.at_s;
     step.noticed_s = found.noticed_s;
-    step.size = words.factor * found.change.step.norm();
-    step.size_sigma = words.factor * sigmaOfNorm(found.change.step, found.change.covariance);
-    step.chi_square = found.change.chi_square;
-    step.limit = found.limit;
+    setChange(words, found.change, found.limit, step);
     for (Eigen::Index i = 0; i < block.size; ++i)
-      step.numbers.push_back({numberName(words, i, block.size), words.unit, 0.0, 0.0,
-                              words.factor * found.change.step[i],
-                              words.factor * std::sqrt(std::max(found.change.covariance(i, i), 0.0))});
-    for (const std::size_t other : found.or_else) step.or_else.emplace_back(kPairWords[other].title);
+      step.numbers.emplace_back(ComparedNumber{numberName(words, i, block.size), words.unit}).change = {
+          words.factor * found.change.step[i],
+          words.factor * std::sqrt(std::max(found.change.covariance(i, i), 0.0))};
+    for (const std::size_t other : found.or_else) step.alternatives.emplace_back(kPairWords[other].title);
     maintenance.steps.push_back(step);
   }
 }
@@ -221,60 +244,50 @@ void addTrack(const TrackedPair& pair, const NamedResult& before, Maintenance& m
   track.sensor = before.imus[pair.imu].name;
   track.against = before.imus[pair.reference].name;
   track.times_s = pair.track.times_s;
-  for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
+  for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
+    track.quantities.push_back(trackedQuantity(kPairWords[b], kPairBlocks[b].size));
     for (Eigen::Index i = 0; i < kPairBlocks[b].size; ++i) {
-      track.columns.push_back(
-          fmt::format("{} [{}]", numberName(kPairWords[b], i, kPairBlocks[b].size), kPairWords[b].unit));
-      std::vector<double>&values = track.values.emplace_back(), &sigmas = track.sigmas.emplace_back();
+      TrackedNumber& number = track.quantities.back().numbers[static_cast<std::size_t>(i)];
       const Eigen::Index n = kPairBlocks[b].first + i;
       const double at_nominal = numbersOf(pair.before, PairVector::Zero())[n];
       for (std::size_t k = 0; k < track.times_s.size(); ++k) {
         // Rotations and lever arms as what they differ by from the old result.
         const double now = b == 0 ? (pair.track.values[k] - beforeFrom(pair))[n]
                                   : numbersOf(pair.nominal, pair.track.values[k])[n] - at_nominal;
-        values.push_back(kPairWords[b].factor * now);
-        sigmas.push_back(kPairWords[b].factor * pair.track.sigmas[k][n]);
+        number.values.push_back(kPairWords[b].factor * now);
+        number.sigmas.push_back(kPairWords[b].factor * pair.track.sigmas[k][n]);
       }
     }
+  }
   maintenance.tracks.push_back(std::move(track));
 }
 
-std::string changeText(const MaintainedQuantity& quantity) {
-  return fmt::format("{} of {}{} by {:.3g} {}", quantity.title, quantity.sensor,
-                     quantity.against.empty() ? "" : " against " + quantity.against, quantity.change,
-                     quantity.unit == "1" ? "" : quantity.unit);
-}
-
-std::string stepText(const MaintenanceStep& step) {
-  std::string text = fmt::format("at {:.1f} s: {} of {}{} by {:.3g} {}", step.at_s, step.title, step.sensor,
-                                 step.against.empty() ? "" : " against " + step.against, step.size,
-                                 step.unit == "1" ? "" : step.unit);
-  for (std::size_t i = 0; i < step.or_else.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? " (or " : ", ", step.or_else[i]);
-  return step.or_else.empty() ? text : text + ")";
+std::string changeText(const Finding& finding) {
+  std::string text =
+      fmt::format("{} of {}{} by {:.3g}", finding.title, finding.sensor,
+                  finding.against.empty() ? "" : " against " + finding.against, finding.change);
+  if (finding.unit != "1") text += " " + finding.unit;
+  return finding.alternatives.empty() ? text : fmt::format("{} (or {})", text, joined(finding.alternatives));
 }
 
 // Between IMUs where there are several; of a single one its own.
-bool isAsked(const MaintainedQuantity& quantity, bool several) {
+bool isAsked(const Finding& finding, bool several) {
+  const std::string& quantity = finding.quantity;
   if (several)
-    return quantity.source == MaintenanceSource::OtherImu &&
-           (quantity.name == "rotation" || quantity.name == "translation" || quantity.name == "time_offset");
-  return quantity.name == "accelerometer_bias" || quantity.name == "accelerometer_scale" ||
-         (quantity.name == "gyroscope_bias" && quantity.source == MaintenanceSource::Stops);
-}
-
-std::string trimmed(std::string text) {
-  while (text.ends_with(' ')) text.pop_back();
-  return text;
+    return finding.source == FindingSource::OtherImu &&
+           (quantity == "rotation" || quantity == "translation" || quantity == "time_offset");
+  return quantity == "accelerometer_bias" || quantity == "accelerometer_scale" ||
+         (quantity == "gyroscope_bias" && finding.source == FindingSource::Stops);
 }
 
 void sayChanged(Maintenance& maintenance) {
-  maintenance.verdict = MaintenanceVerdict::Changed;
+  maintenance.verdict = Verdict::Changed;
   std::string since, on_the_way;
-  for (const MaintainedQuantity& quantity : maintenance.quantities)
-    if (quantity.changed) since += (since.empty() ? "" : "; ") + trimmed(changeText(quantity));
+  for (const Finding& finding : maintenance.findings)
+    if (finding.changed) since += (since.empty() ? "" : "; ") + changeText(finding);
   for (const MaintenanceStep& step : maintenance.steps)
-    on_the_way += (on_the_way.empty() ? "" : "; ") + trimmed(stepText(step));
+    on_the_way +=
+        fmt::format("{}at {:.1f} s: {}", on_the_way.empty() ? "" : "; ", step.at_s, changeText(step));
   if (!since.empty()) maintenance.reason = "since the calibration: " + since;
   if (!on_the_way.empty()) maintenance.reason += (since.empty() ? "" : "; ") + on_the_way;
 }
@@ -296,7 +309,7 @@ MaintainedImu maintainedImu(const StopCalibration& found) {
 void addStopQuantities(const StopCalibration& found, const NamedResult& before, std::size_t imu,
                        const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
   if (found.stops.empty()) return;
-  addAccelerometer({found.information, found.score, found.now, found.covariance, MaintenanceSource::Stops},
+  addAccelerometer({found.information, found.score, found.now, found.covariance, FindingSource::Stops},
                    before, imu, options, false_alarms, maintenance);
   addGyroscopeBias(found, before, imu, options, false_alarms, maintenance);
 }
@@ -305,22 +318,23 @@ void addTrajectoryQuantities(const std::vector<LagEstimate>& lags, const LagSum&
                              const NamedResult& before, std::size_t imu, const MaintenanceOptions& options,
                              double false_alarms, Maintenance& maintenance) {
   if (lags.empty()) return;
-  addAccelerometer({sum.information, sum.score, sum.now, sum.covariance, MaintenanceSource::Trajectory},
-                   before, imu, options, false_alarms, maintenance);
+  addAccelerometer({sum.information, sum.score, sum.now, sum.covariance, FindingSource::Trajectory}, before,
+                   imu, options, false_alarms, maintenance);
   MaintenanceTrack track;
   track.sensor = before.imus[imu].name;
   const AccelerometerVector old_numbers = accelerometerNumbers(before.result->state.imus[imu]);
   for (const LagEstimate& lag : lags) track.times_s.push_back(0.5 * (lag.from_s + lag.to_s));
-  for (std::size_t b = 0; b < kAccelerometerBlocks.size(); ++b)
+  for (std::size_t b = 0; b < kAccelerometerBlocks.size(); ++b) {
+    track.quantities.push_back(trackedQuantity(kStopWords[b], kAccelerometerBlocks[b].size));
     for (Eigen::Index i = 0; i < kAccelerometerBlocks[b].size; ++i) {
       const Eigen::Index n = kAccelerometerBlocks[b].first + i;
-      track.columns.push_back(fmt::format("{} [{}]", numberName(kStopWords[b], i, 3), kStopWords[b].unit));
-      std::vector<double>&values = track.values.emplace_back(), &sigmas = track.sigmas.emplace_back();
+      TrackedNumber& number = track.quantities.back().numbers[static_cast<std::size_t>(i)];
       for (const LagEstimate& lag : lags) {
-        values.push_back(lag.now[n] - old_numbers[n]);
-        sigmas.push_back(std::sqrt(std::max(sum.inflation * lag.covariance(n, n), 0.0)));
+        number.values.push_back(lag.now[n] - old_numbers[n]);
+        number.sigmas.push_back(std::sqrt(std::max(sum.inflation * lag.covariance(n, n), 0.0)));
       }
     }
+  }
   maintenance.tracks.push_back(std::move(track));
 }
 
@@ -339,55 +353,51 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
                    numbers_now = numbersOf(pair.nominal, pair.track.start);
   for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
     const StateBlock& block = kPairBlocks[b];
-    MaintainedQuantity quantity =
-        quantityOf(kPairWords[b], before.imus[pair.imu].name, MaintenanceSource::OtherImu, options);
-    quantity.against = before.imus[pair.reference].name;
+    Finding finding = findingOf(kPairWords[b], before.imus[pair.imu].name, FindingSource::OtherImu, options);
+    finding.against = before.imus[pair.reference].name;
     for (Eigen::Index i = 0; i < block.size; ++i) {
       const Eigen::Index n = block.first + i;
-      quantity.numbers.push_back(
-          {numberName(kPairWords[b], i, block.size), kPairWords[b].unit,
-           kPairWords[b].factor * numbers_before[n], kPairWords[b].factor * sigma_before[n],
-           kPairWords[b].factor * numbers_now[n],
-           kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))});
+      finding.numbers.push_back(
+          {numberName(kPairWords[b], i, block.size),
+           kPairWords[b].unit,
+           {kPairWords[b].factor * numbers_before[n], kPairWords[b].factor * sigma_before[n]},
+           {kPairWords[b].factor * numbers_now[n],
+            kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))}});
     }
-    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.colours[b].ofMany(), quantity);
-    maintenance.quantities.push_back(quantity);
+    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.colours[b].ofMany(), finding);
+    maintenance.findings.push_back(finding);
   }
   addSteps(pair, before, maintenance);
   addTrack(pair, before, maintenance);
 }
 
 void judge(Maintenance& maintenance) {
-  const bool changed =
-      !maintenance.steps.empty() || std::any_of(maintenance.quantities.begin(), maintenance.quantities.end(),
-                                                [](const auto& quantity) { return quantity.changed; });
-  if (changed) {
+  const std::vector<Finding>& findings = maintenance.findings;
+  const auto isChanged = [](const Finding& finding) { return finding.changed; };
+  if (!maintenance.steps.empty() || std::any_of(findings.begin(), findings.end(), isChanged)) {
     sayChanged(maintenance);
     return;
   }
   const bool several = maintenance.imus.size() > 1;
   std::string untold;
   bool any = false;
-  for (const MaintainedQuantity& quantity : maintenance.quantities) {
-    if (!isAsked(quantity, several)) continue;
+  for (const Finding& finding : findings) {
+    if (!isAsked(finding, several)) continue;
     // What one source does not tell another may.
-    const auto better = [&](const MaintainedQuantity& other) {
-      return other.name == quantity.name && other.sensor == quantity.sensor && other.told();
+    const auto better = [&](const Finding& other) {
+      return other.quantity == finding.quantity && other.sensor == finding.sensor && other.isConclusive();
     };
     any = true;
-    if (std::any_of(maintenance.quantities.begin(), maintenance.quantities.end(), better)) continue;
-    const std::string name = fmt::format("{} of {}", quantity.title, quantity.sensor);
+    if (std::any_of(findings.begin(), findings.end(), better)) continue;
+    const std::string name = fmt::format("{} of {}", finding.title, finding.sensor);
     if (untold.find(name) == std::string::npos) untold += (untold.empty() ? "" : ", ") + name;
   }
-  if (any && untold.empty()) {
-    maintenance.verdict = MaintenanceVerdict::Unchanged;
+  maintenance.verdict = any && untold.empty() ? Verdict::Unchanged : Verdict::CannotTell;
+  if (maintenance.verdict == Verdict::Unchanged)
     maintenance.reason = "nothing has changed that would have been noticed";
-    return;
-  }
-  maintenance.verdict = MaintenanceVerdict::CannotTell;
-  if (!maintenance.reason.empty()) return;  // said already
-  maintenance.reason = any ? "the log does not tell enough of " + untold
-                           : "the log has neither stops nor a second IMU nor a trajectory that would tell";
+  else if (maintenance.reason.empty())  // else the reason is given already
+    maintenance.reason = any ? "the log does not tell enough of " + untold
+                             : "the log has neither stops nor a second IMU nor a trajectory that would tell";
 }
 
 }  // namespace evical

@@ -54,9 +54,9 @@ std::string listed(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string changeOfSensorText(const CheckedQuantity& quantity) {
-  return fmt::format("{} of {} by {} {} ({:.1f} sigmas)", quantity.title, quantity.sensor,
-                     html::significant(quantity.change, 2), quantity.unit, quantity.sigmas);
+std::string changeOfSensorText(const Finding& finding) {
+  return fmt::format("{} of {} by {} {} ({:.1f} sigmas)", finding.title, finding.sensor,
+                     html::significant(finding.change, 2), finding.unit, finding.sigmas);
 }
 
 class Repeat {
@@ -140,6 +140,7 @@ class Repeat {
     for (const RepeatedRecording& each : out().recordings)
       if (each.outcome == RepeatOutcome::Failed) reason += fmt::format("; {}: {}", each.name, each.reason);
     out().reason = reason;
+    out().advice.emplace_back("See the reasons, and record again");
   }
 
   void compare() {
@@ -192,20 +193,20 @@ class Repeat {
     if (distance.freedom > 0) recording.limit = chiSquaredLimit(falseAlarms(), distance.freedom);
     if (!isFar(distance)) return;
     recording.outcome = RepeatOutcome::DoesNotFit;
-    recording.differs = differences(k, rest);
+    recording.findings = differences(k, rest);
   }
 
   // What a check would say of it against the others.
-  std::vector<CheckedQuantity> differences(std::size_t k, const Chosen& rest) const {
+  std::vector<Finding> differences(std::size_t k, const Chosen& rest) const {
     const NamedResult before = namedJoint(rest);
     ComparedQuantities compared = compareQuantities({before, ones_[k].named, true}, options());
     leaveOffsetsOut(compared);
     const GroupTestResults tests = testSingleChanges(compared.change, compared.groups, falseAlarms());
-    std::vector<CheckedQuantity> all;
+    std::vector<Finding> all;
     for (std::size_t g = 0, shown = 0; g < compared.groups.size(); ++g)
       if (compared.groups[g].tested)
         all.push_back(testedQuantity(compared.quantities[shown++], tests.groups[g], compared.groups[g]));
-    std::stable_sort(all.begin(), all.end(), [](const CheckedQuantity& a, const CheckedQuantity& b) {
+    std::stable_sort(all.begin(), all.end(), [](const Finding& a, const Finding& b) {
       return a.sigmas / a.limit_sigmas > b.sigmas / b.limit_sigmas;
     });
     // Where no single one explains it: that which comes nearest.
@@ -222,7 +223,7 @@ class Repeat {
     std::vector<Eigen::Index> numbers;
     for (std::size_t g = 0, shown = 0; g < compared.groups.size(); ++g) {
       ChangeGroup group = compared.groups[g];
-      const bool is_offset = group.tested && compared.quantities[shown].shown.name == offset;
+      const bool is_offset = group.tested && compared.quantities[shown].shown.quantity == offset;
       if (group.tested && !is_offset) kept.quantities.push_back(compared.quantities[shown]);
       if (group.tested) ++shown;
       if (is_offset) continue;
@@ -300,11 +301,11 @@ class Repeat {
     for (const RepeatedRecording& each : out().recordings) {
       if (each.outcome == RepeatOutcome::Failed) failed.push_back(each.name);
       if (each.outcome == RepeatOutcome::DoesNotFit)
-        far.push_back(each.differs.empty()
+        far.push_back(each.findings.empty()
                           ? each.name
-                          : fmt::format("{}: {}", each.name, changeOfSensorText(each.differs.front())));
+                          : fmt::format("{}: {}", each.name, changeOfSensorText(each.findings.front())));
     }
-    out().verdict = far.empty() ? RepeatVerdict::Agree : RepeatVerdict::Disagree;
+    out().verdict = far.empty() ? Verdict::Unchanged : Verdict::Changed;
     if (far.empty())
       out().reason = fmt::format("{} recordings agree", fitting_.size());
     else if (fitting_.size() <= kFewest && ones_.size() == kFewest)
@@ -316,7 +317,7 @@ class Repeat {
     if (!failed.empty())
       out().notes.push_back(fmt::format("{} of {} recordings could not be calibrated: {}", failed.size(),
                                         out().recordings.size(), listed(failed)));
-    if (run_.joint && out().verdict == RepeatVerdict::Disagree &&
+    if (run_.joint && out().verdict == Verdict::Changed &&
         recordingOf(fitting_.front()).outcome != RepeatOutcome::Fits) {
       auto doubtful = std::make_shared<CalibrationResult>(*run_.joint->result);
       addDoubt(out().reason, *doubtful);
@@ -325,8 +326,8 @@ class Repeat {
   }
 
   std::string changeOfFirst() {
-    const std::vector<CheckedQuantity>& differs = recordingOf(fitting_.front()).differs;
-    return differs.empty() ? "all of it" : changeOfSensorText(differs.front());
+    const std::vector<Finding>& findings = recordingOf(fitting_.front()).findings;
+    return findings.empty() ? "all of it" : changeOfSensorText(findings.front());
   }
 
   const RepeatInput& input_;

@@ -6,8 +6,8 @@
 #include "core/base/new_folder.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/report/html/repeat_page.h"
-#include "core/report/repeat_report.h"
+#include "core/report/assessment_report.h"
+#include "core/report/html/html_report.h"
 
 #include <system_error>
 #include <utility>
@@ -35,7 +35,7 @@ std::filesystem::path folderOf(const std::filesystem::path& folder, const Repeat
 void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& input, const RepeatRun& repeat,
                       const std::string& log) {
   std::vector<FileContent> files = {{"log.txt", log}, {"repeat.csv", repeatCsv(repeat.repeatability)}};
-  for (ReportFile& file : repeatReportFiles(repeat.repeatability))
+  for (ReportFile& file : reportFiles(repeat.repeatability))
     files.push_back({file.name, std::move(file.content)});
   if (repeat.joint) {
     const Session session = sessionOfRepeat(input.sessions.at(repeat.own_values_of));
@@ -45,7 +45,7 @@ void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& in
     std::error_code ignored;
     std::filesystem::remove(folder / kResultFile, ignored);
   }
-  files.push_back({kRepeat, repeatYaml(repeat.repeatability)});  // the last tells that all are there
+  files.push_back({kRepeat, assessmentYaml(repeat.repeatability)});  // the last tells that all are there
   writeExportedFiles(folder, files);
 }
 

@@ -50,10 +50,10 @@ Light lightOf(double value, double good, double fair) {
   return value >= good ? Light::Good : value >= fair ? Light::Fair : Light::Poor;
 }
 
-class Assessment {
+class Assessor {
  public:
   // `no_lens`: why one that is not given could not be found, so that circles are in the sensor's own pixels.
-  Assessment(const Session& session, const DetectedRecording& detected, const RunContext& context,
+  Assessor(const Session& session, const DetectedRecording& detected, const RunContext& context,
              const CalibrationError* no_lens = nullptr)
       : session_(session), pass_(detected.pass), detected_(detected), context_(context), no_lens_(no_lens) {}
 
@@ -276,7 +276,7 @@ const char* nameOf(AssessedThing thing) {
 
 RecordingAssessment assessRecording(const Session& session, const DetectedRecording& detected,
                                     const RunContext& context) {
-  return Assessment(session, detected, context).run();
+  return Assessor(session, detected, context).run();
 }
 
 CheckedRecording checkRecording(const Session& session, const RunContext& context) {
@@ -288,7 +288,7 @@ CheckedRecording checkRecording(const Session& session, const RunContext& contex
     if (error.kind() == ErrorKind::BadInput) throw;
     // What is seen of the board without a lens may say why none was found.
     const DetectedRecording detected = detectWithoutLens(session, context);
-    return {Assessment(session, detected, context, &error).run(), {}};
+    return {Assessor(session, detected, context, &error).run(), {}};
   }
 }
 

@@ -1,5 +1,6 @@
 #include "core/report/html/html_report.h"
 
+#include "core/report/html/assessment_section.h"
 #include "core/report/html/report_page.h"
 
 #include <fmt/format.h>
@@ -40,11 +41,7 @@ std::vector<ReportFile> reportFiles(const ReportData& data) {
   html::writeUncertainty(data, page);
   html::writeCrossValidation(data, page);
   html::writeRun(data, page);
-  std::vector<ReportFile> files = {
-      {"report.html",
-       html::document({titleOf(data), data.named.version, startText(data.named)}, verdict, page)}};
-  for (const html::PlotTable& table : page.tables()) files.push_back({table.file, html::tableCsv(table)});
-  return files;
+  return html::filesOf({titleOf(data), data.named.version, startText(data.named)}, verdict, page);
 }
 
 }  // namespace evical

@@ -5,7 +5,9 @@
 #include "core/data/calibration_check.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/intrinsics_result.h"
+#include "core/data/maintenance.h"
 #include "core/data/recording.h"
+#include "core/data/repeatability.h"
 #include "core/report/result_yaml.h"
 
 #include <cstdint>
@@ -44,5 +46,7 @@ struct ReportFile {
 };
 
 std::vector<ReportFile> reportFiles(const ReportData& data);
+std::vector<ReportFile> reportFiles(const Maintenance& maintenance);
+std::vector<ReportFile> reportFiles(const Repeatability& repeat);
 
 }  // namespace evical

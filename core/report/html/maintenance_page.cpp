@@ -1,10 +1,10 @@
-#include "core/report/html/maintenance_page.h"
-
+#include "core/base/nearest_name.h"
+#include "core/report/assessment_report.h"
+#include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/plot_table.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
-#include "core/report/maintenance_report.h"
 
 #include <fmt/format.h>
 
@@ -17,102 +17,36 @@ namespace evical {
 namespace html {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 constexpr std::array<const char*, 3> kPartColours = {"c0", "c1", "c2"};
 constexpr std::size_t kMostPoints = 2000;  // of a plot; maintenance's own CSV has all
-
-const char* maintenanceClass(MaintenanceVerdict verdict) {
-  switch (verdict) {
-    case MaintenanceVerdict::Unchanged:
-      return "ok";
-    case MaintenanceVerdict::Changed:
-      return "failed";
-    case MaintenanceVerdict::CannotTell:
-      break;
-  }
-  return "doubtful";
-}
-
-std::string ofSensorText(const std::string& sensor, const std::string& against) {
-  return escaped(against.empty() ? sensor : sensor + " against " + against);
-}
-
-std::string unitText(const std::string& unit) {
-  return unit == "1" ? "" : escaped(unit);
-}
-
-void writeVerdictOf(const Maintenance& maintenance, ReportPage& page) {
-  std::string advice;
-  for (const std::string& text : maintenance.advice) advice += paragraph("", escaped(text) + ".");
-  page.text(fmt::format("<div class=\"verdict {}\"><b>{}</b><div><p>{}</p>{}{}</div></div>\n",
-                        maintenanceClass(maintenance.verdict), verdictWords(maintenance.verdict),
-                        "Are the IMUs still as they were calibrated?",
-                        paragraph("reason", escaped(maintenance.reason) + "."), advice));
-}
-
-std::string outcomeText(const MaintainedQuantity& quantity) {
-  if (quantity.changed) return "<b class=\"bad\">changed</b>";
-  return quantity.told() ? "unchanged" : "cannot tell";
-}
-
-void writeQuantities(const Maintenance& maintenance, ReportPage& page) {
-  if (maintenance.quantities.empty()) return;
-  page.beginSection("quantities", "Since the calibration");
-  Rows rows, numbers;
-  for (const MaintainedQuantity& quantity : maintenance.quantities) {
-    rows.push_back(
-        {ofSensorText(quantity.sensor, quantity.against), escaped(quantity.title),
-         sourceName(quantity.source) == std::string("other_imu") ? "other IMU" : sourceName(quantity.source),
-         withSigma(quantity.change, quantity.change_sigma),
-         std::isfinite(quantity.would_notice) ? significant(quantity.would_notice) : "&ndash;",
-         unitText(quantity.unit), outcomeText(quantity)});
-    for (const MaintainedNumber& each : quantity.numbers)
-      numbers.push_back({ofSensorText(quantity.sensor, quantity.against), escaped(each.name),
-                         withSigma(each.before, each.before_sigma), withSigma(each.now, each.now_sigma),
-                         unitText(each.unit)});
-  }
-  page.text(table({"", "", "from", "change", "would show", "unit", ""}, rows));
-  page.text(paragraph(
-      "small", fmt::format("A change that is as large as <i>would show</i> is found with 95 % or more, in "
-                           "whichever direction. In all tests together a log in which nothing has changed "
-                           "has an alarm with {} % at most.",
-                           plain(100.0 * maintenance.false_alarms))));
-  page.text("<details><summary>Numbers</summary>" + table({"", "", "before", "now", "unit"}, numbers) +
-            "</details>\n");
-  page.endSection();
-}
 
 void writeSteps(const Maintenance& maintenance, ReportPage& page) {
   if (maintenance.steps.empty()) return;
   page.beginSection("steps", "Changes on the way");
-  Rows rows;
-  for (const MaintenanceStep& step : maintenance.steps) {
-    std::string others;
-    for (const std::string& other : step.or_else) others += (others.empty() ? "" : ", ") + escaped(other);
-    rows.push_back({number(step.at_s, 1), number(step.noticed_s, 1), ofSensorText(step.sensor, step.against),
-                    escaped(step.title), withSigma(step.size, step.size_sigma), unitText(step.unit), others});
-  }
-  page.text(table({"at, s", "noticed at, s", "", "what", "by", "unit", "or else"}, rows));
+  std::vector<std::vector<std::string>> rows;
+  for (const MaintenanceStep& step : maintenance.steps)
+    rows.push_back({number(step.at_s, 1), number(step.noticed_s, 1), findingHtml(step), changeHtml(step),
+                    escaped(evical::joined(step.alternatives))});
+  page.text(table({"at, s", "noticed at, s", "what", "change", "or else"}, rows));
   page.endSection();
 }
 
 // Numbers of one unit beside each other, with a band of one sigma as faint lines.
-void drawPart(const MaintenanceTrack& track, const TrackPart& part, const std::string& file,
-              const Maintenance& maintenance, ReportPage& page) {
-  const std::size_t first = part.first, count = part.parts.size();
+void drawTracked(const MaintenanceTrack& track, const TrackedQuantity& quantity, const std::string& file,
+                 const Maintenance& maintenance, ReportPage& page) {
+  const std::size_t count = quantity.numbers.size();
   std::vector<std::string> names = {"time_s"};
-  for (std::size_t c = first; c < first + count; ++c) {
-    names.push_back(track.columns[c]);
-    names.push_back("std of " + track.columns[c]);
+  for (const TrackedNumber& each : quantity.numbers) {
+    names.push_back(columnOf(quantity, each));
+    names.push_back("std of " + names.back());
   }
   PlotTable plotted(file, names);
   const std::size_t stride = strideFor(track.times_s.size(), kMostPoints);
   for (std::size_t k = 0; k < track.times_s.size(); k += stride) {
     std::vector<double> row = {track.times_s[k]};
-    for (std::size_t c = first; c < first + count; ++c) {
-      row.push_back(track.values[c][k]);
-      row.push_back(track.sigmas[c][k]);
+    for (const TrackedNumber& each : quantity.numbers) {
+      row.push_back(each.values[k]);
+      row.push_back(each.sigmas[k]);
     }
     plotted.add(row);
   }
@@ -120,11 +54,9 @@ void drawPart(const MaintenanceTrack& track, const TrackPart& part, const std::s
   // The first moments, of which hardly anything is known, would squeeze all others.
   const std::size_t skipped = std::min<std::size_t>(plotted.rows() / 10, 10);
   PlotFrame frame;
-  frame.title =
-      fmt::format("{} of {}", part.name,
-                  track.against.empty() ? track.sensor : track.sensor + " against " + track.against);
+  frame.title = fmt::format("{} of {}", quantity.title, ofSensor(track.sensor, track.against));
   frame.x_label = "s";
-  frame.y_label = part.unit;
+  frame.y_label = quantity.unit;
   frame.x = rangeOf(plotted.values[0]);
   frame.y = rangeOf(std::span(plotted.values[1]).subspan(skipped));
   for (std::size_t c = 1; c < count; ++c)
@@ -145,8 +77,8 @@ void drawPart(const MaintenanceTrack& track, const TrackPart& part, const std::s
     plot.line(plotted.values[0], values, colour);
     plot.line(plotted.values[0], low, fmt::format("{} faint", colour));
     plot.line(plotted.values[0], high, fmt::format("{} faint", colour));
-    const std::string& column = track.columns[first + c];
-    legend.push_back({colour, column.substr(0, column.find(' '))});
+    const std::string& part = quantity.numbers[c].name;
+    legend.push_back({colour, part.empty() ? quantity.title : part});
   }
   plot.legend(legend);
   page.figure(plot.svg(),
@@ -161,8 +93,8 @@ void writeTracks(const Maintenance& maintenance, ReportPage& page) {
   page.beginSection("tracks", "Over time");
   int picture = 0;
   for (const MaintenanceTrack& track : maintenance.tracks)
-    for (const TrackPart& part : partsOf(track))
-      drawPart(track, part, fmt::format("plots/track{}.csv", ++picture), maintenance, page);
+    for (const TrackedQuantity& quantity : track.quantities)
+      drawTracked(track, quantity, fmt::format("plots/track{}.csv", ++picture), maintenance, page);
   page.endSection();
 }
 
@@ -213,33 +145,32 @@ void writeStops(const Maintenance& maintenance, ReportPage& page) {
 
 void writeNotesOf(const Maintenance& maintenance, ReportPage& page) {
   page.beginSection("run", "To know");
-  std::string items;
-  for (const std::string& text : maintenance.notes) items += element("li", "", escaped(text));
+  std::vector<std::string> texts = maintenance.notes;
   for (const MaintainedImu& imu : maintenance.imus)
-    items += element("li", "",
-                     escaped(fmt::format("{}: stream {}, {:.1f} Hz, from {:.1f} s to {:.1f} s", imu.name,
-                                         imu.stream, imu.rate_hz, imu.from_s, imu.to_s)));
-  for (const std::string& log : maintenance.logs) items += element("li", "", "Log: " + escaped(log));
-  items += element("li", "", "Old result: " + escaped(maintenance.before));
-  page.text("<ul>" + items + "</ul>\n");
+    texts.push_back(fmt::format("{}: stream {}, {:.1f} Hz, from {:.1f} s to {:.1f} s", imu.name, imu.stream,
+                                imu.rate_hz, imu.from_s, imu.to_s));
+  for (const std::string& log : maintenance.inputs) texts.push_back("Log: " + log);
+  texts.push_back("Old result: " + maintenance.before);
+  writeTexts(texts, page);
   page.endSection();
 }
 
 }  // namespace
 }  // namespace html
 
-std::vector<ReportFile> maintenanceReportFiles(const Maintenance& maintenance) {
+std::vector<ReportFile> reportFiles(const Maintenance& maintenance) {
   html::ReportPage verdict, page;
-  html::writeVerdictOf(maintenance, verdict);
+  html::writeAssessmentVerdict(maintenance, "Are the IMUs still as they were calibrated?", verdict);
   html::writeSteps(maintenance, page);
-  html::writeQuantities(maintenance, page);
+  if (!maintenance.findings.empty()) {
+    page.beginSection("findings", "Since the calibration");
+    html::writeFindings(maintenance, page);
+    page.endSection();
+  }
   html::writeTracks(maintenance, page);
   html::writeStops(maintenance, page);
   html::writeNotesOf(maintenance, page);
-  std::vector<ReportFile> files = {
-      {"report.html", html::document({"IMUs over time", maintenance.version, {}}, verdict, page)}};
-  for (const html::PlotTable& table : page.tables()) files.push_back({table.file, html::tableCsv(table)});
-  return files;
+  return html::filesOf({"IMUs over time", maintenance.version, {}}, verdict, page);
 }
 
 }  // namespace evical

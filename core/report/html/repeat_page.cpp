@@ -1,9 +1,8 @@
-#include "core/report/html/repeat_page.h"
-
+#include "core/report/assessment_report.h"
+#include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
-#include "core/report/repeat_report.h"
 #include "core/report/result_yaml.h"
 
 #include <fmt/format.h>
@@ -21,32 +20,10 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::array<const char*, 6> kRecordingColours = {"c0", "c1", "c2", "o3", "o6", "o8"};
 
-const char* repeatClass(RepeatVerdict verdict) {
-  switch (verdict) {
-    case RepeatVerdict::Agree:
-      return "ok";
-    case RepeatVerdict::Disagree:
-      return "doubtful";
-    case RepeatVerdict::Failed:
-      break;
-  }
-  return "failed";
-}
-
-void writeAgreement(const Repeatability& repeat, ReportPage& page) {
-  page.text(fmt::format("<div class=\"verdict {}\"><b>{}</b><div><p>{}</p>{}</div></div>\n",
-                        repeatClass(repeat.verdict), verdictWords(repeat.verdict),
-                        escaped(fmt::format("Does the calibration come out the same from {} recordings?",
-                                            repeat.recordings.size())),
-                        paragraph("reason", escaped(repeat.reason) + ".")));
-}
-
 std::string differsText(const RepeatedRecording& recording) {
   std::string text;
-  for (const CheckedQuantity& quantity : recording.differs)
-    text += fmt::format("{}{} of {} by {} {}", text.empty() ? "" : "; ", escaped(quantity.title),
-                        escaped(quantity.sensor), withSigma(quantity.change, quantity.change_sigma),
-                        escaped(quantity.unit));
+  for (const Finding& finding : recording.findings)
+    text += fmt::format("{}{} by {}", text.empty() ? "" : "; ", findingHtml(finding), changeHtml(finding));
   if (!recording.reason.empty())
     text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", statusName(recording.status),
                         escaped(recording.reason));
@@ -90,9 +67,9 @@ void writeRecordings(const Repeatability& repeat, ReportPage& page) {
   Rows rows;
   for (const RepeatedRecording& recording : repeat.recordings)
     rows.push_back({escaped(recording.name),
-                    recording.outcome == RepeatOutcome::Fits         ? "fits"
-                    : recording.outcome == RepeatOutcome::DoesNotFit ? "<b class=\"bad\">does not fit</b>"
-                                                                     : "<b class=\"bad\">failed</b>",
+                    recording.outcome == RepeatOutcome::Fits
+                        ? "fits"
+                        : fmt::format("<b class=\"bad\">{}</b>", outcomeWords(recording.outcome)),
                     recording.freedom > 0 ? number(recording.chi_square, 1) : "",
                     recording.freedom > 0 ? number(recording.limit, 1) : "", differsText(recording)});
   page.text(table({"", "", "chi-square", "limit", "what differs, or why"}, rows));
@@ -221,30 +198,23 @@ void writePictures(const Repeatability& repeat, ReportPage& page) {
   page.endSection();
 }
 
-void writeNotes(const Repeatability& repeat, ReportPage& page) {
-  if (repeat.notes.empty()) return;
-  page.beginSection("notes", "To know");
-  std::string items;
-  for (const std::string& text : repeat.notes) items += element("li", "", escaped(text));
-  page.text("<ul>" + items + "</ul>\n");
-  page.endSection();
-}
-
 }  // namespace
 }  // namespace html
 
-std::vector<ReportFile> repeatReportFiles(const Repeatability& repeat) {
+std::vector<ReportFile> reportFiles(const Repeatability& repeat) {
   html::ReportPage verdict, page;
-  html::writeAgreement(repeat, verdict);
+  const std::size_t count = repeat.recordings.size();
+  html::writeAssessmentVerdict(
+      repeat, fmt::format("Does the calibration come out the same from {} recordings?", count), verdict);
   html::writeRecordings(repeat, page);
   if (!repeat.quantities.empty()) html::writeStatistics(repeat, page);
   html::writePictures(repeat, page);
-  html::writeNotes(repeat, page);
-  const std::string title = fmt::format("Repeat of {} recordings", repeat.recordings.size());
-  std::vector<ReportFile> files = {
-      {"report.html", html::document({title, repeat.version, {}}, verdict, page)}};
-  for (const html::PlotTable& table : page.tables()) files.push_back({table.file, html::tableCsv(table)});
-  return files;
+  if (!repeat.notes.empty()) {
+    page.beginSection("notes", "To know");
+    html::writeTexts(repeat.notes, page);
+    page.endSection();
+  }
+  return html::filesOf({fmt::format("Repeat of {} recordings", count), repeat.version, {}}, verdict, page);
 }
 
 }  // namespace evical

@@ -4,28 +4,21 @@
 
 #include "core/data/maintenance.h"
 #include "core/pipeline/maintain/imu_logs.h"
-
-#include <QWidget>
-
-#include <optional>
+#include "ui/screens/assessment/assessment_screen.h"
 
 class QComboBox;
+class QLayout;
 class QLineEdit;
-class QListWidget;
-class QPushButton;
-class QStackedWidget;
 
 namespace evical::ui {
 
 class FileList;
-class MaintainTable;
+class FindingTable;
 class OldResultRow;
 class PathRow;
 class StepTable;
-class VerdictLine;
-class WorkBar;
 
-class MaintainScreen : public QWidget {
+class MaintainScreen : public AssessmentScreen {
   Q_OBJECT
 
  public:
@@ -35,41 +28,23 @@ class MaintainScreen : public QWidget {
   OldResultRow& result() { return *result_; }
   FileList& logs() { return *logs_; }
   PathRow& trajectory() { return *trajectory_; }
-  WorkBar& work() { return *work_; }
 
   // Throws CalibrationError (BadInput) where streams are given in words that say nothing.
   ImuLogSettings settings() const;
-  void setMaintenance(std::optional<Maintenance> maintenance);
-
- signals:
-  void maintainRequested();
-  void cancelRequested();
-  void saveRequested();
-
- protected:
-  void changeEvent(QEvent* event) override;
+  void setMaintenance(const Maintenance& maintenance);
 
  private:
-  QWidget* makeForm();
   QLayout* makeUnits();
-  QWidget* makeEmpty();
   QWidget* makeContent(QWidget* charts);
   void offer();
-  void showNotes();
 
-  OldResultRow* result_ = nullptr;
   FileList* logs_;
-  PathRow* trajectory_ = nullptr;
+  OldResultRow* result_;
+  PathRow* trajectory_;
   QComboBox *acceleration_unit_, *rate_unit_;
   QLineEdit* streams_;
-  WorkBar* work_ = nullptr;
-  QStackedWidget* stack_;
-  VerdictLine* verdict_;
   StepTable* steps_;
-  MaintainTable* table_;
-  QListWidget* notes_;
-  QPushButton* save_;
-  std::optional<Maintenance> maintenance_;
+  FindingTable* table_;
 };
 
 }  // namespace evical::ui

@@ -4,16 +4,12 @@
 #pragma once
 
 #include "core/data/repeatability.h"
-
-#include <QWidget>
+#include "ui/screens/assessment/assessment_screen.h"
 
 #include <optional>
 
 class QComboBox;
 class QLabel;
-class QListWidget;
-class QPushButton;
-class QStackedWidget;
 
 namespace evical::ui {
 
@@ -21,51 +17,38 @@ class FileList;
 class PathRow;
 class RepeatedList;
 class RepeatTable;
-class VerdictLine;
-class WorkBar;
 
-class RepeatScreen : public QWidget {
+class RepeatScreen : public AssessmentScreen {
   Q_OBJECT
 
  public:
   explicit RepeatScreen(QWidget* parent = nullptr);
 
   PathRow& folder() { return *folder_; }
-  WorkBar& work() { return *work_; }
-
   FileList& files() { return *files_; }
   void setOpenFile(const QString& file);  // what is open in the window; empty: nothing
-  void setRepeat(std::optional<Repeatability> repeat);
+  void setRepeat(const Repeatability& repeat);
 
  signals:
-  void repeatRequested();
-  void cancelRequested();
   void openFolderRequested();
   void reportRequested();
   void openResultRequested(int recording);  // -1: of all together
 
  private:
-  QWidget* makeForm();
-  QWidget* makeEmpty();
-  QWidget* makeContent();
+  void addForm();
   QWidget* makeNumbers();
   QWidget* makeRecordings();
   void offer();
-  void showVerdict();
   void offerPairs();
   void comparePair();
 
   FileList* files_;
   QPushButton* add_open_;
-  PathRow* folder_ = nullptr;
-  WorkBar* work_ = nullptr;
-  QStackedWidget* stack_;
-  VerdictLine* verdict_;
+  PathRow* folder_;
   QLabel* ratio_;
   QComboBox *first_, *second_;
   RepeatTable* numbers_;
   RepeatedList* recordings_;
-  QListWidget* notes_;
   QPushButton* open_result_;
   QString open_file_;
   std::optional<Repeatability> repeat_;

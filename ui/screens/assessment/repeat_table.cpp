@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/assessment/repeat_table.h"
 
+#include "core/report/assessment_report.h"
 #include "core/report/html/html_text.h"
+#include "ui/screens/assessment/finding_table.h"
 #include "ui/screens/number_words.h"
 #include "ui/theme/theme.h"
 
@@ -16,20 +18,8 @@ namespace {
 
 constexpr double kFar_sigmas = 3.0;
 
-QString shownNumber(const std::optional<ComparedNumber>& number) {
+QString shownNumber(const std::optional<ValueWithSigma>& number) {
   return number ? withSigma(number->value, number->sigma) : QString(QChar(0x2013));
-}
-
-QString outcomeOf(const RepeatedRecording& recording) {
-  switch (recording.outcome) {
-    case RepeatOutcome::Fits:
-      return QObject::tr("fits");
-    case RepeatOutcome::DoesNotFit:
-      return QObject::tr("does not fit");
-    case RepeatOutcome::Failed:
-      break;
-  }
-  return QObject::tr("failed");
 }
 
 QIcon repeatIconOf(const RepeatedRecording& recording) {
@@ -40,11 +30,9 @@ QIcon repeatIconOf(const RepeatedRecording& recording) {
 
 QString repeatWordsOf(const RepeatedRecording& recording) {
   QStringList parts;
-  for (const CheckedQuantity& quantity : recording.differs)
-    parts << QObject::tr("%1 of %2 differs by %3 %4 %5 %6")
-                 .arg(fromCore(quantity.title), fromCore(quantity.sensor),
-                      fromCore(html::significant(quantity.change, 2)), QChar(0xb1),
-                      fromCore(html::significant(quantity.change_sigma, 2)), fromCore(quantity.unit));
+  for (const Finding& finding : recording.findings)
+    parts << QObject::tr("%1 of %2 differs by %3")
+                 .arg(fromCore(finding.title), fromCore(finding.sensor), changeText(finding));
   if (!recording.reason.empty()) parts << fromCore(recording.reason);
   return parts.isEmpty() ? QObject::tr("nothing against it") : parts.join("; ");
 }
@@ -171,8 +159,8 @@ void RepeatedList::fill() {
         recording.freedom > 0
             ? tr("%1 of %2").arg(recording.chi_square, 0, 'f', 1).arg(recording.limit, 0, 'f', 1)
             : QString();
-    auto* const item = new QTreeWidgetItem({fromCore(recording.name), outcomeOf(recording), distance,
-                                            repeatWordsOf(recording), fromCore(recording.file)});
+    auto* const item = new QTreeWidgetItem({fromCore(recording.name), outcomeWords(recording.outcome),
+                                            distance, repeatWordsOf(recording), fromCore(recording.file)});
     item->setIcon(kOutcome, repeatIconOf(recording));
     alignNumbers(*item, kDistance, kDistance + 1);
     for (const int column : {kName, kWhat, kFile}) item->setToolTip(column, item->text(column));

@@ -4,24 +4,15 @@
 #pragma once
 
 #include "core/data/calibration_check.h"
-
-#include <QWidget>
-
-#include <optional>
-
-class QListWidget;
-class QPushButton;
-class QStackedWidget;
+#include "ui/screens/assessment/assessment_screen.h"
 
 namespace evical::ui {
 
-class CheckTable;
+class FindingTable;
 class OldResultRow;
 class PathRow;
-class VerdictLine;
-class WorkBar;
 
-class ResultCheckScreen : public QWidget {
+class ResultCheckScreen : public AssessmentScreen {
   Q_OBJECT
 
  public:
@@ -29,33 +20,14 @@ class ResultCheckScreen : public QWidget {
 
   OldResultRow& result() { return *result_; }
   PathRow& recording() { return *recording_; }
-  WorkBar& work() { return *work_; }
-  void setCheck(std::optional<CalibrationCheck> check);
-
- signals:
-  void checkRequested();
-  void cancelRequested();
-  void saveRequested();
-
- protected:
-  void changeEvent(QEvent* event) override;
+  void setCheck(const CalibrationCheck& check);
 
  private:
-  QWidget* makeForm();
-  QWidget* makeEmpty();
-  QWidget* makeContent();
   void offer();
-  void showNotes();
 
-  OldResultRow* result_ = nullptr;
-  PathRow* recording_ = nullptr;
-  WorkBar* work_ = nullptr;
-  QStackedWidget* stack_;
-  VerdictLine* verdict_;
-  CheckTable* table_;
-  QListWidget* notes_;
-  QPushButton* save_;
-  std::optional<CalibrationCheck> check_;
+  OldResultRow* result_;
+  PathRow* recording_;
+  FindingTable* table_;
 };
 
 }  // namespace evical::ui

@@ -6,7 +6,7 @@
 #include "core/pipeline/check/check_calibration.h"
 #include "core/pipeline/check/check_files.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 #include "core/report/report_options.h"
 #include "tests/support/seen_through.h"
 #include "tests/support/simulated_pass.h"
@@ -30,10 +30,10 @@ Scenario briskForCheckCalibration(std::uint64_t seed) {
   return scenario;
 }
 
-const CheckedQuantity* changedOneForCheckCalibration(const CalibrationCheck& check) {
-  const auto found = std::find_if(check.quantities.begin(), check.quantities.end(),
-                                  [](const CheckedQuantity& each) { return each.changed; });
-  return found == check.quantities.end() ? nullptr : &*found;
+const Finding* changedOneForCheckCalibration(const CalibrationCheck& check) {
+  const auto found = std::find_if(check.findings.begin(), check.findings.end(),
+                                  [](const Finding& each) { return each.changed; });
+  return found == check.findings.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -83,13 +83,13 @@ class TestCheckCalibration : public QObject {
 
   void unchangedRig_isStillGood() {
     const CheckRun checked = check(10.0);
-    QVERIFY2(checked.check.verdict == CheckVerdict::StillGood, checked.check.reason.c_str());
-    QVERIFY(checked.check.quantities.size() >= 4);
-    for (const CheckedQuantity& quantity : checked.check.quantities) {
-      QVERIFY(quantity.would_notice > quantity.stability && quantity.change_sigma > 0.0);
+    QVERIFY2(checked.check.verdict == Verdict::Unchanged, checked.check.reason.c_str());
+    QVERIFY(checked.check.findings.size() >= 4);
+    for (const Finding& quantity : checked.check.findings) {
+      QVERIFY(quantity.smallest_detectable_change > quantity.allowed_drift && quantity.change_sigma > 0.0);
       // Both together know more than either alone.
-      for (const CheckedNumber& number : quantity.numbers)
-        if (quantity.name == "translation") QVERIFY(number.together_sigma < number.now_sigma);
+      for (const ComparedNumber& number : quantity.numbers)
+        if (quantity.quantity == "translation") QVERIFY(number.joint.sigma < number.now.sigma);
     }
   }
 
@@ -114,10 +114,10 @@ class TestCheckCalibration : public QObject {
       // 3 px at 125 px from the middle, the RMS distance.
       if (quantity == "intrinsics") camera.intrinsics.focal_length_px *= 1.0 + size / 125.0;
     });
-    QVERIFY2(checked.check.verdict == CheckVerdict::Changed, checked.check.reason.c_str());
-    const CheckedQuantity* const changed = changedOneForCheckCalibration(checked.check);
+    QVERIFY2(checked.check.verdict == Verdict::Changed, checked.check.reason.c_str());
+    const Finding* const changed = changedOneForCheckCalibration(checked.check);
     QVERIFY(changed != nullptr);
-    QCOMPARE(QString::fromStdString(changed->name), quantity);
+    QCOMPARE(QString::fromStdString(changed->quantity), quantity);
     QVERIFY2(std::abs(changed->change - size) < 0.3 * size, qPrintable(QString::number(changed->change)));
     QVERIFY(checked.check.reason.find(changed->title) != std::string::npos);
     if (quantity == "rotation") {
@@ -129,17 +129,17 @@ class TestCheckCalibration : public QObject {
 
   void poorRecording_cannotTell() {
     const CheckRun tooShort = check(2.5);
-    QVERIFY(tooShort.check.verdict == CheckVerdict::CannotTell);
+    QVERIFY(tooShort.check.verdict == Verdict::CannotTell);
     QVERIFY2(tooShort.check.reason.find("too short") != std::string::npos, tooShort.check.reason.c_str());
     QVERIFY(!tooShort.check.advice.empty() && !tooShort.run);
     const CheckRun short_one = check(3.2);
-    QVERIFY2(short_one.check.verdict == CheckVerdict::CannotTell, short_one.check.reason.c_str());
+    QVERIFY2(short_one.check.verdict == Verdict::CannotTell, short_one.check.reason.c_str());
     QVERIFY(!short_one.check.advice.empty());
     const CheckRun unseen = check(6.0, {}, [](RecordingPass& pass) {
       for (BoardView& view : pass.cameras.front().views) view.circles.clear();
       pass.cameras.front().views.clear();
     });
-    QVERIFY2(unseen.check.verdict == CheckVerdict::CannotTell, unseen.check.reason.c_str());
+    QVERIFY2(unseen.check.verdict == Verdict::CannotTell, unseen.check.reason.c_str());
   }
 
   // The camera's clock steps within the recording: its time offset is another one, but not the rig.
@@ -151,7 +151,7 @@ class TestCheckCalibration : public QObject {
         for (CircleObservation& circle : view.circles) circle.time_s += 0.02;
       }
     });
-    QVERIFY2(checked.check.verdict == CheckVerdict::CannotTell, checked.check.reason.c_str());
+    QVERIFY2(checked.check.verdict == Verdict::CannotTell, checked.check.reason.c_str());
     QVERIFY(checked.check.reason.find("not to be relied on") != std::string::npos);
   }
 
@@ -194,8 +194,8 @@ class TestCheckCalibration : public QObject {
     before_.result = std::make_shared<const CalibrationResult>(older);
     const CheckRun checked = check(8.0);
     before_ = kept;
-    QVERIFY2(checked.check.verdict != CheckVerdict::Changed, checked.check.reason.c_str());
-    QVERIFY(checked.check.quantities.front().numbers.front().before_sigma > 0.0);
+    QVERIFY2(checked.check.verdict != Verdict::Changed, checked.check.reason.c_str());
+    QVERIFY(checked.check.findings.front().numbers.front().before.sigma > 0.0);
   }
 
   void cancelled_isNoVerdict() {
@@ -219,8 +219,8 @@ class TestCheckCalibration : public QObject {
     writeCheckFiles(path, checkInputOf(before_, session_), checked, "test", "log");
     const YamlNode yaml = YamlNode::load(path / "check.yaml");
     QCOMPARE(yaml["evical_check"].integer(1, 1), 1);
-    QCOMPARE(yaml["status"].text(), std::string(verdictName(checked.check.verdict)));
-    QCOMPARE(yaml["quantities"].items().size(), checked.check.quantities.size());
+    QCOMPARE(yaml["verdict"].text(), std::string(verdictName(checked.check.verdict)));
+    QCOMPARE(yaml["findings"].items().size(), checked.check.findings.size());
     QFile report(QString::fromStdString((path / "report.html").string()));
     QVERIFY(report.open(QIODevice::ReadOnly));
     const QString page = QString::fromUtf8(report.readAll());

@@ -3,7 +3,7 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/check/check_without_board.h"
-#include "core/report/check_report.h"
+#include "core/report/assessment_report.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "core/synthetic/sinusoid_motion.h"
@@ -104,10 +104,10 @@ CalibrationCheck checkOf(const Scenario& before, BoardlessPass pass) {
   return checkWithoutBoard(input, std::move(pass)).check;
 }
 
-const CheckedQuantity* changedOneForCheckWithoutBoard(const CalibrationCheck& check) {
-  const auto found = std::find_if(check.quantities.begin(), check.quantities.end(),
-                                  [](const CheckedQuantity& each) { return each.changed; });
-  return found == check.quantities.end() ? nullptr : &*found;
+const Finding* changedOneForCheckWithoutBoard(const CalibrationCheck& check) {
+  const auto found = std::find_if(check.findings.begin(), check.findings.end(),
+                                  [](const Finding& each) { return each.changed; });
+  return found == check.findings.end() ? nullptr : &*found;
 }
 
 bool says(const CalibrationCheck& check, const char* words) {
@@ -122,7 +122,7 @@ class TestCheckWithoutBoard : public QObject {
 
   static void verifyCannotTell(const Scenario& scenario, const char* reason) {
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, seenCamera(scenario)));
-    QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+    QVERIFY2(check.verdict == Verdict::CannotTell, check.reason.c_str());
     QVERIFY(!check.advice.empty() && check.without_board && check.windows.size() == 1);
     const auto& left_out = check.windows.front().left_out;
     const bool said = std::any_of(left_out.begin(), left_out.end(),
@@ -134,10 +134,10 @@ class TestCheckWithoutBoard : public QObject {
   void unchangedRig_isStillGood() {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario)));
-    QVERIFY2(check.verdict == CheckVerdict::StillGood, check.reason.c_str());
-    QCOMPARE(check.quantities.size(), std::size_t{2});  // rotation and time offset, nothing else
-    QVERIFY(checkJson(check).find("\"without_board\": true") != std::string::npos);
-    QVERIFY(checkYaml(check).find("without_board: true") != std::string::npos);
+    QVERIFY2(check.verdict == Verdict::Unchanged, check.reason.c_str());
+    QCOMPARE(check.findings.size(), std::size_t{2});  // rotation and time offset, nothing else
+    QVERIFY(assessmentJson(check).find("\"without_board\": true") != std::string::npos);
+    QVERIFY(assessmentYaml(check).find("without_board: true") != std::string::npos);
   }
 
   void changedQuantity_isNamedWithItsSize_data() {
@@ -156,10 +156,10 @@ class TestCheckWithoutBoard : public QObject {
         quaternionExp(Eigen::Vector3d(0.0, kRadPerDeg * turn_deg, 0.0)) * camera.imu_from_camera.rotation;
     camera.time_offset_s += 1e-3 * late_ms;
     const CalibrationCheck check = checkOf(before, passOf(now, turningCamera(now)));
-    QVERIFY2(check.verdict == CheckVerdict::Changed, check.reason.c_str());
-    const CheckedQuantity* const changed = changedOneForCheckWithoutBoard(check);
+    QVERIFY2(check.verdict == Verdict::Changed, check.reason.c_str());
+    const Finding* const changed = changedOneForCheckWithoutBoard(check);
     QVERIFY(changed != nullptr);
-    QCOMPARE(changed->name, std::string(turn_deg > 0.0 ? "rotation" : "time_offset"));
+    QCOMPARE(changed->quantity, std::string(turn_deg > 0.0 ? "rotation" : "time_offset"));
     const double size = turn_deg + late_ms;
     QVERIFY2(std::abs(changed->change - size) < 0.2 * size, qPrintable(QString::number(changed->change)));
   }
@@ -169,7 +169,7 @@ class TestCheckWithoutBoard : public QObject {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check =
         checkOf(scenario, passOf(scenario, turningCamera(scenario, {3.0, 1.0, 1.0, 4.0})));
-    QVERIFY2(check.verdict != CheckVerdict::Changed, check.reason.c_str());
+    QVERIFY2(check.verdict != Verdict::Changed, check.reason.c_str());
   }
 
   // Not the lens: what is near moves in the image by walking.
@@ -177,7 +177,7 @@ class TestCheckWithoutBoard : public QObject {
     const Scenario scenario = room(30.0);
     for (const Seen& seen : {Seen{5.0, 1.0, 1.5, 1.0}, Seen{8.0, 1.0, 1.0, 1.0}}) {
       const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario, seen)));
-      QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+      QVERIFY2(check.verdict == Verdict::CannotTell, check.reason.c_str());
       QVERIFY2(says(check, "walls"), check.advice.front().c_str());
     }
   }
@@ -187,7 +187,7 @@ class TestCheckWithoutBoard : public QObject {
     BoardlessPass pass = passOf(scenario, turningCamera(scenario));
     pass.imus.clear();
     const CalibrationCheck check = checkOf(scenario, std::move(pass));
-    QVERIFY(check.verdict == CheckVerdict::CannotTell);
+    QVERIFY(check.verdict == Verdict::CannotTell);
     QVERIFY2(check.reason.find("IMU") != std::string::npos, check.reason.c_str());
     QVERIFY(!check.advice.empty());
   }
@@ -196,7 +196,7 @@ class TestCheckWithoutBoard : public QObject {
   void anotherLens_isSaid() {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario, {0.0, 1.3})));
-    QVERIFY(check.verdict == CheckVerdict::CannotTell);
+    QVERIFY(check.verdict == Verdict::CannotTell);
     QVERIFY2(check.reason.find("times as fast") != std::string::npos, check.reason.c_str());
   }
 
@@ -208,7 +208,7 @@ class TestCheckWithoutBoard : public QObject {
     other.seed += 1000;
     pass.imus = passOf(other, {}).imus;
     const CalibrationCheck check = checkOf(scenario, std::move(pass));
-    QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+    QVERIFY2(check.verdict == Verdict::CannotTell, check.reason.c_str());
     QVERIFY2(says(check, "one rig"), check.reason.c_str());
   }
 
@@ -231,7 +231,7 @@ class TestCheckWithoutBoard : public QObject {
     scenario.scene.lamp_flicker = 0.5;
     scenario.scene.lamp_flicker_hz = 100.0;
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, seenCamera(scenario)));
-    QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+    QVERIFY2(check.verdict == Verdict::CannotTell, check.reason.c_str());
     QVERIFY(!check.advice.empty());
   }
 };

@@ -78,8 +78,9 @@ class TestSingleChanges : public QObject {
     constexpr double kStability = 0.3;
     const auto all = groups(kStability);
     Draws draws;
-    const double size =
-        testSingleChanges(draws.next(Eigen::VectorXd::Zero(kNumbers)), all, 0.01).groups[1].would_notice;
+    const double size = testSingleChanges(draws.next(Eigen::VectorXd::Zero(kNumbers)), all, 0.01)
+                            .groups[1]
+                            .smallest_detectable_change;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       int found = 0;
       for (int k = 0; k < kDraws; ++k)
@@ -97,7 +98,7 @@ class TestSingleChanges : public QObject {
         testSingleChanges(draws.next(20.0 * Eigen::VectorXd::Unit(kNumbers, 1)), all, 0.01);
     QVERIFY(tests.groups[0].changed);
     QVERIFY(!tests.groups[1].changed);
-    QVERIFY(tests.or_else.empty());
+    QVERIFY(tests.alternatives.empty());
     QVERIFY(std::abs(tests.groups[0].change.norm() - 20.0) < 4.0);
   }
 

@@ -6,7 +6,7 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/repeat/repeat_calibration.h"
 #include "core/pipeline/repeat/repeat_files.h"
-#include "core/report/repeat_report.h"
+#include "core/report/assessment_report.h"
 #include "core/report/truth_comparison.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_pass.h"
@@ -134,7 +134,7 @@ class TestRepeatCalibration : public QObject {
 
   void unchangedRig_agrees() {
     const Repeatability& repeat = good_.repeatability;
-    QVERIFY2(repeat.verdict == RepeatVerdict::Agree, repeat.reason.c_str());
+    QVERIFY2(repeat.verdict == Verdict::Unchanged, repeat.reason.c_str());
     QCOMPARE(repeat.columns.size(), std::size_t{3});
     for (const RepeatedRecording& recording : repeat.recordings) {
       QVERIFY(recording.outcome == RepeatOutcome::Fits);
@@ -190,12 +190,12 @@ class TestRepeatCalibration : public QObject {
     const RepeatRun run =
         repeatOf(3, {[](std::size_t k, Scenario& scenario) { turnCamera(1, 1.0, k, scenario); }, {}});
     const Repeatability& repeat = run.repeatability;
-    QVERIFY2(repeat.verdict == RepeatVerdict::Disagree, repeat.reason.c_str());
+    QVERIFY2(repeat.verdict == Verdict::Changed, repeat.reason.c_str());
     QVERIFY(repeat.recordings[0].outcome == RepeatOutcome::Fits);
     QVERIFY(repeat.recordings[1].outcome == RepeatOutcome::DoesNotFit);
     QVERIFY(repeat.recordings[2].outcome == RepeatOutcome::Fits);
-    const CheckedQuantity& differs = repeat.recordings[1].differs.front();
-    QCOMPARE(QString::fromStdString(differs.name), QString("rotation"));
+    const Finding& differs = repeat.recordings[1].findings.front();
+    QCOMPARE(QString::fromStdString(differs.quantity), QString("rotation"));
     QVERIFY2(std::abs(differs.change - 1.0) < 0.1, qPrintable(QString::number(differs.change)));
     QVERIFY2(repeat.reason.find("recording2: rotation of left by ") != std::string::npos,
              repeat.reason.c_str());
@@ -208,7 +208,7 @@ class TestRepeatCalibration : public QObject {
   void twoThatDisagree_areBothDoubtful() {
     const RepeatRun run =
         repeatOf(2, {[](std::size_t k, Scenario& scenario) { turnCamera(1, 1.0, k, scenario); }, {}});
-    QVERIFY(run.repeatability.verdict == RepeatVerdict::Disagree);
+    QVERIFY(run.repeatability.verdict == Verdict::Changed);
     QVERIFY2(run.repeatability.reason.find("which of them is right") != std::string::npos,
              run.repeatability.reason.c_str());
     QVERIFY(run.joint->result->status == CalibrationStatus::Doubtful);
@@ -219,7 +219,7 @@ class TestRepeatCalibration : public QObject {
                                          if (k == 0) pass.cameras.front().views.clear();
                                        }});
     const Repeatability& repeat = run.repeatability;
-    QVERIFY2(repeat.verdict == RepeatVerdict::Agree, repeat.reason.c_str());
+    QVERIFY2(repeat.verdict == Verdict::Unchanged, repeat.reason.c_str());
     QVERIFY(repeat.recordings[0].outcome == RepeatOutcome::Failed && !repeat.recordings[0].reason.empty());
     QCOMPARE(repeat.columns.size(), std::size_t{2});
     QVERIFY(repeat.notes.front().find("recording1") != std::string::npos);
@@ -229,7 +229,7 @@ class TestRepeatCalibration : public QObject {
     const RepeatRun run = repeatOf(2, {{}, [](std::size_t k, RecordingPass& pass) {
                                          if (k == 0) pass.cameras.front().views.clear();
                                        }});
-    QVERIFY(run.repeatability.verdict == RepeatVerdict::Failed && !run.joint);
+    QVERIFY(run.repeatability.verdict == Verdict::CannotTell && !run.joint);
     QVERIFY2(run.repeatability.reason.find("1 of 2") != std::string::npos, run.repeatability.reason.c_str());
   }
 
@@ -256,14 +256,14 @@ class TestRepeatCalibration : public QObject {
         ++offsets;
       }
     QVERIFY(offsets == 1);
-    QVERIFY2(good.repeatability.verdict == RepeatVerdict::Agree, good.repeatability.reason.c_str());
+    QVERIFY2(good.repeatability.verdict == Verdict::Unchanged, good.repeatability.reason.c_str());
     for (const QuantityDifference& each :
          compareWithTruth(*good.joint, truthOf(briskForRepeatCalibration(3, "stereo"))).quantities)
       QVERIFY2(std::abs(each.normalised()) < 4.0, each.name.c_str());
     const RepeatRun turned = repeatOf(
         3, {[](std::size_t k, Scenario& scenario) { turnCamera(0, 1.0, k, scenario); }, {}}, "stereo");
     QVERIFY(turned.repeatability.recordings[0].outcome == RepeatOutcome::DoesNotFit);
-    QCOMPARE(QString::fromStdString(turned.repeatability.recordings[0].differs.front().sensor),
+    QCOMPARE(QString::fromStdString(turned.repeatability.recordings[0].findings.front().sensor),
              QString("right"));
   }
 
@@ -318,7 +318,7 @@ class TestRepeatCalibration : public QObject {
     writeRepeatFiles(path, input, good_, "log");
     const YamlNode yaml = YamlNode::load(path / "repeat.yaml");
     QCOMPARE(yaml["evical_repeat"].integer(1, 1), 1);
-    QCOMPARE(yaml["status"].text(), std::string("agree"));
+    QCOMPARE(yaml["verdict"].text(), std::string("unchanged"));
     QCOMPARE(yaml["quantities"].items().size(), good_.repeatability.quantities.size());
     const NamedResult read = readResultYaml(path / "result.yaml");
     const RigidTransform &pose = read.result->state.cameras.front().reference_from_camera,

@@ -1,0 +1,44 @@
+// What `evical check`, `evical maintain` and `evical repeat` have in common: arguments, what they print, how they end.
+#pragma once
+
+#include "app/command_line.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "core/base/new_folder.h"
+#include "core/base/progress.h"
+#include "core/report/assessment_report.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct AssessmentArguments {
+  std::string output;  // empty: no files are written
+  std::vector<std::string> settings;
+  int threads = 0;  // 0: as the options say
+  bool json = false, quiet = false;
+};
+
+// -o, --set, --json and --quiet; the first of them may be made required. `groups`: what --set says of its groups.
+Argument addAssessmentArguments(Command& command, AssessmentArguments& arguments, const std::string& folder,
+                                const std::string& groups);
+void addThreads(Command& command, AssessmentArguments& arguments);
+
+int exitCodeOf(Verdict verdict);
+
+// `assess` gives the assessment and writes its files, where there is a folder for them.
+template <class Assess>
+int runAssessment(const AssessmentArguments& arguments, const Assess& assess) {
+  Console console(arguments.quiet || arguments.json);
+  std::optional<NewFolder> folder;
+  if (!arguments.output.empty()) folder.emplace(arguments.output);
+  const auto assessment = assess(console, RunContext{console, stopOnSignals()});
+  console.stageStarted("done");
+  print("{}", arguments.json ? assessmentJson(assessment) : assessmentTable(assessment));
+  if (folder && !arguments.quiet && !arguments.json) print("Files are in {}\n", arguments.output);
+  return exitCodeOf(assessment.verdict);
+}
+
+}  // namespace evical

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page's own job: what it finds is there once it is done.
+#pragma once
+
+#include "ui/jobs/job_runner.h"
+
+#include <QObject>
+
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+
+class TaskJob : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit TaskJob(JobRunner& runner, QObject* parent = nullptr);
+
+  bool running() const { return running_; }
+  QString log() const { return log_; }  // of the last one that was done
+  const JobRunner& runner() const { return runner_; }
+
+ signals:
+  void done();  // something new has been found
+
+ protected:
+  // False, and nothing happens, while the runner is busy. `keep` is called where the work was done.
+  bool startWork(const QString& title, std::vector<JobStage> stages, JobRunner::Work work,
+                 std::function<void()> keep);
+
+ private:
+  void finish(JobOutcome outcome);
+
+  JobRunner& runner_;
+  bool running_ = false;
+  std::function<void()> keep_;
+  QString log_;
+};
+
+template <class Found>
+class TaskJobOf : public TaskJob {
+ public:
+  using TaskJob::TaskJob;
+
+  // `work` fills what is found, in the job's thread. False while the runner is busy.
+  bool start(const QString& title, std::vector<JobStage> stages,
+             std::function<void(Found&, const RunContext&)> work) {
+    const auto found = std::make_shared<Found>();
+    return startWork(
+        title, std::move(stages),
+        [found, work = std::move(work)](const RunContext& context) { work(*found, context); },
+        [this, found] { found_ = found; });
+  }
+  // By the last job that was done; empty: none was.
+  std::shared_ptr<const Found> found() const { return found_; }
+
+ private:
+  std::shared_ptr<const Found> found_;
+};
+
+}  // namespace evical::ui

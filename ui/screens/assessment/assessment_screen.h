@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page that compares files that are chosen on it: a form and a button above; below them what was found, and a hint
+// until there is something.
+#pragma once
+
+#include "core/data/assessment.h"
+
+#include <QWidget>
+
+#include <utility>
+#include <vector>
+
+class QGridLayout;
+class QListWidget;
+class QPushButton;
+class QStackedWidget;
+class QTabWidget;
+class QVBoxLayout;
+
+namespace evical::ui {
+
+class VerdictLine;
+class WorkBar;
+
+class AssessmentScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  WorkBar& work() { return *work_; }
+
+ signals:
+  void startRequested();
+  void cancelRequested();
+  void saveRequested();
+
+ protected:
+  // Objects are named after `name`: start_<name>, <name>_verdict, <name>_notes, <name>_tabs.
+  struct Words {
+    QString name, icon_name, heading, start, tip, hint;
+  };
+  AssessmentScreen(Words words, QWidget* parent);
+
+  QVBoxLayout& form() { return *form_; }  // above the button
+  QGridLayout& grid() { return *grid_; }  // of places of files; belongs into the form
+  VerdictLine& verdict() { return *verdict_; }
+  QListWidget* notes() { return notes_; }  // belongs into the content
+  void addSaveButton(const QString& tip);
+  void addResultButton(QPushButton* button);  // is there once something was found
+  QTabWidget* makeTabs();
+  // Below the verdict; last of all, so that keys reach the form before the button.
+  void setContent(QWidget* content);
+
+  // `more`: further notes.
+  void showAssessment(const Assessment& assessment, const QStringList& more);
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void fillNotes();
+
+  Words words_;
+  QVBoxLayout* form_;
+  QGridLayout* grid_;
+  WorkBar* work_ = nullptr;
+  QStackedWidget* stack_;
+  VerdictLine* verdict_;
+  QListWidget* notes_;
+  std::vector<QPushButton*> result_buttons_;
+  std::vector<std::pair<const char*, QString>> lines_;  // of the notes, with their icons
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/assessment/finding_table.h"
+
+#include "core/report/assessment_report.h"
+#include "core/report/html/html_text.h"
+#include "ui/screens/number_words.h"
+#include "ui/theme/theme.h"
+
+#include <QEvent>
+#include <QHeaderView>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+QString sizeText(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return QChar(0x2013);
+  return QString("%1 %2").arg(fromCore(html::significant(value, 2)), fromCore(shownUnit(unit))).trimmed();
+}
+
+QString valueText(const ValueWithSigma& number) {
+  return number.isThere() ? withSigma(number.value, number.sigma) : QString();
+}
+
+QString titleOf(const Finding& finding) {
+  const QString sensor =
+      finding.against.empty()
+          ? fromCore(finding.sensor)
+          : QObject::tr("%1 against %2").arg(fromCore(finding.sensor), fromCore(finding.against));
+  return QString("%1: %2").arg(sensor, fromCore(finding.title));
+}
+
+QIcon iconOf(const Finding& finding) {
+  if (finding.changed) return icon("error", theme().bad);
+  return finding.isConclusive() ? icon("done", theme().good) : icon("warning", theme().warning);
+}
+
+QString wordsOf(const Finding& finding) {
+  if (finding.changed)
+    return QObject::tr("It is further from the old value than chance explains (%1 sigmas; %2 are allowed)")
+        .arg(finding.sigmas, 0, 'f', 1)
+        .arg(finding.limit_sigmas, 0, 'f', 1);
+  if (finding.isConclusive()) return QObject::tr("No change is seen, and one that matters would have been");
+  return QObject::tr("No change is seen, but these data would not have shown one that matters");
+}
+
+QTreeWidgetItem* itemOf(const ComparedNumber& number) {
+  const QString unit = fromCore(shownUnit(number.unit));
+  auto* const item = new QTreeWidgetItem(
+      {unit.isEmpty() ? fromCore(number.name) : QString("%1 [%2]").arg(fromCore(number.name), unit)});
+  item->setText(FindingTable::kBefore, valueText(number.before));
+  item->setText(FindingTable::kNow, valueText(number.now));
+  if (number.joint.isThere())
+    item->setToolTip(FindingTable::kNow,
+                     QObject::tr("With the old result as prior: %1").arg(valueText(number.joint)));
+  return item;
+}
+
+QTreeWidgetItem* itemOf(const Finding& finding) {
+  auto* const item = new QTreeWidgetItem({titleOf(finding)});
+  item->setIcon(FindingTable::kVerdict, iconOf(finding));
+  item->setText(FindingTable::kVerdict, verdictWords(finding.verdict()));
+  item->setText(FindingTable::kSource, sourceWords(finding.source));
+  item->setText(FindingTable::kChange, changeText(finding));
+  item->setText(FindingTable::kSigmas, QString::number(finding.sigmas, 'f', 1));
+  if (finding.edge_px > 0.0) item->setText(FindingTable::kEdge, sizeText(finding.edge_px, "px"));
+  item->setText(FindingTable::kDetectable, sizeText(finding.smallest_detectable_change, finding.unit));
+  if (finding.required_detectability > 0.0)
+    item->setText(FindingTable::kRequired, sizeText(finding.required_detectability, finding.unit));
+  for (int column = 0; column < FindingTable::kColumns; ++column) item->setToolTip(column, wordsOf(finding));
+  for (const ComparedNumber& number : finding.numbers) item->addChild(itemOf(number));
+  return item;
+}
+
+}  // namespace
+
+QString changeText(const Finding& finding) {
+  if (!std::isfinite(finding.change_sigma)) return QChar(0x2013);
+  return QString("%1 %2 %3")
+      .arg(fromCore(html::significant(finding.change, 2)), QChar(0xb1),
+           sizeText(finding.change_sigma, finding.unit));
+}
+
+FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
+  setObjectName("finding_table");
+  setAccessibleName(tr("What has changed, quantity by quantity"));
+  setColumnCount(kColumns);
+  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), QString(QChar(0x3c3)),
+                   tr("At the edge"), tr("Detectable"), tr("Required"), tr("Before"), tr("Now, alone")});
+  headerItem()->setToolTip(kSource, tr("What tells: stops, another IMU, or the trajectory"));
+  headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
+  headerItem()->setToolTip(kEdge, tr("By how many pixels it moves points at the image's edge"));
+  headerItem()->setToolTip(kDetectable, tr("The smallest change that these data show in 95 of 100 cases"));
+  headerItem()->setToolTip(kRequired, tr("The smallest change that the verdict asks about"));
+  headerItem()->setToolTip(kNow, tr("What the new data say by themselves"));
+  alignNumbers(*headerItem(), kChange, kColumns);
+}
+
+void FindingTable::setFindings(std::vector<Finding> findings) {
+  findings_ = std::move(findings);
+  fill();
+}
+
+void FindingTable::fill() {
+  QList<QTreeWidgetItem*> items;
+  for (const Finding& finding : findings_) {
+    items << itemOf(finding);
+    alignNumbers(*items.back(), kChange, kColumns);
+  }
+  const auto isOfRecording = [](const Finding& each) { return each.source == FindingSource::Recording; };
+  const auto isAtEdge = [](const Finding& each) { return each.edge_px > 0.0; };
+  setColumnHidden(kSource, std::all_of(findings_.begin(), findings_.end(), isOfRecording));
+  setColumnHidden(kEdge, std::none_of(findings_.begin(), findings_.end(), isAtEdge));
+  clear();
+  addTopLevelItems(items);
+  expandAll();
+  fitColumns();
+  // What is in order is a line; what has changed shows its numbers.
+  collapseAll();
+  for (int row = 0; row < items.size(); ++row)
+    items[row]->setExpanded(findings_[static_cast<std::size_t>(row)].changed);
+}
+
+void FindingTable::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) fill();
+  CopyTable::changeEvent(event);
+}
+
+StepTable::StepTable(QWidget* parent) : CopyTable(parent) {
+  setObjectName("step_table");
+  setAccessibleName(tr("What changed on the way"));
+  setRootIsDecorated(false);
+  setIndentation(0);
+  setColumnCount(kColumns);
+  setHeaderLabels({tr("Changed on the way"), tr("At"), tr("Noticed at"), tr("By"), tr("Or else")});
+  headerItem()->setToolTip(kAt, tr("Seconds since the logs' start"));
+  headerItem()->setToolTip(kNoticed, tr("From when on the logs tell it"));
+  headerItem()->setToolTip(kAlternatives, tr("Quantities that explain it nearly as well"));
+  alignNumbers(*headerItem(), kAt, kAlternatives);
+}
+
+void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
+  constexpr int kMost_rows = 4;
+  clear();
+  for (const MaintenanceStep& step : steps) {
+    QStringList others, numbers;
+    for (const std::string& other : step.alternatives) others << fromCore(other);
+    for (const ComparedNumber& number : step.numbers)
+      numbers << QString("%1: %2 %3")
+                     .arg(fromCore(number.name), valueText(number.change), fromCore(shownUnit(number.unit)))
+                     .trimmed();
+    auto* const item = new QTreeWidgetItem({titleOf(step), QString("%1 s").arg(step.at_s, 0, 'f', 1),
+                                            QString("%1 s").arg(step.noticed_s, 0, 'f', 1), changeText(step),
+                                            others.join(", ")});
+    alignNumbers(*item, kAt, kAlternatives);
+    item->setToolTip(kBy, numbers.join('\n'));
+    addTopLevelItem(item);
+  }
+  fitColumns();
+  const int rows = std::min(static_cast<int>(steps.size()), kMost_rows);
+  setFixedHeight(header()->sizeHint().height() + rows * std::max(sizeHintForRow(0), 1) + 2 * frameWidth() +
+                 2);
+  setVisible(!steps.empty());
+}
+
+}  // namespace evical::ui

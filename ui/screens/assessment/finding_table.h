@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What has changed of each quantity since an old result, its numbers below it; and what changed on the way.
+#pragma once
+
+#include "core/data/maintenance.h"
+#include "ui/screens/assessment/copy_table.h"
+
+#include <vector>
+
+namespace evical::ui {
+
+class FindingTable : public CopyTable {
+  Q_OBJECT
+
+ public:
+  enum Column {
+    kQuantity,
+    kVerdict,
+    kSource,
+    kChange,
+    kSigmas,
+    kEdge,
+    kDetectable,
+    kRequired,
+    kBefore,
+    kNow,
+    kColumns
+  };
+
+  explicit FindingTable(QWidget* parent = nullptr);
+
+  void setFindings(std::vector<Finding> findings);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void fill();
+
+  std::vector<Finding> findings_;
+};
+
+class StepTable : public CopyTable {
+  Q_OBJECT
+
+ public:
+  enum Column { kWhat, kAt, kNoticed, kBy, kAlternatives, kColumns };
+
+  explicit StepTable(QWidget* parent = nullptr);
+
+  void setSteps(const std::vector<MaintenanceStep>& steps);
+};
+
+// "0.5 ± 0.1 deg"
+QString changeText(const Finding& finding);
+
+}  // namespace evical::ui

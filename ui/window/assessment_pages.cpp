@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/assessment_pages.h"
+
+#include "core/base/error.h"
+#include "core/pipeline/check/check_files.h"
+#include "core/pipeline/maintain/maintain_files.h"
+#include "core/pipeline/repeat/repeat_files.h"
+#include "ui/plots/maintenance_charts.h"
+#include "ui/screens/assessment/file_list.h"
+#include "ui/screens/assessment/maintain_screen.h"
+#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/repeat_screen.h"
+#include "ui/screens/assessment/result_check_screen.h"
+#include "ui/screens/assessment/work_bar.h"
+#include "ui/window/old_result.h"
+#include "ui/window/page_work.h"
+#include "ui/window/session_files.h"
+#include "ui/window/workbench.h"
+
+#include <QDesktopServices>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QUrl>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+// What all of these pages do. `start` may throw CalibrationError, which `refused` stands before.
+void wirePage(AssessmentScreen& screen, const TaskJob& job, std::function<void()> start,
+              const QString& refused, Workbench& workbench, SessionFiles& files) {
+  wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
+  QObject::connect(&screen, &AssessmentScreen::startRequested, &screen,
+                   [start = std::move(start), refused, &files] {
+                     try {
+                       start();
+                     } catch (const CalibrationError& error) {
+                       emit files.failed(refused, errorOf(error));
+                     }
+                   });
+  QObject::connect(&screen, &AssessmentScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);
+}
+
+void wireFile(PathRow& row, QWidget& page, const QString& title, const QString& filter) {
+  QObject::connect(&row, &PathRow::chooseRequested, &page, [&row, &page, title, filter] {
+    const QString file = QFileDialog::getOpenFileName(&page, title, lastUsedFolder(), filter);
+    if (!file.isEmpty()) row.setPath(file);
+  });
+}
+
+void wireList(FileList& list, QWidget& page, const QString& title, bool with_sessions) {
+  QObject::connect(&list, &FileList::addRequested, &page, [&list, &page, title, with_sessions] {
+    list.add(QFileDialog::getOpenFileNames(&page, title, lastUsedFolder(), recordingsFilter(with_sessions)));
+  });
+}
+
+std::vector<std::filesystem::path> pathsOf(const FileList& list) {
+  std::vector<std::filesystem::path> paths;
+  for (const QString& file : list.files()) paths.emplace_back(file.toStdString());
+  return paths;
+}
+
+// What is open is taken as it is in the window, also where it is not saved.
+bool isOpen(const QString& path, const CalibrationDocument& document) {
+  if (!document.hasSession()) return false;
+  const QFileInfo info(path);
+  return info == QFileInfo(document.file()) ||
+         info == QFileInfo(QString::fromStdString(document.session().recording.string()));
+}
+
+void beginResultCheck(ResultCheckScreen& screen, Workbench& workbench) {
+  const std::filesystem::path result = screen.result().path().toStdString();
+  const QString recording = screen.recording().path();
+  std::function<CheckInput()> read = [result, path = recording.toStdString()] {
+    return readCheckInput({result, path, {}});
+  };
+  if (isOpen(recording, workbench.document))
+    read = [result, session = workbench.document.session()] { return readCheckInput(result, session); };
+  startResultCheck(workbench.result_check, std::move(read), workbench.version);
+}
+
+void beginMaintain(MaintainScreen& screen, Workbench& workbench) {
+  const auto read = [logs = pathsOf(screen.logs()), result = screen.result().path().toStdString(),
+                     settings = screen.settings(), options = workbench.document.session().options.maintain,
+                     trajectory = screen.trajectory().path().toStdString()] {
+    MaintainInput input = readMaintainInput(logs, result);
+    input.settings = settings;
+    input.options = options;
+    input.trajectory = trajectory;
+    return input;
+  };
+  startMaintain(workbench.maintain, read, workbench.version);
+}
+
+void beginRepeat(RepeatScreen& screen, Workbench& workbench) {
+  const CalibrationDocument& document = workbench.document;
+  const QString folder = screen.folder().path();
+  checkRepeatFolder(folder.toStdString());
+  if (document.modified() && screen.files().files().contains(document.file()))
+    throw badInput(document.file().toStdString(), "has changes that are not saved",
+                   "Save the session first: its file is read");
+  startRepeat(workbench.repeat,
+              readRepeat(pathsOf(screen.files()),
+                         document.hasSession() ? std::optional(document.session()) : std::nullopt),
+              folder, workbench.version);
+}
+
+void show(const QString& path, SessionFiles& files) {
+  if (QDesktopServices::openUrl(QUrl::fromLocalFile(path))) return;
+  emit files.failed(QObject::tr("%1 cannot be shown").arg(QDir::toNativeSeparators(path)),
+                    {true, {}, QObject::tr("no program of this desktop opens it"), {}});
+}
+
+// The files of a repeat are there already.
+void wireRepeatedFiles(RepeatScreen& screen, const RepeatJob& job, SessionFiles& files) {
+  QObject::connect(&screen, &RepeatScreen::openFolderRequested, &files, [&job, &files] {
+    if (job.found()) show(job.found()->folder, files);
+  });
+  QObject::connect(&screen, &RepeatScreen::reportRequested, &files, [&job, &files] {
+    if (job.found()) show(QDir(job.found()->folder).filePath("report.html"), files);
+  });
+  QObject::connect(&screen, &RepeatScreen::openResultRequested, &files, [&job, &files](int recording) {
+    if (!job.found()) return;
+    const std::filesystem::path folder = job.found()->folder.toStdString();
+    const std::filesystem::path result =
+        recording < 0 ? folder : folderOf(folder, job.found()->input, static_cast<std::size_t>(recording));
+    files.open(QString::fromStdString(result.string()));
+  });
+}
+
+}  // namespace
+
+void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFiles& files) {
+  ResultCheckJob& job = workbench.result_check;
+  wireOldResult(screen.result(), screen, workbench);
+  wireFile(screen.recording(), screen, QObject::tr("The new recording, or a session of it"),
+           recordingsFilter(true));
+  wirePage(
+      screen, job, [&screen, &workbench] { beginResultCheck(screen, workbench); },
+      QObject::tr("The result cannot be checked"), workbench, files);
+  // What is open and has no result yet is the new one.
+  const CalibrationDocument& document = workbench.document;
+  const auto suggest = [&screen, &document] {
+    const bool is_new = document.hasSession() && !document.last().run;
+    screen.recording().proposePath(is_new ? openFileOf(document) : QString());
+  };
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, suggest);
+  QObject::connect(&document, &CalibrationDocument::sessionReplaced, &screen, suggest);
+  QObject::connect(&document, &CalibrationDocument::fileChanged, &screen, suggest);
+  QObject::connect(&job, &TaskJob::done, &screen,
+                   [&screen, &job] { screen.setCheck(job.found()->run.check); });
+  QObject::connect(&screen, &AssessmentScreen::saveRequested, &screen, [&screen, &job, &workbench, &files] {
+    const auto write = [found = job.found(), log = job.log().toStdString(),
+                        version = workbench.version.toStdString()](const std::filesystem::path& folder) {
+      writeCheckFiles(folder, found->input, found->run, version, log);
+    };
+    saveToFolder(screen, {QObject::tr("Save the check"), QObject::tr("The check was saved")}, write,
+                 workbench, files);
+  });
+}
+
+void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& workbench,
+                  SessionFiles& files) {
+  MaintainJob& job = workbench.maintain;
+  wireList(screen.logs(), screen, QObject::tr("Logs of the IMUs"), false);
+  wireOldResult(screen.result(), screen, workbench);
+  wireFile(screen.trajectory(), screen, QObject::tr("Trajectory of the reference IMU"),
+           QObject::tr("Trajectories (*.csv *.txt *.tum);;All files (*)"));
+  wirePage(
+      screen, job, [&screen, &workbench] { beginMaintain(screen, workbench); },
+      QObject::tr("These logs cannot be looked at"), workbench, files);
+  QObject::connect(&job, &TaskJob::done, &screen, [&screen, &charts, &job] {
+    screen.setMaintenance(*job.found());
+    charts.setMaintenance(*job.found());
+  });
+  QObject::connect(&screen, &AssessmentScreen::saveRequested, &screen, [&screen, &job, &workbench, &files] {
+    const auto write = [found = job.found(),
+                        log = job.log().toStdString()](const std::filesystem::path& folder) {
+      writeMaintenanceFiles(folder, *found, log);
+    };
+    saveToFolder(screen,
+                 {QObject::tr("Save what was found"), QObject::tr("What was found of the IMUs was saved")},
+                 write, workbench, files);
+  });
+}
+
+void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
+  RepeatJob& job = workbench.repeat;
+  wireList(screen.files(), screen, QObject::tr("Recordings or sessions of one rig"), true);
+  QObject::connect(&screen.folder(), &PathRow::chooseRequested, &screen, [&screen] {
+    const QString folder =
+        QFileDialog::getExistingDirectory(&screen, QObject::tr("Where the results go"), lastUsedFolder());
+    if (!folder.isEmpty()) screen.folder().setPath(folder);
+  });
+  wirePage(
+      screen, job, [&screen, &workbench] { beginRepeat(screen, workbench); },
+      QObject::tr("These recordings cannot be calibrated together"), workbench, files);
+  const auto show_open = [&screen, &workbench] { screen.setOpenFile(openFileOf(workbench.document)); };
+  QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &screen, show_open);
+  QObject::connect(&workbench.document, &CalibrationDocument::fileChanged, &screen, show_open);
+  QObject::connect(&screen.files(), &FileList::changed, &screen, [&screen] {
+    const QStringList all = screen.files().files();
+    screen.folder().proposePath(all.isEmpty() ? QString() : newResultFolder(all.front(), "repeat"));
+  });
+  QObject::connect(&job, &TaskJob::done, &screen,
+                   [&screen, &job] { screen.setRepeat(job.found()->run.repeatability); });
+  wireRepeatedFiles(screen, job, files);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pages that check a result, follow IMUs over time, and compare several recordings: their jobs, what is proposed to
+// them, their files.
+#pragma once
+
+namespace evical::ui {
+
+class MaintainScreen;
+class MaintenanceCharts;
+class RepeatScreen;
+class ResultCheckScreen;
+class SessionFiles;
+struct Workbench;
+
+void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFiles& files);
+void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& workbench,
+                  SessionFiles& files);
+void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files);
+
+}  // namespace evical::ui
