@@ -206,7 +206,7 @@ class Tracker {
     const auto found = findChanges(data.information, data.score, data.covariance, kPairBlocks, limits);
     for (const FoundChange& each : found) {
       steps_.push_back({each.block, windows_[from].time_s, windows_[noticed].time_s + options_.window_s,
-                        each.change, limits[each.block], each.or_else});
+                        each.change, limits[each.block], each.alternatives});
       steps_.back().change.covariance *= colours_[each.block].of(end + 1 - from);
     }
     first_change_ = std::min(first_change_, from);

@@ -2,9 +2,9 @@
 // question whether anything has changed since one of those before. docs/maths.md, 15.4.
 #pragma once
 
-#include "core/maintenance/change_test.h"
 #include "core/maintenance/imu_pairs.h"
 #include "core/maintenance/noise_colour.h"
+#include "core/numerics/change_test.h"
 
 #include <Eigen/Core>
 
@@ -28,7 +28,7 @@ struct PairStep {
   double at_s = 0.0, noticed_s = 0.0;
   BlockChange change;
   double limit = 0.0;
-  std::vector<std::size_t> or_else;
+  std::vector<std::size_t> alternatives;
 };
 
 struct PairTrack {

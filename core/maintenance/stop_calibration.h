@@ -5,8 +5,8 @@
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_state.h"
 #include "core/data/maintenance.h"
-#include "core/maintenance/change_test.h"
 #include "core/maintenance/stop_detection.h"
+#include "core/numerics/change_test.h"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,11 @@
 #include "core/pipeline/compare/single_changes.h"
 
+#include "core/numerics/change_test.h"
 #include "core/numerics/chi_squared.h"
 #include "core/numerics/dense.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace evical {
 namespace {
@@ -42,11 +42,9 @@ class SingleChanges {
         covariance(i, j) = covariance_(a, b) + moving(a, b);
       }
     }
-    const Eigen::MatrixXd weight = inverseOf(covariance);
     const auto first = std::find(kept.begin(), kept.end(), groups_[tested].first) - kept.begin();
-    const Eigen::Index size = groups_[tested].size;
-    const Eigen::MatrixXd of_group = inverseOf(weight.block(first, first, size, size));
-    return judged(groups_[tested], of_group * (weight.middleRows(first, size) * difference), of_group);
+    const BlockChange alone = ChangeDetector(difference, covariance).of({first, groups_[tested].size});
+    return judged(groups_[tested], alone.step, alone.covariance);
   }
 
  private:
@@ -81,7 +79,6 @@ class SingleChanges {
     test.sigmas = std::sqrt((along.cwiseAbs2().cwiseQuotient(variances)).sum());
     test.beyond = distanceFromBall(along, variances, group.stability);
     test.limit = std::sqrt(chiSquaredLimit(false_alarms_, static_cast<int>(group.size)));
-    test.changed = test.beyond > test.limit;
     test.smallest_detectable_change =
         group.stability + (test.limit + normalLimit(kMissed)) * std::sqrt(variances.maxCoeff());
     const Eigen::MatrixXd from_size = inverseOf(group.to_size);
@@ -114,45 +111,28 @@ class SingleChanges {
   Eigen::VectorXd difference_;
 };
 
-double excess(const GroupTestResult& test) {
-  return test.beyond * test.beyond - test.limit * test.limit;
-}
-
 }  // namespace
 
 GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
                                    double false_alarms) {
-  constexpr double kAsWell = 9.0;  // less than three sigmas between two explanations
   const SingleChanges changes(estimated, groups, false_alarms);
-  std::vector<bool> free(groups.size(), false);
   GroupTestResults tests;
   tests.groups.resize(groups.size());
-  const auto testAll = [&] {
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      if (groups[g].tested) tests.groups[g] = changes.test(g, free);
-  };
-  const auto mostChanged = [&] {
-    std::optional<std::size_t> most;
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      if (const GroupTestResult& test = tests.groups[g]; !free[g] && test.tested && test.changed)
-        if (!most || excess(test) > excess(tests.groups[*most])) most = g;
-    return most;
-  };
-  testAll();
-  if (const auto first = mostChanged()) {
-    tests.most_changed = *first;
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      if (const GroupTestResult& test = tests.groups[g]; g != *first && test.tested && test.changed)
-        if (excess(tests.groups[*first]) - excess(test) < kAsWell) tests.alternatives.push_back(g);
-  }
-  while (const auto most = mostChanged()) {
-    free[*most] = true;  // what has changed says nothing of the others
-    testAll();
-  }
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    tests.groups[g].changed = free[g];
-    if (free[g]) std::erase(tests.alternatives, g);
-  }
+  // What has changed says nothing of the others.
+  const std::vector<FoundChange> found = findChanges(groups.size(), [&](const std::vector<bool>& free) {
+    std::vector<double> beyond(groups.size(), 0.0);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (!groups[g].tested) continue;
+      const GroupTestResult& test = tests.groups[g] = changes.test(g, free);
+      beyond[g] = test.beyond * test.beyond - test.limit * test.limit;
+    }
+    return beyond;
+  });
+  for (const FoundChange& each : found) tests.groups[each.block].changed = true;
+  if (found.empty()) return tests;
+  tests.most_changed = found.front().block;
+  for (const std::size_t g : found.front().alternatives)
+    if (!tests.groups[g].changed) tests.alternatives.push_back(g);
   return tests;
 }
 

@@ -1,6 +1,5 @@
-// Which of several groups of numbers has changed between two estimates, if only few have: each is tested against the
-// rest as it was (data snooping: W. Baarda, "A testing procedure for use in geodetic networks", 1968;
-// docs/maths.md, 13).
+// Which of several groups of numbers has changed between two estimates: change_test.h, with changes of each group that are
+// allowed. docs/maths.md, 13.
 #pragma once
 
 #include <Eigen/Core>

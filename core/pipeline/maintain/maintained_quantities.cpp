@@ -112,7 +112,7 @@ void setTested(const BlockWords& words, const StateBlock& block, const ChangeDet
   change.covariance *= wider;
   setChange(words, change, limit, finding);
   finding.smallest_detectable_change =
-      words.factor * wouldNotice(std::sqrt(wider) * test.worstSigma(block), limit / wider);
+      words.factor * smallestDetectable(std::sqrt(wider) * test.worstSigma(block), limit / wider);
 }
 
 double squared(double value) {
@@ -142,7 +142,7 @@ void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, s
   change.chi_square = (change.step.array().square() / variance.array()).sum();
   const double limit = chiSquaredLimit(false_alarms, 3);
   setChange(kWords, change, limit, finding);
-  finding.smallest_detectable_change = wouldNotice(std::sqrt(variance.maxCoeff()), limit);
+  finding.smallest_detectable_change = smallestDetectable(std::sqrt(variance.maxCoeff()), limit);
   finding.changed = change.chi_square > limit;
   maintenance.findings.push_back(finding);
 }
@@ -234,7 +234,8 @@ void addSteps(const TrackedPair& pair, const NamedResult& before, Maintenance& m
       step.numbers.emplace_back(ComparedNumber{numberName(words, i, block.size), words.unit}).change = {
           words.factor * found.change.step[i],
           words.factor * std::sqrt(std::max(found.change.covariance(i, i), 0.0))};
-    for (const std::size_t other : found.or_else) step.alternatives.emplace_back(kPairWords[other].title);
+    for (const std::size_t other : found.alternatives)
+      step.alternatives.emplace_back(kPairWords[other].title);
     maintenance.steps.push_back(step);
   }
 }

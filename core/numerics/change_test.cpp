@@ -1,6 +1,7 @@
-#include "core/maintenance/change_test.h"
+#include "core/numerics/change_test.h"
 
 #include "core/numerics/chi_squared.h"
+#include "core/numerics/dense.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -41,9 +42,17 @@ ChangeDetector::ChangeDetector(const Eigen::MatrixXd& information, const Eigen::
   pull_ = back.cwiseProduct(solver.solve(v));
 }
 
+ChangeDetector::ChangeDetector(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance)
+    : weight_(inverseOf(covariance)), pull_(weight_ * difference), regular_(true) {}
+
 BlockChange ChangeDetector::of(const StateBlock& block) const {
   const Eigen::MatrixXd weight = weight_.block(block.first, block.first, block.size, block.size);
   const Eigen::VectorXd pull = pull_.segment(block.first, block.size);
+  if (regular_) {
+    const Eigen::MatrixXd covariance = inverseOf(weight);
+    const Eigen::VectorXd step = covariance * pull;
+    return {step, covariance, step.dot(pull), block.size};
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(weight);
   const double least = std::max(kNoInformation * eigen.eigenvalues().maxCoeff(), 1e-300);
   BlockChange change;
@@ -75,36 +84,48 @@ std::vector<double> limitsFor(std::span<const StateBlock> blocks, double false_a
   return limits;
 }
 
+std::vector<FoundChange> findChanges(
+    std::size_t blocks, const std::function<std::vector<double>(const std::vector<bool>& free)>& beyond) {
+  constexpr double kNearly = 9.0;  // three sigmas
+  std::vector<FoundChange> found;
+  std::vector<bool> free(blocks, false);
+  for (;;) {
+    std::vector<double> excess = beyond(free);
+    for (std::size_t b = 0; b < blocks; ++b)
+      if (free[b]) excess[b] = -std::numeric_limits<double>::infinity();
+    const auto best =
+        static_cast<std::size_t>(std::max_element(excess.begin(), excess.end()) - excess.begin());
+    if (best == blocks || !(excess[best] > 0.0)) return found;
+    FoundChange& each = found.emplace_back();
+    each.block = best;
+    for (std::size_t b = 0; b < blocks; ++b)
+      if (b != best && excess[b] > 0.0 && excess[b] > excess[best] - kNearly) each.alternatives.push_back(b);
+    free[best] = true;
+  }
+}
+
 std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
                                      const Eigen::MatrixXd& covariance, std::span<const StateBlock> blocks,
                                      std::span<const double> limits) {
-  constexpr double kNearly = 9.0;  // three sigmas
-  std::vector<FoundChange> found;
-  std::vector<char> is_found(blocks.size(), 0);
-  Eigen::MatrixXd known = covariance;
-  while (found.size() < blocks.size()) {
+  std::vector<BlockChange> changes(blocks.size());  // as tested last, before they were left free
+  std::vector<FoundChange> found = findChanges(blocks.size(), [&](const std::vector<bool>& free) {
+    Eigen::MatrixXd known = covariance;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      if (free[b]) setFree(blocks[b], known);
     const ChangeDetector test(information, score, known);
-    std::vector<double> beyond(blocks.size(), -std::numeric_limits<double>::infinity());
-    std::vector<BlockChange> changes(blocks.size());
+    std::vector<double> beyond(blocks.size(), 0.0);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-      if (is_found[b] != 0) continue;
+      if (free[b]) continue;
       changes[b] = test.of(blocks[b]);
       beyond[b] = changes[b].chi_square - limits[b];
     }
-    const auto best =
-        static_cast<std::size_t>(std::max_element(beyond.begin(), beyond.end()) - beyond.begin());
-    if (!(beyond[best] > 0.0)) break;
-    FoundChange each{best, changes[best], {}};
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-      if (b != best && beyond[b] > 0.0 && beyond[b] > beyond[best] - kNearly) each.or_else.push_back(b);
-    found.push_back(each);
-    is_found[best] = 1;
-    setFree(blocks[best], known);
-  }
+    return beyond;
+  });
+  for (FoundChange& each : found) each.change = changes[each.block];
   return found;
 }
 
-double wouldNotice(double worst_sigma, double limit) {
+double smallestDetectable(double worst_sigma, double limit) {
   constexpr double kNinetyFivePercent = 1.645;
   return (std::sqrt(limit) + kNinetyFivePercent) * worst_sigma;
 }

@@ -1,5 +1,5 @@
 // Which part of a state has changed: statistics by chance, steps in one block, what data do not tell.
-#include "core/maintenance/change_test.h"
+#include "core/numerics/change_test.h"
 #include "core/numerics/chi_squared.h"
 #include "tests/support/test_program.h"
 
