@@ -27,7 +27,7 @@ constexpr double kPerCent = 100.0;
 struct Judged {
   const char* unit;
   double factor;  // from SI units
-  double stability, matters;
+  double allowed_drift, required_detectability;
 };
 
 std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& options) {
@@ -173,7 +173,7 @@ class Comparison {
         ChangeGroup& group = out_.groups.back();
         added->at_edge = byIntrinsics(*now.lens.inUse(), group.size, true);
         group.to_size = lensToSize(*now.lens.inUse(), group.size);
-        group.stable_covariance = lensCovariance(*now.lens.inUse(), group.size, group.stability);
+        group.stable_covariance = lensCovariance(*now.lens.inUse(), group.size, group.allowed_drift);
       }
     });
   }
@@ -234,8 +234,8 @@ class Comparison {
     const auto size = static_cast<Eigen::Index>(now.size());
     const Eigen::VectorXd difference =
         quantityDifference(info, row.value(pair.now.state), row.value(pair.before.state)).head(size);
-    ChangeGroup group{next_, size,  judged.factor * Eigen::MatrixXd::Identity(size, size), judged.stability,
-                      {},    tested};
+    ChangeGroup group{
+        next_, size, judged.factor * Eigen::MatrixXd::Identity(size, size), judged.allowed_drift, {}, tested};
     group.stable_covariance = stableCovariance(group);
     out_.groups.push_back(group);
     next_ += size;
@@ -248,7 +248,7 @@ class Comparison {
 
   static Eigen::MatrixXd stableCovariance(const ChangeGroup& group) {
     const Eigen::MatrixXd from_size = inverseOf(group.to_size);
-    return group.stability * group.stability * productTransposed(from_size, from_size);
+    return group.allowed_drift * group.allowed_drift * productTransposed(from_size, from_size);
   }
 
   template <class Row, class Sensors>
@@ -261,8 +261,8 @@ class Comparison {
     shown.quantity = info.name;
     shown.title = titleOf(info);
     shown.unit = judged.unit;
-    shown.allowed_drift = judged.stability;
-    shown.required_detectability = judged.matters;
+    shown.allowed_drift = judged.allowed_drift;
+    shown.required_detectability = judged.required_detectability;
     const double factor = info.shown_factor;
     const Eigen::VectorXd before = factor * quantityNumbers(row.value(pair.before.state)),
                           now = factor * quantityNumbers(row.value(pair.now.state)),

@@ -49,6 +49,6 @@ ComparedQuantities compareQuantities(const ComparedResults& results, const Check
 
 // With what the test of its group says.
 Finding testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
-                               const ChangeGroup& group);
+                       const ChangeGroup& group);
 
 }  // namespace evical

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMissed = 0.05;  // of changes of the size that would be noticed
 
-// In units of size, so that numbers of all groups compare, and a stability is a ball.
+// In units of size, so that numbers of all groups compare, and an allowed drift is a ball.
 class SingleChanges {
  public:
   SingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups, double false_alarms)
@@ -77,10 +77,10 @@ class SingleChanges {
     GroupTestResult test;
     test.tested = true;
     test.sigmas = std::sqrt((along.cwiseAbs2().cwiseQuotient(variances)).sum());
-    test.beyond = distanceFromBall(along, variances, group.stability);
+    test.beyond = distanceFromBall(along, variances, group.allowed_drift);
     test.limit = std::sqrt(chiSquaredLimit(false_alarms_, static_cast<int>(group.size)));
     test.smallest_detectable_change =
-        group.stability + (test.limit + normalLimit(kMissed)) * std::sqrt(variances.maxCoeff());
+        group.allowed_drift + (test.limit + normalLimit(kMissed)) * std::sqrt(variances.maxCoeff());
     const Eigen::MatrixXd from_size = inverseOf(group.to_size);
     test.change = from_size * change;
     test.covariance = congruence(from_size, covariance);

@@ -14,7 +14,7 @@ namespace evical {
 struct ChangeGroup {
   Eigen::Index first = 0, size = 0;
   Eigen::MatrixXd to_size;            // square, regular
-  double stability = 0.0;             // a size that is no change
+  double allowed_drift = 0.0;         // a size that is no change
   Eigen::MatrixXd stable_covariance;  // of how far it moves by itself while another one is tested
   bool tested = true;                 // else it only has its say on the others
 };
@@ -30,7 +30,7 @@ struct GroupTestResult {
   Eigen::VectorXd change;      // of the group, had nothing else changed
   Eigen::MatrixXd covariance;  // of that
   double sigmas = 0.0;         // by the covariance
-  double beyond = 0.0;         // the same, of what goes beyond the stability
+  double beyond = 0.0;         // the same, of what exceeds the allowed drift
   double limit = 0.0;          // that chance does not reach
   double smallest_detectable_change =
       0.0;  // the size that is found with a probability of 95 %, in whatever direction
