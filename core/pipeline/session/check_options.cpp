@@ -19,7 +19,7 @@ constexpr std::tuple kCheckFields{
     Field{"stability_imu_scale", &CheckOptions::stability_imu_scale, 0.001, within(0.0, 1.0), "",
           "The same of IMUs' scale factors and misalignments, which change with temperature.", Level::Public},
     Field{"matters_rotation_deg", &CheckOptions::matters_rotation_deg, 0.25, within(1e-4, 90.0), "deg",
-          "A calibration is called still good only by a recording that would have shown a change of this "
+          "A calibration is called unchanged only by a recording that would have shown a change of this "
           "size.",
           Level::Expert},
     Field{"matters_translation_mm", &CheckOptions::matters_translation_mm, 6.0, within(1e-3, 1e4), "mm",
