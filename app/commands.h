@@ -8,8 +8,8 @@ namespace evical {
 class Command;
 
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;    // failed or cancelled
-inline constexpr int kBadInput = 2;  // usage, session or recording; nothing was written
+inline constexpr int kFailed = 1;      // failed or cancelled
+inline constexpr int kBadInput = 2;    // usage, session or recording; nothing was written
 inline constexpr int kChanged = 3;     // of a check, a maintenance, a repeat: what was compared differs
 inline constexpr int kCannotTell = 4;  // of these: the data do not say
 

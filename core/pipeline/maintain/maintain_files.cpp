@@ -18,8 +18,7 @@ void writeMaintenanceFiles(const std::filesystem::path& folder, const Maintenanc
   std::vector<FileContent> files = {{"log.txt", log}, {"stops.csv", stopsCsv(maintenance)}};
   for (std::size_t k = 0; k < maintenance.tracks.size(); ++k)
     files.push_back({fmt::format("track{}.csv", k + 1), trackCsv(maintenance.tracks[k])});
-  for (ReportFile& file : reportFiles(maintenance))
-    files.push_back({file.name, std::move(file.content)});
+  for (ReportFile& file : reportFiles(maintenance)) files.push_back({file.name, std::move(file.content)});
   files.push_back({"maintenance.yaml", assessmentYaml(maintenance)});  // the last tells that all are there
   writeExportedFiles(folder, files);
 }

@@ -54,7 +54,7 @@ class Assessor {
  public:
   // `no_lens`: why one that is not given could not be found, so that circles are in the sensor's own pixels.
   Assessor(const Session& session, const DetectedRecording& detected, const RunContext& context,
-             const CalibrationError* no_lens = nullptr)
+           const CalibrationError* no_lens = nullptr)
       : session_(session), pass_(detected.pass), detected_(detected), context_(context), no_lens_(no_lens) {}
 
   RecordingAssessment run() {
