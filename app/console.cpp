@@ -32,14 +32,14 @@ void Console::clearLine() {
   line_shown_ = false;
 }
 
-void Console::stageStarted(std::string_view stage) {
+void Console::stageStarted(const ProgressStage& stage) {
   const std::lock_guard lock(mutex_);
-  stage_ = stage;
+  stage_ = stage.text();
   of_stage_.restart_s();
-  log_text_ += fmt::format("{:9.3f} s  stage    {}\n", of_all_.elapsed_s(), stage);
+  log_text_ += fmt::format("{:9.3f} s  stage    {}\n", of_all_.elapsed_s(), stage_);
   if (quiet_) return;
   clearLine();
-  if (!on_terminal_) printError(fmt::format("{} ...\n", stage));
+  if (!on_terminal_) printError(fmt::format("{} ...\n", stage_));
 }
 
 void Console::stageProgress(double fraction) {

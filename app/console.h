@@ -17,7 +17,7 @@ class Console final : public ProgressSink {
   explicit Console(bool quiet);
   ~Console() override;
 
-  void stageStarted(std::string_view stage) override;
+  void stageStarted(const ProgressStage& stage) override;
   void stageProgress(double fraction_of_stage) override;
   void log(LogLevel level, std::string_view text) override;
 

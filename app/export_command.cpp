@@ -30,7 +30,7 @@ constexpr const char* kAll = "all";
 std::string targetList() {
   std::string text = "Targets, each written to a folder of its name:\n";
   for (const ExportTarget& target : exportTargets())
-    text += fmt::format("  {:<14} {}\n", target.name, target.description);
+    text += fmt::format("  {:<14} {}: {}\n", target.name, target.program, target.files);
   return text + fmt::format("  {:<14} every one of them that can hold the result\n", kAll);
 }
 

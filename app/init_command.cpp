@@ -4,6 +4,7 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/recording/recording_reader.h"
 
@@ -36,8 +37,7 @@ std::vector<InspectedRecording> inspectAll(const InitArguments& arguments, const
 
 int run(const InitArguments& arguments) {
   // What people have filled in is not to be lost.
-  std::error_code ignored;
-  if (std::filesystem::exists(arguments.output, ignored))
+  if (isThere(arguments.output))
     throw badInput(arguments.output.string(), "exists already", "Give another name, or remove it");
   Console console(arguments.quiet);
   const std::vector<InspectedRecording> recordings = inspectAll(arguments, {console, stopOnSignals()});

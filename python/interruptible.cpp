@@ -82,12 +82,12 @@ std::exception_ptr attend(Worker& worker, RunLog& log, const py::object& progres
 
 }  // namespace
 
-void RunLog::stageStarted(std::string_view stage) {
+void RunLog::stageStarted(const ProgressStage& stage) {
   const std::lock_guard lock(mutex_);
-  news_.stage = stage;
+  news_.stage = stage.text();
   news_.fraction = 0.0;
   news_.moved = true;
-  text_ += fmt::format("{:9.3f} s  stage    {}\n", since_start_.elapsed_s(), stage);
+  text_ += fmt::format("{:9.3f} s  stage    {}\n", since_start_.elapsed_s(), news_.stage);
 }
 
 void RunLog::stageProgress(double fraction_of_stage) {

@@ -16,7 +16,7 @@ namespace evical::python {
 // Keeps what a worker tells until the caller's thread asks, since only that one may call Python.
 class RunLog final : public ProgressSink {
  public:
-  void stageStarted(std::string_view stage) override;
+  void stageStarted(const ProgressStage& stage) override;
   void stageProgress(double fraction_of_stage) override;
   void log(LogLevel level, std::string_view text) override;
 

@@ -1,6 +1,7 @@
 #include "python/result.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
@@ -15,8 +16,7 @@ namespace {
 
 // What run.data knows and result.yaml does not; it must be of the same sensors.
 void addRunData(const std::filesystem::path& file, Result& result) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
+  if (!isThere(file)) {
     result.missing.push_back("the trajectory: there is no run.data beside result.yaml");
     return;
   }

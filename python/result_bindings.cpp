@@ -120,8 +120,11 @@ void bindImu(py::module_& module) {
   py::class_<ImuOfResult> imu(module, "ImuResult", "An IMU of a result. measured = mapping @ true + bias.");
   bindSensor(imu);
   imu.def_property_readonly(
-         "reference_from_imu", [](const ImuOfResult& i) { return poseMatrix(i.state().reference_from_imu); },
-         "(4, 4) [m]; the identity for the reference.")
+         "accelerometer_stream", [](const ImuOfResult& i) { return i.known().accelerometer_stream; },
+         "Where it has one of its own; stream is then the gyroscope's.")
+      .def_property_readonly(
+          "reference_from_imu", [](const ImuOfResult& i) { return poseMatrix(i.state().reference_from_imu); },
+          "(4, 4) [m]; the identity for the reference.")
       .def_property_readonly(
           "gyroscope_bias_rad_s",
           [](const ImuOfResult& i) { return arrayOf(i.state().gyroscope_bias_rad_s); },

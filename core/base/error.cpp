@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-std::string sentence(const std::string& place, const std::string& problem, const std::string& advice) {
+std::string wholeMessage(const std::string& place, const std::string& problem, const std::string& advice) {
   std::string text = place.empty() ? problem : fmt::format("{}: {}", place, problem);
   if (!advice.empty()) text += fmt::format(". {}", advice);
   return text;
@@ -16,7 +16,7 @@ std::string sentence(const std::string& place, const std::string& problem, const
 }  // namespace
 
 CalibrationError::CalibrationError(ErrorKind kind, std::string place, std::string problem, std::string advice)
-    : std::runtime_error(sentence(place, problem, advice)),
+    : std::runtime_error(wholeMessage(place, problem, advice)),
       kind_(kind),
       place_(std::move(place)),
       problem_(std::move(problem)),

@@ -69,9 +69,7 @@ FilesTogether::~FilesTogether() {
 }
 
 void FilesTogether::makeFolder(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (auto missing = folder; !missing.empty() && !std::filesystem::exists(missing, ignored);
-       missing = missing.parent_path())
+  for (auto missing = folder; !missing.empty() && !isThere(missing); missing = missing.parent_path())
     made_.push_back(missing);
   makeOutputFolder(folder);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/atomic_file.h"
+#include "core/base/file_places.h"
 
 #include <filesystem>
 #include <system_error>
@@ -24,11 +25,6 @@ class NewFolder {
   bool wasThere() const { return was_there_; }
 
  private:
-  static bool isThere(const std::filesystem::path& folder) {
-    std::error_code ignored;
-    return std::filesystem::exists(folder, ignored);
-  }
-
   std::filesystem::path folder_;
   bool was_there_;
 };

@@ -7,7 +7,7 @@ namespace {
 
 class SilentProgress final : public ProgressSink {
  public:
-  void stageStarted(std::string_view) override {}
+  void stageStarted(const ProgressStage&) override {}
   void stageProgress(double) override {}
   void log(LogLevel, std::string_view) override {}
 };

@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace evical {
 
@@ -12,12 +13,25 @@ class CalibrationObserver;  // core/data/calibration_observer.h; from here it is
 enum class LogLevel { Debug, Info, Warning };
 const char* levelName(LogLevel level);  // as logs have it
 
+// A stage of long work. Stages of several parts have the same names: then `part` tells which one it is of.
+struct ProgressStage {
+  // NOLINTBEGIN(google-explicit-constructor): most stages are a name
+  ProgressStage(const char* given, std::string_view of = {}) : name(given), part(of) {}
+  ProgressStage(std::string given, std::string_view of = {}) : name(std::move(given)), part(of) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  bool operator==(const ProgressStage&) const = default;
+  std::string text() const { return part.empty() ? name : part + ": " + name; }
+
+  std::string name, part;  // of a calibration: core/data/calibration_stage.h
+};
+
 // Called from worker threads; implementations lock where they must. All fractions are real: work
 // done / work to do.
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;
-  virtual void stageStarted(std::string_view stage) = 0;  // of a calibration: core/data/calibration_stage.h
+  virtual void stageStarted(const ProgressStage& stage) = 0;
   virtual void stageProgress(double fraction_of_stage) = 0;  // 0..1
   virtual void log(LogLevel level, std::string_view text) = 0;
 };

@@ -80,10 +80,10 @@ RunTrace::RunTrace(ProgressSink& shown)
       spent_s_(processComputing_s()),
       watcher_([this](const std::stop_token& stop) { watch(stop); }) {}
 
-void RunTrace::stageStarted(std::string_view stage) {
+void RunTrace::stageStarted(const ProgressStage& stage) {
   {
     const std::lock_guard lock(mutex_);
-    stages_.push_back({stopwatch_.elapsed_s(), std::string(stage)});
+    stages_.push_back({stopwatch_.elapsed_s(), stage.text()});
   }
   shown_.stageStarted(stage);
 }

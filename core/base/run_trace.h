@@ -21,7 +21,7 @@ class RunTrace final : public ProgressSink {
  public:
   explicit RunTrace(ProgressSink& shown);
 
-  void stageStarted(std::string_view stage) override;
+  void stageStarted(const ProgressStage& stage) override;
   void stageProgress(double fraction_of_stage) override { shown_.stageProgress(fraction_of_stage); }
   void log(LogLevel level, std::string_view text) override;
 

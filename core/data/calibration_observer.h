@@ -31,9 +31,9 @@ class CalibrationObserver {
   virtual void detectionDone(const CalibrationInput& /*input*/) {}
   // Of a camera's intrinsics alone: a pass over the recording, from 1, and the lens that it left.
   virtual void intrinsicsPassDone(int /*pass*/, const IntrinsicsResult& /*so_far*/) {}
-  // "time offset", its key number in words, and how long it took.
-  virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*result*/,
-                                      double /*duration_s*/) {}
+  // "time offset", the sensor that it is of, its key number in words, and how long it took.
+  virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*subject*/,
+                                      std::string_view /*result*/, double /*duration_s*/) {}
   virtual void iterationDone(const IterationRecord& /*iteration*/, const CalibrationState& /*state*/) {}
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/files_together.h"
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/export/exporters.h"
 #include "core/export/rig.h"
@@ -19,52 +20,52 @@ namespace evical {
 namespace {
 
 constexpr std::array kTargets{
-    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml",
+    ExportTarget{"kalibr", "Kalibr", "camchain-imucam.yaml, camchain.yaml, imu.yaml",
                  "What most visual-inertial programs read, or convert from", true, exportKalibr, readKalibr},
-    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml",
+    ExportTarget{"openvins", "OpenVINS", "kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml",
                  "Visual-inertial odometry; several cameras", true, exportOpenVins, readOpenVins},
-    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each",
+    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO", "vins.yaml and a camera file each",
                  "Visual-inertial odometry with one or two cameras; ESVIO for events", true, exportVinsFusion,
                  readVinsFusion},
-    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", "Visual-inertial SLAM",
+    ExportTarget{"orb-slam3", "ORB-SLAM3", "the calibration part of a settings file", "Visual-inertial SLAM",
                  true, exportOrbSlam3, readOrbSlam3},
-    ExportTarget{"basalt", "Basalt: calibration.json", "Visual-inertial odometry and mapping", true,
+    ExportTarget{"basalt", "Basalt", "calibration.json", "Visual-inertial odometry and mapping", true,
                  exportBasalt, readBasalt},
-    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2, launch), URDF",
+    ExportTarget{"ros", "ROS", "camera_info, static transforms (tf2, launch), URDF",
                  "For any robot: drivers, image pipelines, transforms", false, exportRos, readRos},
-    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", "Visual-inertial odometry; EVO for events",
+    ExportTarget{"svo", "SVO, EVO", "camera rig and IMU files", "Visual-inertial odometry; EVO for events",
                  true, exportSvo, readSvo},
-    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag",
+    ExportTarget{"ultimate-slam", "Ultimate SLAM", "camera rig, imu.yaml, time shift flag",
                  "Odometry from events, frames and IMU", true, exportUltimateSlam, readUltimateSlam},
-    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", "Odometry from two event cameras; no IMU", false,
+    ExportTarget{"esvo", "ESVO", "left.yaml, right.yaml", "Odometry from two event cameras; no IMU", false,
                  exportEsvo, readEsvo},
-    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c",
+    ExportTarget{"esvo2", "ESVO2", "left.yaml, right.yaml with T_b_c",
                  "Odometry from two event cameras and an IMU", true, exportEsvo2, readEsvo2},
-    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", "iniVation's programs and library",
+    ExportTarget{"dv-processing", "DV, dv-processing", "calibration.json", "iniVation's programs and library",
                  false, exportDvProcessing, readDvProcessing},
-    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", "Prophesee's programs; lenses only",
-                 false, exportMetavision, readMetavision},
-    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics",
+    ExportTarget{"metavision", "Metavision up to SDK 4", "intrinsics.json",
+                 "Prophesee's programs; lenses only", false, exportMetavision, readMetavision},
+    ExportTarget{"ekalibr", "eKalibr", "parameters and camera intrinsics",
                  "Another calibrator of event cameras and IMUs", false, exportEkalibr, readEkalibr},
-    ExportTarget{"kimera", "Kimera-VIO: camera and IMU parameters",
+    ExportTarget{"kimera", "Kimera-VIO", "camera and IMU parameters",
                  "Visual-inertial odometry and meshing; two cameras", true, exportKimera, readKimera},
-    ExportTarget{"dm-vio", "DM-VIO, DSO: camera.txt, camchain.yaml, noise",
+    ExportTarget{"dm-vio", "DM-VIO, DSO", "camera.txt, camchain.yaml, noise",
                  "Visual-inertial odometry with one camera", true, exportDmVio, readDmVio},
-    ExportTarget{"rtabmap", "RTAB-Map: cameras, stereo pair, IMU's local transform", "SLAM with two cameras",
-                 false, exportRtabmap, readRtabmap},
-    ExportTarget{"opencv", "OpenCV: cameras and stereo pair (FileStorage)",
+    ExportTarget{"rtabmap", "RTAB-Map", "cameras, stereo pair, IMU's local transform",
+                 "SLAM with two cameras", false, exportRtabmap, readRtabmap},
+    ExportTarget{"opencv", "OpenCV", "cameras and stereo pair (FileStorage)",
                  "Your own programs in C++ or Python", false, exportOpenCv, readOpenCv},
-    ExportTarget{"matlab", "MATLAB, Octave: a function that makes all of it",
+    ExportTarget{"matlab", "MATLAB, Octave", "a function that makes all of it",
                  "Your own programs in MATLAB or Octave", false, exportMatlab, readMatlab},
-    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", "Programs made for that data set; two cameras", false,
+    ExportTarget{"dsec", "DSEC", "cam_to_cam.yaml", "Programs made for that data set; two cameras", false,
                  exportDsec, readDsec},
-    ExportTarget{"m3ed", "M3ED: calibration.h5", "Programs made for that data set", false, exportM3ed,
+    ExportTarget{"m3ed", "M3ED", "calibration.h5", "Programs made for that data set", false, exportM3ed,
                  readM3ed},
-    ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
+    ExportTarget{"evimo2", "EVIMO, EVIMO2", "params.txt, calib.txt, extrinsics.txt of each camera",
                  "Programs made for those data sets", false, exportEvimo2, readEvimo2},
-    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", "Programs made for that data set", false,
+    ExportTarget{"tum-vie", "TUM-VIE", "camera-calibrationA.json", "Programs made for that data set", false,
                  exportTumVie, readTumVie},
-    ExportTarget{"numpy", "NumPy: calibration.npz", "Your own programs in Python", false, exportNumpy,
+    ExportTarget{"numpy", "NumPy", "calibration.npz", "Your own programs in Python", false, exportNumpy,
                  readNumpy},
 };
 
@@ -103,7 +104,7 @@ Attempt attempt(const NamedResult& result, std::span<const std::string> targets)
   std::set<std::string> done;
   for (const std::string& name : targets) {
     if (!done.insert(name).second) continue;
-    const ExportTarget& target = exportTarget(name, "--to");
+    const ExportTarget& target = exportTarget(name, howTo(HowTo::Option, {"to"}));
     ExportedFiles one;
     try {
       one = target.write(result);

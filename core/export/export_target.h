@@ -26,7 +26,8 @@ struct ReadBack;
 
 struct ExportTarget {
   const char* name;
-  const char* description;
+  const char* program;     // "Kalibr"; several where one file serves them
+  const char* files;       // what is written, in a line
   const char* use;         // who reads it, in a line
   bool inertial_odometry;  // programs that estimate motion from camera and IMU start from it
   ExportedFiles (*write)(const NamedResult& result);  // paths relative to the target's folder

@@ -51,7 +51,7 @@ RigCamera rigCameraOf(const NamedResult& result, std::size_t i, std::set<std::st
   if (!intrinsics || !intrinsics->resolution_px.known())
     throw badInput(fmt::format("result: cameras.{}", name),
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
-                   "Export the result.yaml of `evical calibrate`");
+                   "Export the result.yaml of a calibration");
   checkNumbers(fmt::format("result: cameras.{}", name), kCameraQuantities, state);
   return {name,
           fileName(name, taken),
@@ -64,19 +64,12 @@ RigCamera rigCameraOf(const NamedResult& result, std::size_t i, std::set<std::st
           elementOrNone(result.result->cameras, i)};
 }
 
-// Topics of gyroscope and accelerometer: of separate ones, "A + B", each; else the same twice.
-std::pair<std::string, std::string> sensorTopics(const std::string& stream) {
-  const std::size_t plus = stream.find(" + ");
-  if (plus == std::string::npos) return {stream, stream};
-  return {stream.substr(0, plus), stream.substr(plus + 3)};
-}
-
 RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.imus[i].name;
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  return {name, fileName(name, taken), sensorTopics(known.stream).first, known.noise, known.rate_hz, state};
+  return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
 }
 
 // An estimate of 0 is within its sigma of it, or nearly.
@@ -155,11 +148,11 @@ Rig rigOf(const NamedResult& result) {
                         [&](const RigImu& imu) { return imu.name == result.reference; });
   rig.timing = timingRemarks(result);
   for (const SensorDescription& imu : result.imus)
-    if (const auto [gyroscope, accelerometer] = sensorTopics(imu.stream); gyroscope != accelerometer)
-      rig.timing.push_back(
-          fmt::format("{}: gyroscope and accelerometer have separate topics, {}. A program that takes one "
-                      "topic gets the gyroscope's",
-                      imu.name, imu.stream));
+    if (!imu.accelerometer_stream.empty() && imu.accelerometer_stream != imu.stream)
+      rig.timing.push_back(fmt::format(
+          "{}: gyroscope and accelerometer have separate topics, {} and {}. A program that takes one "
+          "topic gets the gyroscope's",
+          imu.name, imu.stream, imu.accelerometer_stream));
   return rig;
 }
 

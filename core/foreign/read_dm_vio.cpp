@@ -2,6 +2,7 @@
 // has unchanged; and lukasvst/dm-vio, src/IMU/IMUSettings.cpp (at 432b7af: IMUCalibration::loadFromFile) and
 // src/util/SettingsUtil.cpp (at fcc306b: tryReadFromYaml).
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
@@ -9,7 +10,6 @@
 
 #include <array>
 #include <sstream>
-#include <system_error>
 
 namespace evical {
 namespace {
@@ -103,11 +103,8 @@ ReadFile readDsoCameraFile(const std::filesystem::path& path) {
 
 ReadBack readDmVio(const std::filesystem::path& folder) {
   ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};
-  std::error_code ignored;
   // DSO alone takes no more than the camera.
-  if (!std::filesystem::exists(folder / "camchain.yaml", ignored) &&
-      !std::filesystem::exists(folder / "noise.yaml", ignored))
-    return read;
+  if (!isThere(folder / "camchain.yaml") && !isThere(folder / "noise.yaml")) return read;
   read.files.push_back(readCamchain(folder / "camchain.yaml"));
   read.files.push_back(readNoise(folder / "noise.yaml"));
   return read;

@@ -3,6 +3,7 @@
 // keys of IccSensors.py's IccImu.ImuParameters, which writes such files. Kalibr parses with PyYAML, whose floats have a
 // point, and insists on floats.
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
@@ -157,8 +158,7 @@ ReadImu kalibrImuOf(const YamlNode& node) {
 ReadBack readKalibr(const std::filesystem::path& folder) {
   ReadBack read;
   read.files.push_back(readKalibrChain(folder / "camchain.yaml", false));
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder / "imu.yaml", ignored)) return read;
+  if (!isThere(folder / "imu.yaml")) return read;
   read.files.push_back(readKalibrChain(folder / "camchain-imucam.yaml", true));
   ReadFile imus{folder / "imu.yaml"};
   const YamlNode root = YamlNode::load(imus.path);

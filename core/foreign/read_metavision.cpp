@@ -1,6 +1,7 @@
 // The SDK's own loader is closed; its metavision_mono_calibration writes these keys with OpenCV's FileStorage, and OpenCV
 // reads them here.
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -33,11 +34,9 @@ ReadBack readMetavision(const std::filesystem::path& folder) {
   const std::string kFile = "intrinsics.json";
   ReadBack read;
   read.most_imus = 0;
-  std::error_code ignored;
-  if (std::filesystem::exists(folder / kFile, ignored))
-    read.files.push_back(readMetavisionCamera(folder / kFile, ""));
+  if (isThere(folder / kFile)) read.files.push_back(readMetavisionCamera(folder / kFile, ""));
   for (const std::filesystem::path& below : filesLike(folder, "", ""))
-    if (std::filesystem::exists(below / kFile, ignored))
+    if (isThere(below / kFile))
       read.files.push_back(readMetavisionCamera(below / kFile, below.filename().string()));
   if (read.files.empty()) throw badInput(folder.string(), "has no " + kFile);
   return read;

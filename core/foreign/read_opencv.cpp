@@ -2,6 +2,7 @@
 // samples/cpp/stereo_calib.cpp (at aa2dde3), and opencv/opencv_contrib, modules/ccalib/samples/omni_calibration.cpp:
 // matrices are read with >> cv::Mat.
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/read_pair.h"
@@ -14,7 +15,6 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 namespace evical {
@@ -214,9 +214,7 @@ ReadBack readOpenCv(const std::filesystem::path& folder) {
     cameras.insert(cameras.end(), one.cameras.begin(), one.cameras.end());
     read.files.push_back(std::move(one));
   }
-  std::error_code ignored;
-  if (std::filesystem::exists(folder / "intrinsics.yml", ignored) ||
-      std::filesystem::exists(folder / "extrinsics.yml", ignored))
+  if (isThere(folder / "intrinsics.yml") || isThere(folder / "extrinsics.yml"))
     read.files.push_back(pairAmong(cameras, readOpencvPair(folder), folder / "extrinsics.yml"));
   return read;
 }

@@ -3,6 +3,7 @@
 // ROS 2 start, too; ros/geometry2's program of that name, to which ROS 1 hands nine words; and ros/urdfdom,
 // urdf_parser/src/model.cpp and joint.cpp (at 02a883b: parseURDF, parseJoint).
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/number.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -233,8 +234,7 @@ ReadBack readRos(const std::filesystem::path& folder) {
   ReadBack read;
   for (const std::filesystem::path& path : filesLike(folder, "", ".yaml"))
     read.files.push_back(readCameraInfo(path));
-  std::error_code ignored;
-  if (read.files.size() == 1 && !std::filesystem::exists(folder / "rig.urdf", ignored)) return read;
+  if (read.files.size() == 1 && !isThere(folder / "rig.urdf")) return read;
   read.files.push_back(readTransforms(folder / "static_transforms.sh"));
   read.files.push_back(readLaunch(folder / "static_transforms.launch"));
   read.files.push_back(readPythonLaunch(folder / "static_transforms.launch.py"));

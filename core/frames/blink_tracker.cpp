@@ -1,6 +1,7 @@
 #include "core/frames/blink_tracker.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frames/still_views.h"
 
@@ -155,10 +156,10 @@ BoardObservations BlinkTracker::finish() {
                           1.0 / clearest.period_s, clearest.peak, 100.0 * clearest.share, options_.least_peak,
                           100.0 * options_.least_share)
             : fmt::format("nothing blinks between {:.0f} and {:.0f} Hz", options_.least_hz, options_.most_hz),
-        "Check that the screen flashes ('evical board --blink' makes a page that does), that it fills much "
-        "of the image, "
-        "and that the camera stands still; a board that does not blink is seen in motion, without blinking: "
-        "true");
+        "Check that the screen flashes (a page that does is made " + howTo(HowTo::MakeFlashingPage) +
+            "), that it fills much of the image, and that the camera stands still; a board that does not "
+            "flash has to "
+            "move, and the session must not say that it flashes");
   }
   gathering_->finish();
   const std::vector<PointsInFrame> views =

@@ -135,7 +135,7 @@ class CheckerboardFinder : public PatternFinder {
     return larger_ > kNowAndThen * parts_found_
                ? fmt::format(
                      "of the checkerboard up to {} x {} inner corners are seen, and the session says {} x "
-                     "{}: check rows and cols",
+                     "{}: check rows and columns",
                      largest_.rows, largest_.cols, board_.rows, board_.cols)
                : std::string();
   }

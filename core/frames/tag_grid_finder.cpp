@@ -116,11 +116,11 @@ class TagGridFinder : public PatternFinder {
     const int tags = board_.rows * board_.cols;
     if (largest_id_ >= tags)
       return fmt::format(
-          "a tag of number {} was seen, and a board of {} x {} tags has 0 to {}: rows and cols", largest_id_,
-          board_.rows, board_.cols, tags - 1);
+          "a tag of number {} was seen, and a board of {} x {} tags has 0 to {}: rows and columns",
+          largest_id_, board_.rows, board_.cols, tags - 1);
     constexpr int kEnoughPictures = 3;
     if (misfits_ >= kEnoughPictures && misfits_ > fits_)
-      return fmt::format("the tags that were seen do not lie as on a board of {} x {} tags: rows and cols",
+      return fmt::format("the tags that were seen do not lie as on a board of {} x {} tags: rows and columns",
                          board_.rows, board_.cols);
     if (looks_ >= kEnoughPictures && 2 * other_border_ > looks_)
       return fmt::format("the border of {} bit{} fits, not that of {}", border_ == 1 ? 2 : 1,

@@ -22,11 +22,10 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
                                     Initialisation& result) {
   CameraPoses found = estimateCameraPoses(camera, board, options, context);
   checkPoses(camera, found, gyro, options);
-  result.steps.push_back(
-      {"camera poses",
-       fmt::format("{}: {} of {} views, circles fit to {:.3f} px (median)", camera.name, found.poses.size(),
-                   camera.observations.views.size(), found.median_reprojection_px),
-       found.median_reprojection_px, 0.0});
+  result.steps.push_back({"camera poses", camera.name,
+                          fmt::format("{} of {} views, circles fit to {:.3f} px (median)", found.poses.size(),
+                                      camera.observations.views.size(), found.median_reprojection_px),
+                          found.median_reprojection_px, 0.0});
   if (found.rejected > static_cast<int>(found.poses.size())) {
     result.warnings.push_back(fmt::format(
         "{}: the circles of most views ({} of {}) fit the board worse than {:.2f} px; check the "
@@ -114,10 +113,10 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
     if (consistency.swapped == 0 && consistency.dropped == 0) break;
   }
   const auto views = static_cast<int>(aligned.poses.size()) + dropped;
-  result.steps.push_back({"planar poses",
-                          fmt::format("{}: the gyroscope turned {} views to the plane's other pose and "
+  result.steps.push_back({"planar poses", camera.name,
+                          fmt::format("the gyroscope turned {} views to the plane's other pose and "
                                       "contradicts {} of {}",
-                                      camera.name, swapped, dropped, views),
+                                      swapped, dropped, views),
                           static_cast<double>(dropped) / views, 0.0});
 }
 
@@ -180,14 +179,14 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
   const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;
   result.steps.push_back(
-      {"time offset",
-       fmt::format("{}: {:.4f} s, correlation {:.3f}, peak {:.0f} ms wide, next best {:.3f}", camera.name,
+      {"time offset", camera.name,
+       fmt::format("{:.4f} s, correlation {:.3f}, peak {:.0f} ms wide, next best {:.3f}",
                    hand_eye.time_offset_s, peaks.front().correlation, peaks.front().width_s * 1e3, next),
        1.0 - peaks.front().correlation, peaks.front().correlation - next, offset_s});
   result.steps.push_back(
-      {"camera-IMU rotation",
-       fmt::format("{}: {} pairs agree to {:.3f} deg, second axis {:.2f} of the first", camera.name,
-                   hand_eye.pairs, hand_eye.residual_rad * kDegPerRad, hand_eye.axis_ratio),
+      {"camera-IMU rotation", camera.name,
+       fmt::format("{} pairs agree to {:.3f} deg, second axis {:.2f} of the first", hand_eye.pairs,
+                   hand_eye.residual_rad * kDegPerRad, hand_eye.axis_ratio),
        hand_eye.residual_rad, hand_eye.axis_ratio, rotation_s});
   return aligned;
 }

@@ -58,11 +58,11 @@ class CamerasAlone {
     poses_ = found.poses;
     trajectory_ = through(poses_);
     result_.steps.push_back(
-        {"trajectory",
-         fmt::format("{}: {} of {} views, circles fit to {:.3f} px (median), {} turned to the "
+        {"trajectory", reference().name,
+         fmt::format("{} of {} views, circles fit to {:.3f} px (median), {} turned to the "
                      "plane's other pose",
-                     reference().name, found.poses.size(), reference().observations.views.size(),
-                     found.median_reprojection_px, swapped),
+                     found.poses.size(), reference().observations.views.size(), found.median_reprojection_px,
+                     swapped),
          found.median_reprojection_px, 0.0, stopwatch.restart_s()});
   }
 
@@ -98,9 +98,9 @@ class CamerasAlone {
     result_.state.cameras[k].reference_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = bridged->time_offset_s;
     result_.steps.push_back(
-        {"camera to camera",
-         fmt::format("{}: sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
-                     camera.name, reference().name, bridged->bridges, pose.rotation_rms_rad * kDegPerRad,
+        {"camera to camera", camera.name,
+         fmt::format("sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
+                     reference().name, bridged->bridges, pose.rotation_rms_rad * kDegPerRad,
                      pose.position_rms_m * 1e3),
          pose.position_rms_m, 0.0, stopwatch.restart_s()});
     result_.warnings.push_back(
@@ -150,8 +150,8 @@ class CamerasAlone {
     }
     result_.state.cameras[k].reference_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = time_offset_s;
-    result_.steps.push_back({"camera to camera",
-                             fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm", name, found->views,
+    result_.steps.push_back({"camera to camera", name,
+                             fmt::format("{} views agree to {:.3f} deg and {:.2f} mm", found->views,
                                          pose.rotation_rms_rad * kDegPerRad, pose.position_rms_m * 1e3),
                              pose.position_rms_m, 0.0});
   }

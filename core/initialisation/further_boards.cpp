@@ -57,10 +57,9 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
       state.time_offset_s = sights[i].time_offset_s;
     }
     result.steps.push_back(
-        {"board to board",
-         fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm on where it stands against {}", name,
-                     found->views, found->rotation_rms_rad * kDegPerRad, 1e3 * found->position_rms_m,
-                     input.boardName(0)),
+        {"board to board", name,
+         fmt::format("{} views agree to {:.3f} deg and {:.2f} mm on where it stands against {}", found->views,
+                     found->rotation_rms_rad * kDegPerRad, 1e3 * found->position_rms_m, input.boardName(0)),
          found->position_rms_m, 0.0, stopwatch.restart_s()});
   }
 }

@@ -1,6 +1,7 @@
 #include "core/initialisation/further_imus.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
 #include "core/geometry/so3.h"
@@ -48,8 +49,8 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
       : known ? fmt::format("any time offset within {:.1f} s of {:.4f} s", options.time_offset_search_s,
                             known->value)
               : fmt::format("any time offset up to {:.1f} s", options.time_offset_search_s);
-  const std::string advice =
-      given ? "check the time offset in the session" : "widen initialisation.time_offset_search_s";
+  const std::string advice = given ? "check the time offset " + howTo(HowTo::EditSession)
+                                   : "widen initialisation.time_offset_search_s";
   if (peaks.empty()) {
     throw calibrationFailed(
         imu.name,

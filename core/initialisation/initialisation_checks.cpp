@@ -1,6 +1,7 @@
 #include "core/initialisation/initialisation_checks.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/knot_spacing.h"
 
@@ -30,7 +31,7 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
                    "Put the board first that it sees");
   for (const CameraData& camera : input.cameras) {
     if (!camera.lens.seen_with)
-      throw calibrationFailed(camera.name, "has no intrinsics", "Give them in the session");
+      throw calibrationFailed(camera.name, "has no intrinsics", "Give them " + howTo(HowTo::EditSession));
   }
   if (input.imus.empty() && input.cameras.size() == 1) {
     throw calibrationFailed("session", "there is neither an IMU nor a second camera",
@@ -66,11 +67,11 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
 void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options) {
   const std::size_t views = camera.observations.views.size();
   if (static_cast<int>(views) < options.least_views) {
-    throw calibrationFailed(
-        camera.name,
-        fmt::format("the board was seen in {} of {} windows only; {} are needed", views,
-                    camera.observations.windows.size(), options.least_views),
-        "Look at the detections (evical detect --images), check rows and cols, and keep the board in view");
+    throw calibrationFailed(camera.name,
+                            fmt::format("the board was seen in {} of {} windows only; {} are needed", views,
+                                        camera.observations.windows.size(), options.least_views),
+                            "Look at the detections " + howTo(HowTo::LookAtDetections) +
+                                ", check rows and columns, and keep the board in view");
   }
   if (static_cast<int>(found.poses.size()) < options.least_views) {
     throw calibrationFailed(
@@ -79,7 +80,7 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
                     "{:.2f} px (at most {:.2f} px is allowed)",
                     found.poses.size(), views, options.least_views, found.median_reprojection_px,
                     options.largest_reprojection_px),
-        "Check the intrinsics, and the board's rows, cols, spacing_m and radius_m");
+        "Check the intrinsics, and the board's rows, columns, spacing and radius");
   }
 }
 
@@ -105,7 +106,7 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                           : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
                     first_s, last_s, gyro.begin_s(), gyro.end_s()),
         !apart            ? "Record for 30 s"
-        : search_s == 0.0 ? "Check the clocks, and the time offset in the session"
+        : search_s == 0.0 ? "Check the clocks, and the time offset " + howTo(HowTo::EditSession)
                           : "Check the clocks, or widen initialisation.widest_time_offset_search_s");
   }
 }

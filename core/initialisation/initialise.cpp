@@ -93,7 +93,7 @@ double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOp
   }
   const double spacing_s = std::max(asked.spacing_s(), closest_s);
   result.steps.push_back(
-      {"knot spacing", describe(asking->name, asked, spacing_s), 0.0, 0.0, stopwatch.restart_s()});
+      {"knot spacing", "", describe(asking->name, asked, spacing_s), 0.0, 0.0, stopwatch.restart_s()});
   return spacing_s;
 }
 
@@ -108,7 +108,7 @@ double endOfWholeKnots_s(TimeRange range, double knot_s) {
 void checkBoardScale(const GravityAlignment& gravity, const Board& board,
                      const InitialisationOptions& options, Initialisation& result) {
   const double excess = gravity.board_scale - 1.0, sigma = gravity.board_scale_std;
-  result.steps.push_back({"board scale",
+  result.steps.push_back({"board scale", "",
                           fmt::format("accelerations make the board {:.3f} +- {:.3f} times as large as given",
                                       gravity.board_scale, sigma),
                           std::abs(excess), sigma});
@@ -129,7 +129,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
       alignGravity(tracksOf(input, cameras), withFitForces(referenceImu(input).samples), input.start_ns,
                    state.world_from_imu_rotation, options, context);
   result.steps.push_back(
-      {"gravity and translation",
+      {"gravity and translation", "",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
                    gravity.position_rms_m * 1e3, gravity.views - gravity.outlying_views, gravity.views,
                    gravity.acceleration_rms_m_s2),
@@ -170,11 +170,11 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
   state.gyroscope_bias_rad_s = hand_eye.gyroscope_bias_rad_s;
   state.accelerometer_bias_m_s2 = lever.accelerometer_bias_m_s2;
   result.steps.push_back(
-      {"IMU to IMU",
+      {"IMU to IMU", imu.name,
        fmt::format(
-           "{}: time offset {:.4f} s (correlation {:.3f}), rotations agree to {:.3f} deg, accelerations to "
+           "time offset {:.4f} s (correlation {:.3f}), rotations agree to {:.3f} deg, accelerations to "
            "{:.3f} m/s^2",
-           imu.name, hand_eye.time_offset_s, rotation.correlation, hand_eye.residual_rad * kDegPerRad,
+           hand_eye.time_offset_s, rotation.correlation, hand_eye.residual_rad * kDegPerRad,
            lever.force_rms_m_s2),
        hand_eye.residual_rad, lever.std_m, stopwatch.restart_s()});
 }
@@ -183,7 +183,8 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
 void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
                std::size_t& told) {
   for (; observer != nullptr && told < steps.size(); ++told)
-    observer->initialisationStepDone(steps[told].name, steps[told].result, steps[told].duration_s);
+    observer->initialisationStepDone(steps[told].name, steps[told].subject, steps[told].result,
+                                     steps[told].duration_s);
 }
 
 void keepLenses(const CalibrationInput& input, CalibrationState& state) {

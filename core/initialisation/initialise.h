@@ -14,11 +14,14 @@
 namespace evical {
 
 struct InitialisationStep {
-  std::string name;    // "camera poses", "time offset", ...
-  std::string result;  // its key number, in words
+  std::string name;     // "camera poses", "time offset", ...
+  std::string subject;  // the sensor or board that it is of; empty: all of them
+  std::string result;   // its key number, in words
   double residual = 0.0;
   double condition = 0.0;   // 0 where it has none
   double duration_s = 0.0;  // of the work
+
+  std::string text() const { return subject.empty() ? result : subject + ": " + result; }
 };
 
 // Of one camera's rotations with the reference IMU's, at the time offset that was found.

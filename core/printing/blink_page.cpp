@@ -36,7 +36,7 @@ pre { background: #eee; padding: 0.7em; }
 <h1>Blinking board</h1>
 <p class="warning">This page flashes all of the screen. Flashing light can trigger seizures in people with
 photosensitive epilepsy.</p>
-<p>For the intrinsics of an event camera, with <code>evical intrinsics</code>. Set the browser's zoom to 100 % and the
+<p>For the intrinsics of an event camera that stands still. Set the browser's zoom to 100 % and the
 screen to full brightness.</p>
 <ol>
 <li><p>Measure the length of this bar with a ruler:</p>

@@ -1,5 +1,6 @@
 #include "core/report/assessment_report.h"
 
+#include "core/base/number.h"
 #include "core/base/yaml_node.h"
 #include "core/format/quantity_yaml.h"
 #include "core/report/html/html_text.h"
@@ -236,19 +237,8 @@ std::string withUnit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
-int decimalsOf(double sigma) {
-  constexpr int kMostDecimals = 6;
-  return sigma > 0.0 && std::isfinite(sigma)
-             ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMostDecimals)
-             : kMostDecimals;
-}
-
-// "1.5369 +- 0.0071": to the sigma's second digit.
-std::string plusMinus(const ValueWithSigma& number) {
-  if (!number.isThere()) return {};
-  if (!(number.sigma > 0.0) || !std::isfinite(number.sigma)) return fmt::format("{:.6g}", number.value);
-  const int decimals = decimalsOf(number.sigma);
-  return fmt::format("{:.{}f} +- {:.{}f}", number.value, decimals, number.sigma, decimals);
+std::string shown(const ValueWithSigma& number) {
+  return number.isThere() ? withSigma(number.value, number.sigma) : "";
 }
 
 std::string size(double value, const std::string& unit) {
@@ -277,8 +267,8 @@ std::string findingRow(const Finding& finding) {
 std::string numberRow(const Finding& finding, const ComparedNumber& number) {
   const std::string name = ofSensor(finding.sensor, finding.against) + "." + number.name;
   std::string row = fmt::format("{:<52}{:>26}{:>26}", withUnit(name, shownUnit(number.unit)),
-                                plusMinus(number.before), plusMinus(number.now));
-  if (number.joint.isThere()) row += fmt::format("{:>26}", plusMinus(number.joint));
+                                shown(number.before), shown(number.now));
+  if (number.joint.isThere()) row += fmt::format("{:>26}", shown(number.joint));
   return row + "\n";
 }
 
@@ -316,7 +306,7 @@ std::string repeatedRow(const RepeatedQuantity& quantity, const RepeatedNumber& 
   double least = 0.0;  // of what it varies by
   for (const double each : {number.deviation, number.mean_sigma, number.joint_sigma})
     if (each > 0.0 && (least == 0.0 || each < least)) least = each;
-  const int decimals = decimalsOf(least);
+  const int decimals = decimalsFor(least, 6, 6);
   std::string row = fmt::format("{:<44}{:>14.{}f}{:>12.{}f}{:>12.{}f}{:>8}",
                                 withUnit(quantity.sensor + "." + number.name, number.unit), number.mean,
                                 decimals, number.deviation, decimals, number.mean_sigma, decimals,

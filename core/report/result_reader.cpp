@@ -165,6 +165,7 @@ void readLatencies(const YamlNode& cameras, const NamedResult& named, Calibratio
 
 SensorDescription readKnown(const YamlNode& map, const std::string& name) {
   SensorDescription known{name, streamOf(map)};
+  get(map, "accelerometer_stream", known.accelerometer_stream);
   if (map.has("accelerometer_noise_density") && map.has("gyroscope_noise_density")) {
     known.noise.accelerometer_density = map["accelerometer_noise_density"].real();
     known.noise.gyroscope_density = map["gyroscope_noise_density"].real();
@@ -318,7 +319,7 @@ void checkVersion(const YamlNode& version) {
 NamedResult resultFrom(const YamlNode& root) {
   if (!root.isMap() || !(root.has("evical_result") || root.has("evical_truth")))
     throw root.error("is neither a result nor a truth file",
-                     "Give result.yaml of `evical calibrate`, or truth.yaml");
+                     "Give result.yaml of a calibration, or truth.yaml");
   checkVersion(root[root.has("evical_result") ? "evical_result" : "evical_truth"]);
   NamedResult named;
   CalibrationResult result;

@@ -73,8 +73,8 @@ void addPlace(const Rows& rows, const State& state, const Uncertainty& uncertain
   addQuantities(rows, state, uncertainty, Written::Sigmas, sections, inPose);
 }
 
-std::string streamYaml(const std::string& stream) {
-  return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
+std::string streamYaml(const std::string& stream, const char* key = "stream") {
+  return stream.empty() ? "" : fmt::format("    {}: {}\n", key, yamlText(stream));
 }
 
 std::string kindYaml(CameraKind kind) {
@@ -120,7 +120,8 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
 }
 
 std::string knownYaml(const SensorDescription& known) {
-  std::string text = streamYaml(known.stream);
+  std::string text =
+      streamYaml(known.stream) + streamYaml(known.accelerometer_stream, "accelerometer_stream");
   const auto add = [&](const char* key, double value) {
     if (value > 0.0) text += fmt::format("    {}: {}\n", key, exactYaml(value));
   };

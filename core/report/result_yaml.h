@@ -21,6 +21,8 @@ struct SensorDescription {
   double rate_hz = 0.0;
   // Of a camera; older files do not say it, and are of events.
   CameraKind kind = CameraKind::Events;
+  // Of an IMU whose accelerometer has a stream of its own; `stream` is then the gyroscope's.
+  std::string accelerometer_stream = {};
 
   bool operator==(const SensorDescription&) const = default;
 };

@@ -46,7 +46,7 @@ void TestBadView::board_ofAnotherSize_isNamed() {
   test.change("cols: 4", QString("cols: %1").arg(cols));
   const Outcome outcome = test.calibrate();
   VERIFY_FAILED(test, outcome, says);
-  VERIFY_SAYS(outcome, "[Cc]heck rows(,| and) cols .*in the session");
+  VERIFY_SAYS(outcome, "[Cc]heck rows(,| and) columns .*in the session");
 }
 
 void TestBadView::boardSpacing_tenPercentOff_isDoubtful_data() {

@@ -64,7 +64,7 @@ class TestCalibrationJob : public QObject {
     QCOMPARE(test.notes.size(), 7);
     QVERIFY(!test.detections.empty());
     for (std::size_t i = 1; i < test.detections.size(); ++i) {
-      QVERIFY(test.detections[i]->at(0)->windows.size() > test.detections[i - 1]->at(0)->windows.size());
+      QVERIFY(test.detections[i]->at(0).windows > test.detections[i - 1]->at(0).windows);
     }
     QCOMPARE(test.iterations->records.size(), test.run->result.iterations.size());
   }

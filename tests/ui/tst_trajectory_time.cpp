@@ -72,7 +72,7 @@ void TestTrajectoryTime::rawPoses_growWithTheDetections() {
     auto some = std::make_shared<BoardObservations>(example_.run->pass.cameras.front());
     some->views.resize(views);
     const double last_s = some->views.back().time_s;
-    screen.setDetections(some, *example_.session.cameras.front().intrinsics);
+    screen.setDetections(sharedViews(some), *example_.session.cameras.front().intrinsics);
     QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
     screen.setTime(last_s);
     const QImage after = picture(screen.view());
@@ -148,8 +148,9 @@ void TestTrajectoryTime::halfMinute_drawsFast() {
   session.board = rig.input.board;
   screen.setBoards(session);
   screen.setState(truthOf(rig));
-  screen.setDetections(std::make_shared<BoardObservations>(rig.input.cameras.front().observations),
-                       *rig.input.cameras.front().lens.given);
+  screen.setDetections(
+      sharedViews(std::make_shared<BoardObservations>(rig.input.cameras.front().observations)),
+      *rig.input.cameras.front().lens.given);
   QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
   screen.setTime(10.0);
   QImage target(1000, 700, QImage::Format_RGB32);

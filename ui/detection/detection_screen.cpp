@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/detection_screen.h"
 
+#include "core/base/file_places.h"
 #include "core/frames/frame_options.h"
 #include "core/frontend/front_end_options.h"
 #include "ui/detection/detection_engine.h"
@@ -309,8 +310,7 @@ QString DetectionScreen::missingRecording() const {
   if (!session_ || camera_ >= session_->cameras.size()) return {};
   const std::filesystem::path& own = session_->cameras[camera_].recording;
   const std::filesystem::path& path = own.empty() ? session_->recording : own;
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored) ? QString() : QString::fromStdString(path.string());
+  return isThere(path) ? QString() : QString::fromStdString(path.string());
 }
 
 void DetectionScreen::showMarksAlone() {

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/pipeline/pass/event_intake.h"
 #include "core/pipeline/pass/session_recording.h"
 
 #include <algorithm>
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kBin_s = 0.01;
 constexpr std::size_t kMostBins = 10'000'000;  // a day; a clock that jumps further has no curve there
-constexpr std::size_t kBatchEvents = 50'000;   // put in order together, as the calibration does
 constexpr auto kTellEvery = std::chrono::milliseconds(100);
 
 // Sums and counts by bin of time.
@@ -51,10 +51,6 @@ class Bins {
   std::vector<std::uint32_t> counts_;
   std::vector<float> sums_;
 };
-
-std::string wordsOf(const CalibrationError& error) {
-  return error.place() + ": " + error.problem() + (error.advice().empty() ? "" : ". " + error.advice());
-}
 
 CameraKind kindOf(const SessionRecording& recording, const Session& session, std::size_t camera) {
   switch (recording.camera(camera).type) {
@@ -93,11 +89,14 @@ std::optional<std::size_t> companionOf(const SessionRecording& recording, const 
 
 }  // namespace
 
-// The calibration's rules: sorted within a batch; late events and those outside are left out.
-class EventWindowReader::EventIntake {
+// Fills the cache with the events that a calibration takes.
+class EventWindowReader::CacheFilling {
  public:
-  EventIntake(EventCache& cache, Resolution resolution_px, std::int64_t start_ns)
-      : cache_(cache), resolution_px_(resolution_px), start_ns_(start_ns) {}
+  CacheFilling(EventCache& cache, std::size_t camera, const SessionCamera& session, Resolution resolution_px,
+               std::int64_t start_ns)
+      : cache_(cache),
+        start_ns_(start_ns),
+        intake_(camera, session, resolution_px, {}, EventUse::AsTheyAre) {}
 
   void take(const std::vector<Event>& events) {
     pending_.insert(pending_.end(), events.begin(), events.end());
@@ -112,23 +111,17 @@ class EventWindowReader::EventIntake {
 
  private:
   void flush() {
-    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
-    if (!std::is_sorted(pending_.begin(), pending_.end(), earlier))
-      std::stable_sort(pending_.begin(), pending_.end(), earlier);
-    std::erase_if(pending_, [&](const Event& event) {
-      return event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px ||
-             event.time_ns < last_ns_;
-    });
-    if (pending_.empty()) return;
-    cache_.append(pending_);
-    last_ns_ = pending_.back().time_ns;
-    for (const Event& event : pending_) rate_.add(secondsSince(start_ns_, event.time_ns), 0.0);
+    const std::optional<CameraBatch> batch = intake_.take(pending_);
     pending_.clear();
+    if (!batch) return;
+    cache_.append(batch->events);
+    last_ns_ = batch->complete_until_ns;
+    for (const Event& event : batch->events) rate_.add(secondsSince(start_ns_, event.time_ns), 0.0);
   }
 
   EventCache& cache_;
-  Resolution resolution_px_;
   std::int64_t start_ns_;
+  EventIntake intake_;
   std::vector<Event> pending_;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
   Bins rate_;
@@ -149,7 +142,8 @@ class EventWindowReader::Pass {
       events_camera_ = events ? camera : *companion_;
       caches_.events_px = *knownSize(recording_, *events_camera_);
       auto cache = std::make_shared<EventCache>(folder);
-      events_.emplace(*cache, caches_.events_px, start_ns_);
+      events_.emplace(*cache, *events_camera_, session.cameras[*events_camera_], caches_.events_px,
+                      start_ns_);
       caches_.events = std::move(cache);
     }
     if (!events || companion_) {
@@ -200,7 +194,7 @@ class EventWindowReader::Pass {
   Resolution resolution_px_;
   std::int64_t start_ns_;
   RecordingCaches caches_;
-  std::optional<EventIntake> events_;
+  std::optional<CacheFilling> events_;
   std::shared_ptr<FrameCache> frames_;
   SensorPacket packet_;
   bool started_ = false;
@@ -246,8 +240,6 @@ void EventWindowReader::read(const std::stop_token& stop) {
   try {
     readAll(stop);
     return;
-  } catch (const CalibrationError& problem) {
-    state_.overview.error = wordsOf(problem);
   } catch (const std::exception& problem) {
     state_.overview.error = problem.what();
   }

@@ -59,7 +59,7 @@ class EventWindowReader {
   std::shared_ptr<const EventCache> cache() const { return caches().events; }
 
  private:
-  class EventIntake;
+  class CacheFilling;
   class Pass;
   struct State {
     RecordingOverview overview;

@@ -2,6 +2,7 @@
 #include "ui/document/calibration_document.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/geometry/camera_model.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_keys.h"
@@ -269,8 +270,7 @@ bool CalibrationDocument::runIsOutdated() const {
 std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {
   std::vector<SessionProblem> problems;
   if (session.recording.empty()) return {{"recording", QObject::tr("Open a recording first")}};
-  std::error_code ignored;
-  if (!std::filesystem::exists(session.recording, ignored)) {
+  if (!isThere(session.recording)) {
     problems.push_back(
         {"recording",
          QObject::tr("%1 is not there any more").arg(QString::fromStdString(session.recording.string()))});

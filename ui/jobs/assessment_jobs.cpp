@@ -15,9 +15,7 @@ namespace {
 void addStages(RunStart start, const std::string& part, double weight, std::vector<JobStage>& stages) {
   for (const StageRow& row : kCalibrationStages)
     if (const double share = shareOf(row, start); share > 0.0)
-      stages.push_back(
-          {part.empty() ? QString(row.name) : QString::fromStdString(prefixedStage(part, row.name)),
-           weight * share});
+      stages.push_back({{row.name, part}, weight * share});
 }
 
 // The lens is given by the old result; the second run starts from what the first one detected.

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/calibration_job.h"
 
-#include "ui/jobs/mailbox.h"
-
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
 namespace evical::ui {
@@ -17,52 +14,7 @@ std::vector<JobStage> jobStages(RunStart start) {
   return stages;
 }
 
-QString stepText(std::string_view text) {
-  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
-}
-
 }  // namespace
-
-// Between core's threads and the GUI.
-class CalibrationJob::LiveView final : public CalibrationObserver {
- public:
-  LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows)
-      : windows_(std::move(windows)), copies_(cameras) {}
-
-  FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
-    return windows_ ? windows_->windowObserver(camera, tracker) : nullptr;
-  }
-  void windowsDetected(std::size_t camera, const BoardObservations& so_far) override {
-    copies_.take(camera, so_far, detections);
-  }
-  void detectionDone(const CalibrationInput&) override { detection_done = true; }
-  void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
-    notes_.push_back({stepText(step), stepText(result), duration_s});
-    notes.put(std::make_shared<Notes>(notes_));
-  }
-  void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override {
-    records_.push_back(iteration);
-    iterations.put(std::make_shared<LiveIterations>(LiveIterations{records_, state}));
-  }
-
-  using Notes = std::vector<InitialisationNote>;
-  Mailbox<LiveDetections> detections;
-  std::atomic<bool> detection_done = false;
-  Mailbox<Notes> notes;  // all so far
-  Mailbox<LiveIterations> iterations;
-
-  // The GUI thread's.
-  bool said_done = false;
-  std::size_t said_notes = 0;
-
-  std::shared_ptr<const CalibrationRun> run;  // written by the work, read once it has ended
-
- private:
-  std::shared_ptr<CalibrationObserver> windows_;
-  DetectionCopies copies_;
-  Notes notes_;
-  std::vector<IterationRecord> records_;
-};
 
 CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {
   qRegisterMetaType<InitialisationNote>();
@@ -97,9 +49,9 @@ bool CalibrationJob::run(const Session& session, RunStart start, std::shared_ptr
   session_ = session;
   started_from_ = start;
   live_ = std::make_shared<LiveView>(session.cameras.size(), std::move(windows));
-  const auto job = [work = std::move(work), live = live_](const RunContext& context) {
-    live->run =
-        std::make_shared<CalibrationRun>(work(RunContext{context.progress, context.stop, live.get()}));
+  run_ = std::make_shared<CalibrationRun>();
+  const auto job = [work = std::move(work), live = live_, made = run_](const RunContext& context) {
+    *made = work(RunContext{context.progress, context.stop, live.get()});
   };
   if (!runner_.start(tr("Calibrate"), jobStages(start), job)) return false;
   emit started();
@@ -123,9 +75,10 @@ void CalibrationJob::deliver() {
 
 void CalibrationJob::finish(JobOutcome outcome) {
   const std::shared_ptr<LiveView> live = std::exchange(live_, nullptr);
+  const std::shared_ptr<const CalibrationRun> run = std::exchange(run_, nullptr);
   if (live) emit ended();
   if (!live || outcome != JobOutcome::Done) return;
-  emit calibrated(live->run, session_, runner_.logText());
+  emit calibrated(run, session_, runner_.logText());
 }
 
 }  // namespace evical::ui

@@ -2,27 +2,16 @@
 // A calibration as a job: what the front end and the optimiser find is shown while they run.
 #pragma once
 
-#include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
-#include "ui/jobs/live_detections.h"
+#include "ui/jobs/live_view.h"
 
 #include <functional>
 #include <memory>
 #include <vector>
 
 namespace evical::ui {
-
-struct LiveIterations {
-  std::vector<IterationRecord> records;  // all so far
-  CalibrationState state;                // after the last of them
-};
-
-struct InitialisationNote {
-  QString step, result;
-  double duration_s = 0.0;
-};
 
 class CalibrationJob : public QObject {
   Q_OBJECT
@@ -57,8 +46,6 @@ class CalibrationJob : public QObject {
                   const QString& log);
 
  private:
-  class LiveView;
-
   using Work = std::function<CalibrationRun(const RunContext& context)>;
   bool run(const Session& session, RunStart start, std::shared_ptr<CalibrationObserver> windows, Work work);
   void deliver();
@@ -67,6 +54,7 @@ class CalibrationJob : public QObject {
   JobRunner& runner_;
   ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
+  std::shared_ptr<CalibrationRun> run_;  // written by the work, read once it has ended
   Session session_;
   RunStart started_from_ = RunStart::KnownIntrinsics;
 };

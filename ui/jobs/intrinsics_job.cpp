@@ -2,10 +2,8 @@
 #include "ui/jobs/intrinsics_job.h"
 
 #include "core/base/time.h"
-#include "core/data/calibration_observer.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/pass/session_recording.h"
-#include "ui/jobs/mailbox.h"
 
 #include <utility>
 
@@ -18,7 +16,7 @@ std::vector<JobStage> lensStages(int most_passes) {
   std::vector<JobStage> stages = {{nameOf(CalibrationStage::FirstLook), kFirstLook}};
   double share = kFirstPass;
   for (int pass = 1; pass <= most_passes; ++pass, share *= kNext)
-    stages.push_back({IntrinsicsJob::passName(pass), share});
+    stages.push_back({IntrinsicsJob::passName(pass).toStdString(), share});
   return stages;
 }
 
@@ -27,8 +25,8 @@ class PassNames final : public ProgressSink {
  public:
   explicit PassNames(ProgressSink& sink) : sink_(sink) {}
 
-  void stageStarted(std::string_view stage) override {
-    if (stage != nameOf(CalibrationStage::Intrinsics)) return sink_.stageStarted(stage);
+  void stageStarted(const ProgressStage& stage) override {
+    if (stage.name != nameOf(CalibrationStage::Intrinsics)) return sink_.stageStarted(stage);
     sink_.stageStarted(IntrinsicsJob::passName(++passes_).toStdString());
   }
   void stageProgress(double fraction_of_stage) override { sink_.stageProgress(fraction_of_stage); }
@@ -70,35 +68,6 @@ FoundLens find(const Session& session, std::size_t camera, const RunContext& con
 
 }  // namespace
 
-// Between core's threads and the GUI. Core watches a camera 0, which is the session's `camera`.
-class IntrinsicsJob::LiveView final : public CalibrationObserver {
- public:
-  LiveView(std::size_t cameras, std::size_t camera, std::shared_ptr<CalibrationObserver> windows)
-      : camera_(camera), windows_(std::move(windows)), copies_(cameras) {}
-
-  FrontEndObserver* windowObserver(std::size_t, const BoardTracker& tracker) override {
-    return windows_ ? windows_->windowObserver(camera_, tracker) : nullptr;
-  }
-  void windowsDetected(std::size_t, const BoardObservations& so_far) override {
-    copies_.take(camera_, so_far, detections);
-  }
-  void intrinsicsPassDone(int pass, const IntrinsicsResult& so_far) override {
-    passes_.push_back({pass, so_far.views_found, so_far.reprojection_rms_px, so_far.moved_px});
-    passes.put(std::make_shared<std::vector<LensPass>>(passes_));
-  }
-
-  Mailbox<LiveDetections> detections;
-  Mailbox<std::vector<LensPass>> passes;  // all so far
-  std::size_t said_passes = 0;            // the GUI thread's
-  FoundLens found;                        // written by the work, read once it has ended
-
- private:
-  std::size_t camera_;
-  std::shared_ptr<CalibrationObserver> windows_;
-  DetectionCopies copies_;
-  std::vector<LensPass> passes_;
-};
-
 IntrinsicsJob::IntrinsicsJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {
   connect(&runner_, &JobRunner::ticked, this, &IntrinsicsJob::deliver);
   connect(&runner_, &JobRunner::finished, this, &IntrinsicsJob::finish);
@@ -109,13 +78,15 @@ bool IntrinsicsJob::start(const Session& session, std::size_t camera) {
   session_ = session;
   camera_ = camera;
   live_ =
-      std::make_shared<LiveView>(session.cameras.size(), camera, make_observer_ ? make_observer_() : nullptr);
-  const auto job = [session, camera, live = live_](const RunContext& context) {
+      std::make_shared<LiveView>(session.cameras.size(), make_observer_ ? make_observer_() : nullptr, camera);
+  found_ = std::make_shared<FoundLens>();
+  const auto job = [session, camera, live = live_, found = found_](const RunContext& context) {
     PassNames names(context.progress);
-    live->found = find(session, camera, RunContext{names, context.stop, live.get()});
+    *found = find(session, camera, RunContext{names, context.stop, live.get()});
   };
   if (!runner_.start(tr("Calibrate the camera"), lensStages(session.options.intrinsics->most_passes), job)) {
     live_.reset();
+    found_.reset();
     return false;
   }
   emit started();
@@ -133,10 +104,10 @@ void IntrinsicsJob::deliver() {
 }
 
 void IntrinsicsJob::finish(JobOutcome outcome) {
-  const std::shared_ptr<LiveView> live = std::exchange(live_, nullptr);
-  if (!live) return;
+  if (!std::exchange(live_, nullptr)) return;
+  const std::shared_ptr<const FoundLens> found = std::exchange(found_, nullptr);
   emit ended();
-  if (outcome == JobOutcome::Done) emit calibrated(live->found, session_, camera_, runner_.logText());
+  if (outcome == JobOutcome::Done) emit calibrated(*found, session_, camera_, runner_.logText());
 }
 
 }  // namespace evical::ui

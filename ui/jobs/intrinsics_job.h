@@ -13,13 +13,6 @@
 
 namespace evical::ui {
 
-// A pass over the recording, and the lens that it left.
-struct LensPass {
-  int number = 0;
-  int views = 0;
-  double reprojection_rms_px = 0.0, moved_px = 0.0;
-};
-
 // What a run found: the lens; and where the board was seen, in the session's time, with an entry for each of its
 // cameras, for screens that show runs.
 struct FoundLens {
@@ -52,14 +45,13 @@ class IntrinsicsJob : public QObject {
                   const QString& log);
 
  private:
-  class LiveView;
-
   void deliver();
   void finish(JobOutcome outcome);
 
   JobRunner& runner_;
   CalibrationJob::ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
+  std::shared_ptr<FoundLens> found_;  // written by the work, read once it has ended
   Session session_;
   std::size_t camera_ = 0;
 };

@@ -4,7 +4,6 @@
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
 #include "core/base/stopwatch.h"
-#include "ui/jobs/window_words.h"
 
 #include <QMetaObject>
 
@@ -68,8 +67,8 @@ Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
 }  // namespace
 
 JobError errorOf(const CalibrationError& error) {
-  return {error.kind() == ErrorKind::BadInput, textOf(error.place()), inWindowWords(textOf(error.problem())),
-          inWindowWords(textOf(error.advice())), error.repair()};
+  return {error.kind() == ErrorKind::BadInput, textOf(error.place()), textOf(error.problem()),
+          textOf(error.advice()), error.repair()};
 }
 
 QString JobError::text() const {
@@ -83,12 +82,12 @@ QString JobError::text() const {
 struct JobRunner::Reports final : ProgressSink {
   explicit Reports(std::vector<JobStage> given) : stages(std::move(given)) {}
 
-  void stageStarted(std::string_view name) override {
+  void stageStarted(const ProgressStage& started) override {
     const std::lock_guard lock(mutex);
-    stage = textOf(name);
-    new_stages.push_back(stage);
+    stage = started;
+    new_stages.push_back(textOf(stage.name));
     setFraction(0.0);
-    log_text += QString::asprintf("%9.3f s  stage    ", stopwatch.elapsed_s()) + stage + "\n";
+    log_text += QString::asprintf("%9.3f s  stage    ", stopwatch.elapsed_s()) + textOf(stage.text()) + "\n";
   }
   void stageProgress(double of_stage) override {
     const std::lock_guard lock(mutex);
@@ -108,7 +107,7 @@ struct JobRunner::Reports final : ProgressSink {
     bool passed = false;
     for (const JobStage& candidate : stages) {
       total += candidate.share;
-      if (candidate.name == stage) {
+      if (candidate.stage == stage) {
         own = candidate.share;
         passed = true;
       }
@@ -126,7 +125,8 @@ struct JobRunner::Reports final : ProgressSink {
   std::mutex mutex;
   const Stopwatch stopwatch;
   const std::vector<JobStage> stages;
-  QString stage, log_text;
+  ProgressStage stage{""};
+  QString log_text;
   double stage_fraction = 0.0, fraction = 0.0;
   std::vector<QString> new_stages;
   std::vector<LogLine> lines;
@@ -189,8 +189,8 @@ void JobRunner::tick() {
     const std::lock_guard lock(reports_->mutex);
     stages.swap(reports_->new_stages);
     lines.swap(reports_->lines);
-    progress = {reports_->stage, reports_->stage_fraction, reports_->fraction,
-                reports_->stopwatch.elapsed_s(), reports_->remaining_s()};
+    progress = {textOf(reports_->stage.name), textOf(reports_->stage.part),    reports_->stage_fraction,
+                reports_->fraction,           reports_->stopwatch.elapsed_s(), reports_->remaining_s()};
   }
   for (const QString& stage : stages) emit stageStarted(stage);
   for (const LogLine& line : lines) emit logged(line);

@@ -36,12 +36,12 @@ enum class JobOutcome { Done, Cancelled, Failed };
 // A stage as the work names it (ProgressSink::stageStarted), and the share of the whole
 // time that it will take.
 struct JobStage {
-  QString name;
+  ProgressStage stage;
   double share = 1.0;
 };
 
 struct JobProgress {
-  QString stage;
+  QString stage, part;                          // ProgressStage's name and part
   double stage_fraction = 0.0, fraction = 0.0;  // 0..1, never falling
   double elapsed_s = 0.0;
   double remaining_s = -1.0;  // negative: nobody can tell yet

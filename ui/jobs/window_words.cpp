@@ -1,52 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/window_words.h"
 
-#include <array>
-
 namespace evical::ui {
-namespace {
 
-struct Words {
-  const char *of_core, *of_window;
-};
-
-// In this order: longer ones before what they contain.
-constexpr std::array kWords = {
-    Words{"; 'evical detect --images' draws what is seen", "; the Detection page shows what is seen"},
-    Words{"say blinking: true in the session's board and use 'evical intrinsics'",
-          "tick that it flashes in the Board form and calibrate the camera alone"},
-    Words{
-        "or, for 'evical intrinsics', show this board on a screen that flashes ('evical board --blink') and "
-        "say blinking: true in the session's board",
-        "or calibrate the camera alone: show this board on a screen that flashes, and tick that it does in "
-        "the "
-        "Board form"},
-    Words{"say blinking: true in the board if it does", "tick that it flashes in the Board form if it does"},
-    Words{"for its intrinsics alone there is 'evical intrinsics'", "or calibrate the camera alone"},
-    Words{"Give resolution_px: [width, height] for this camera in the session",
-          "Give its resolution in the camera's form on the Recording page"},
-    Words{"Check the recording with 'evical inspect'", "Look at its streams on the Recording page"},
-    Words{"rows, cols and", "rows, columns and"},
-    Words{"Check type, rows and cols of the session's board",
-          "Check the type, rows and columns of the board"},
-    Words{"rows and cols", "rows and columns"},
-    Words{"Name both streams in the session, in place of stream: gyroscope:",
-          "Choose the role IMU for both streams on the Recording page, gyroscope:"},
-    Words{" in time_range_s", " in the time range"},
-    Words{" in the session", " on the Recording page"},
-};
-
-}  // namespace
-
-QString inWindowWords(QString text) {
-  for (const Words& words : kWords) text.replace(words.of_core, words.of_window);
-  return text;
-}
-
-QStringList piecesOfCoresMessages() {
-  QStringList pieces;
-  for (const Words& words : kWords) pieces << words.of_core;
-  return pieces;
+const char* windowWords(HowTo way) {
+  switch (way) {
+    case HowTo::Inspect:
+    case HowTo::EditSession:
+      return "on the Recording page";
+    case HowTo::EditBoard:
+      return "in the Board form";
+    case HowTo::LookAtDetections:
+      return "on the Detection page";
+    case HowTo::CalibrateLens:
+      return "alone";
+    case HowTo::MakeFlashingPage:
+      return "with 'Print a board'";
+    case HowTo::SayThatBoardFlashes:
+      return "tick that it flashes in the Board form";
+    case HowTo::MakeSession:
+      return "Open the recording in its place";
+    case HowTo::GiveResolution:
+      return "Give its resolution in the camera's form on the Recording page";
+    case HowTo::NameSeparateStreams:
+      return "Choose the role IMU for both streams on the Recording page, gyroscope: %1 and accelerometer: "
+             "%2";
+    case HowTo::NameLogOfImu:
+      return "%1=%2 under Streams";
+    case HowTo::SetAccelerationUnit:
+      return "%1 as accelerometer unit";
+    case HowTo::SetAngularRateUnit:
+      return "%1 as gyroscope unit";
+    case HowTo::CalibrateEach:
+      return "to the page Several recordings";
+    case HowTo::LimitTime:
+      return "the time range";
+    case HowTo::UseDetections:
+      return "the old detections";
+    case HowTo::Option:
+      return "the option %1";
+  }
+  return "";
 }
 
 }  // namespace evical::ui

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Messages of core speak of session files and commands; the window has forms and pages.
+// Core's messages in the window: of its forms and pages.
 #pragma once
 
-#include <QString>
-#include <QStringList>
+#include "core/base/how_to.h"
 
 namespace evical::ui {
 
-QString inWindowWords(QString text);
-
-// The pieces of core's messages that are replaced.
-QStringList piecesOfCoresMessages();
+const char* windowWords(HowTo way);
 
 }  // namespace evical::ui

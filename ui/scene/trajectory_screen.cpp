@@ -279,7 +279,7 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
   d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
   for (std::size_t k = 0; k < lenses.size(); ++k) {
     if (!lenses[k].seen_with) continue;
-    setDetections({run, &run->pass.cameras[k]}, *lenses[k].seen_with, k);
+    setDetections(sharedViews({run, &run->pass.cameras[k]}), *lenses[k].seen_with, k);
   }
 }
 
@@ -299,12 +299,12 @@ void TrajectoryScreen::Private::sample(std::shared_ptr<const CalibrationState> n
   });
 }
 
-void TrajectoryScreen::setDetections(std::shared_ptr<const BoardObservations> observations,
-                                     const CameraIntrinsics& intrinsics, std::size_t camera) {
-  if (!observations || !d_->board) return;
+void TrajectoryScreen::setDetections(SharedViews views, const CameraIntrinsics& intrinsics,
+                                     std::size_t camera) {
+  if (!d_->board) return;
   if (d_->pose_inputs.size() <= camera) d_->pose_inputs.resize(camera + 1);
   const Board& board = camera < d_->seen_boards.size() ? d_->seen_boards[camera].board : *d_->board;
-  d_->pose_inputs[camera] = {std::move(observations), intrinsics, board};
+  d_->pose_inputs[camera] = {std::move(views), intrinsics, board};
   d_->estimatePoses();
 }
 
@@ -312,7 +312,7 @@ void TrajectoryScreen::Private::estimatePoses() {
   poses_job.start([this, inputs = pose_inputs, before = view_poses](const std::stop_token& stop) {
     std::vector<ViewPoses> poses(inputs.size());
     for (std::size_t k = 0; k < inputs.size(); ++k) {
-      if (!inputs[k].observations) continue;
+      if (inputs[k].views.empty()) continue;
       poses[k] = estimateViewPoses(inputs[k], k < before.size() ? before[k] : ViewPoses{}, stop);
     }
     return [this, poses] { showViewPoses(poses); };

@@ -4,9 +4,9 @@
 // on the first camera's clock.
 #pragma once
 
-#include "core/data/board_observations.h"
 #include "core/data/calibration_state.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
+#include "ui/jobs/live_view.h"
 #include "ui/scene/frustum_events.h"
 #include "ui/scene/trajectory_scene.h"
 
@@ -40,8 +40,7 @@ class TrajectoryScreen : public QWidget {
   // While a calibration runs: the estimate so far, and before there is one the board views so far, from which
   // poses are computed (again given with more views: only the new ones).
   void setState(std::shared_ptr<const CalibrationState> state);
-  void setDetections(std::shared_ptr<const BoardObservations> observations,
-                     const CameraIntrinsics& intrinsics, std::size_t camera = 0);
+  void setDetections(SharedViews views, const CameraIntrinsics& intrinsics, std::size_t camera = 0);
 
   // Asked in the GUI thread for what can be looked up now, whenever the cursor moves while the page is in view.
   void setEventSource(std::function<EventLookup()> source);

@@ -11,13 +11,12 @@ namespace {
 constexpr std::size_t kViewsAtOnce = 32;  // some 20 ms, so that stopping is prompt
 
 bool continues(const ViewPoseInput& input, const ViewPoses& before) {
-  if (!before.of.observations || before.views_done == 0) return false;
+  if (before.views_done == 0) return false;
   if (before.of.intrinsics != input.intrinsics || before.of.board != input.board) return false;
-  const std::vector<BoardView>& old = before.of.observations->views;
-  const std::vector<BoardView>& now = input.observations->views;
+  const SharedViews &old = before.of.views, &now = input.views;
   const std::size_t last = before.views_done - 1;
-  return now.size() > last && now.front().time_s == old.front().time_s &&
-         now[last].time_s == old[last].time_s;
+  return now.size() > last && now.front()->time_s == old.front()->time_s &&
+         now[last]->time_s == old[last]->time_s;
 }
 
 }  // namespace
@@ -26,12 +25,12 @@ ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before,
   ViewPoses result;
   if (continues(input, before)) result = before;
   result.of = input;
-  const std::vector<BoardView>& views = input.observations->views;
-  CameraData some{input.observations->camera, givenLens(input.intrinsics), {}};
+  const SharedViews& views = input.views;
+  CameraData some{{}, givenLens(input.intrinsics), {}};
   while (result.views_done < views.size() && !stop.stop_requested()) {
     const std::size_t end = std::min(result.views_done + kViewsAtOnce, views.size());
-    some.observations.views.assign(views.begin() + static_cast<std::ptrdiff_t>(result.views_done),
-                                   views.begin() + static_cast<std::ptrdiff_t>(end));
+    some.observations.views.clear();
+    for (std::size_t k = result.views_done; k < end; ++k) some.observations.views.push_back(*views[k]);
     const CameraPoses found = estimateCameraPoses(some, input.board, InitialisationOptions{});
     for (CameraPose pose : found.poses) {
       pose.view += result.views_done;

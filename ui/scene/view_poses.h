@@ -4,15 +4,15 @@
 #pragma once
 
 #include "core/initialisation/camera_poses.h"
+#include "ui/jobs/live_view.h"
 
-#include <memory>
 #include <stop_token>
 #include <vector>
 
 namespace evical::ui {
 
 struct ViewPoseInput {
-  std::shared_ptr<const BoardObservations> observations;
+  SharedViews views;
   CameraIntrinsics intrinsics;
   Board board;
 };

@@ -55,7 +55,7 @@ QString titleOf(AssessedThing thing) {
 
 QString sentence(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
-  if (!text.isEmpty() && !text.endsWith('.')) text += '.';
+  if (!text.isEmpty() && !text.endsWith('.') && !text.endsWith('?')) text += '.';
   return text;
 }
 

@@ -2,6 +2,7 @@
 #include "ui/window/error_panel.h"
 
 #include "ui/forms/repair_button.h"
+#include "ui/screens/check_words.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>
@@ -19,12 +20,6 @@ QLabel* errorLabel(QWidget* parent) {
   label->setTextFormat(Qt::PlainText);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
-}
-
-QString sentence(QString text) {
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
-  if (!text.isEmpty() && !text.endsWith('.') && !text.endsWith('?')) text += '.';
-  return text;
 }
 
 }  // namespace

@@ -158,8 +158,7 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
   for (const ExportTarget& target : exportTargets()) {
     const std::string name = target.name;
     const bool always = name == kAlways;
-    const QString description = QString::fromUtf8(target.description);
-    const QString program = description.section(": ", 0, 0), files = description.section(": ", 1);
+    const QString program = QString::fromUtf8(target.program), files = QString::fromUtf8(target.files);
     const QString use = target.inertial_odometry ? tr("VIO - %1").arg(tr(target.use)) : tr(target.use);
     auto* const item =
         new QTreeWidgetItem(targets_, {always ? tr("%1 (always)").arg(program) : program, use, files});

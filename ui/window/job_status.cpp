@@ -59,7 +59,9 @@ void JobStatus::setProgress(const JobProgress& progress) {
     time_left_->clear();
     return;
   }
-  what_->setText(progress.stage.isEmpty() ? runner_.title() : runner_.title() + ": " + progress.stage);
+  QStringList what = {runner_.title(), progress.part, progress.stage};
+  what.removeAll(QString());
+  what_->setText(what.join(": "));
   time_left_->setText(progress.remaining_s < 0.0 ? tr("%1 %").arg(100.0 * progress.fraction, 0, 'f', 0)
                                                  : tr("%1 %, about %2 left")
                                                        .arg(100.0 * progress.fraction, 0, 'f', 0)

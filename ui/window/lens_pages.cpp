@@ -89,8 +89,10 @@ void wireLensDetection(DetectionScreen& screen, Workbench& workbench) {
 // Those that hold a camera without a rig; what ROS and Kalibr take are files of the lens itself.
 std::vector<std::pair<QString, QString>> programsForLenses() {
   std::vector<std::pair<QString, QString>> programs;
-  for (const char* const name : {"opencv", "metavision", "dv-processing", "ekalibr", "matlab", "numpy"})
-    programs.emplace_back(name, QString::fromUtf8(exportTarget(name, {}).description));
+  for (const char* const name : {"opencv", "metavision", "dv-processing", "ekalibr", "matlab", "numpy"}) {
+    const ExportTarget& target = exportTarget(name, {});
+    programs.emplace_back(name, QString("%1: %2").arg(target.program, target.files));
+  }
   return programs;
 }
 

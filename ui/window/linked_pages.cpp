@@ -97,7 +97,7 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
                    [&screen, &document](const std::shared_ptr<const LiveDetections>& cameras) {
                      const auto intrinsics = intrinsicsOf(document.session());
                      for (std::size_t k = 0; k < std::min(cameras->size(), intrinsics.size()); ++k)
-                       if (intrinsics[k]) screen.setDetections((*cameras)[k], *intrinsics[k], k);
+                       if (intrinsics[k]) screen.setDetections((*cameras)[k].views, *intrinsics[k], k);
                    });
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
                    [&screen, &document](const std::shared_ptr<const LiveIterations>& iterations) {

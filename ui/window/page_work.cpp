@@ -18,14 +18,13 @@ namespace evical::ui {
 namespace {
 
 // "bag_2 (2 of 3): Read and detect".
-QString wordsOf(const QString& name) {
-  const QString last = name.section(": ", -1);
-  QString title = last;
+QString titleOf(const JobProgress& progress) {
+  QString title = progress.stage;
   for (const StageRow& row : kCalibrationStages)
-    if (last == row.name) title = QObject::tr(row.title);
+    if (title == row.name) title = QObject::tr(row.title);
   for (const MaintainStage& stage : kMaintainStages)
-    if (last == stage.name) title = QObject::tr(stage.title);
-  return name.left(name.size() - last.size()) + title;
+    if (title == stage.name) title = QObject::tr(stage.title);
+  return progress.part.isEmpty() ? title : progress.part + ": " + title;
 }
 
 }  // namespace
@@ -36,7 +35,7 @@ void wireWork(WorkBar& bar, JobRunner& runner, std::function<bool()> own) {
   QObject::connect(&runner, &JobRunner::started, &bar, show);
   QObject::connect(&runner, &JobRunner::finished, &bar, show);
   QObject::connect(&runner, &JobRunner::progressed, &bar, [&bar](const JobProgress& progress) {
-    bar.setProgress(wordsOf(progress.stage), progress.fraction);
+    bar.setProgress(titleOf(progress), progress.fraction);
   });
 }
 

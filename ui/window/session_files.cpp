@@ -73,7 +73,7 @@ Scenario demoScenario() {
 
 // "Kalibr", as the list of targets has it.
 QString programOf(const std::string& target) {
-  return QString::fromUtf8(exportTarget(target, {}).description).section(": ", 0, 0);
+  return QString::fromUtf8(exportTarget(target, {}).program);
 }
 
 // The job's part. A folder that was made for it goes away again where nothing came of it.

@@ -28,32 +28,13 @@ QString capitalised(QString text) {
   return text;
 }
 
-const BoardObservations& observationsOf(const BoardObservations& camera) {
-  return camera;
-}
-const BoardObservations& observationsOf(const std::shared_ptr<const BoardObservations>& camera) {
-  return *camera;
-}
-
-template <class Cameras>
-QString windowCounts(const Cameras& cameras) {
-  std::size_t views = 0, windows = 0;
-  for (const auto& camera : cameras) {
-    views += observationsOf(camera).views.size();
-    windows += observationsOf(camera).windows.size();
-  }
+QString windowCounts(std::size_t views, std::size_t windows) {
   return QObject::tr("board in %1 of %2 windows").arg(views).arg(windows);
 }
 
 // "pass 2" gives "Pass 2: detect, fit the lens".
 QString passTitle(const QString& stage) {
   return QObject::tr("%1: detect, fit").arg(capitalised(stage));
-}
-
-// "left: 0.0060 s" gives "0.0060 s": room is scarce, and the tool tip says all of it.
-QString withoutSensor(const QString& text) {
-  const qsizetype colon = text.indexOf(": ");
-  return colon < 0 ? text : text.mid(colon + 2);
 }
 
 QString costText(double cost, int iterations) {
@@ -99,35 +80,33 @@ void StepsPanel::setAim(CalibrationAim aim) {
 
 void StepsPanel::addStages() {
   if (aim_ == CalibrationAim::Camera) {
-    addRow(nameOf(CalibrationStage::FirstLook), tr(rowOf(CalibrationStage::FirstLook).title), false);
-    addRow(IntrinsicsJob::passName(1), passTitle(IntrinsicsJob::passName(1)), false);
+    addRow(nameOf(CalibrationStage::FirstLook), tr(rowOf(CalibrationStage::FirstLook).title));
+    addRow(IntrinsicsJob::passName(1), passTitle(IntrinsicsJob::passName(1)));
     return;
   }
   for (const StageRow& stage : kCalibrationStages) {
     if (!isInEveryRun(stage)) continue;
-    addRow(stage.name, tr(stage.title), false);
+    addRow(stage.name, tr(stage.title));
     if (stage.stage != CalibrationStage::Initialise) continue;
-    for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), true);
+    for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), stage.stage);
   }
 }
 
-StepRow* StepsPanel::addRow(const QString& key, const QString& title, bool sub_step) {
-  auto* const added = new StepRow(title, sub_step, this);
-  StepRow* const next = rowAfter(key, sub_step);
+StepRow* StepsPanel::addRow(const QString& key, const QString& title,
+                            std::optional<CalibrationStage> step_of) {
+  auto* const added = new StepRow(title, step_of.has_value(), this);
+  StepRow* const next = rowAfter(key, step_of);
   layout_->insertWidget(next ? layout_->indexOf(next) : layout_->count() - 1, added);  // before the stretch
   rows_[key] = added;
   return added;
 }
 
-// Steps that nobody announced come at the end of their stage: those of the batch, "stage 1" and so on, and
-// those of the initialisation.
-StepRow* StepsPanel::rowAfter(const QString& key, bool sub_step) {
-  const CalibrationStage of_step =
-      key.startsWith("stage ") ? CalibrationStage::Optimise : CalibrationStage::Initialise;
+// Steps that nobody announced come at the end of their stage.
+StepRow* StepsPanel::rowAfter(const QString& key, std::optional<CalibrationStage> step_of) {
   bool passed = false;
   for (const StageRow& stage : kCalibrationStages) {
     if (StepRow* const candidate = passed ? row(stage.name) : nullptr) return candidate;
-    if (sub_step ? stage.stage == of_step : key == stage.name) passed = true;
+    if (step_of ? stage.stage == *step_of : key == stage.name) passed = true;
   }
   return nullptr;
 }
@@ -150,7 +129,7 @@ void StepsPanel::startPass(const QString& stage) {
     delete first_look;
     rows_.erase(nameOf(CalibrationStage::FirstLook));
   }
-  if (row(stage) == nullptr) addRow(stage, passTitle(stage), false);
+  if (row(stage) == nullptr) addRow(stage, passTitle(stage));
 }
 
 void StepsPanel::startStage(const QString& stage) {
@@ -158,7 +137,7 @@ void StepsPanel::startStage(const QString& stage) {
   for (const StageRow& known : kCalibrationStages) {
     if (aim_ == CalibrationAim::Camera) break;
     if (stage == known.name) {
-      if (row(stage) == nullptr) addRow(stage, tr(known.title), false);
+      if (row(stage) == nullptr) addRow(stage, tr(known.title));
       break;
     }
     if (StepRow* const before = row(known.name); before != nullptr && before->state() == StepState::Running)
@@ -187,14 +166,20 @@ void StepsPanel::setDetections(const LiveDetections& detections) {
   if (elapsed_s_ >= counted_s_ && elapsed_s_ < counted_s_ + kReadable_s) return;
   counted_s_ = elapsed_s_;
   StepRow* const step = aim_ == CalibrationAim::Camera ? row(stage_) : row(CalibrationStage::Detect);
-  if (step != nullptr) step->setKeyNumber(windowCounts(detections));
+  std::size_t views = 0, windows = 0;
+  for (const LiveCamera& camera : detections) {
+    views += camera.views.size();
+    windows += camera.windows;
+  }
+  if (step != nullptr) step->setKeyNumber(windowCounts(views, windows));
 }
 
 void StepsPanel::addInitialisationNote(const InitialisationNote& note) {
   StepRow* step = row(note.step);
-  if (step == nullptr) step = addRow(note.step, capitalised(note.step), true);
+  if (step == nullptr) step = addRow(note.step, capitalised(note.step), CalibrationStage::Initialise);
   step->setState(StepState::Done);
-  step->setKeyNumber(withoutSensor(note.result), note.result);
+  // Room is scarce: the tool tip says of which sensor it is.
+  step->setKeyNumber(note.result, note.subject.isEmpty() ? note.result : note.subject + ": " + note.result);
   step->setTime(note.duration_s);
 }
 
@@ -208,7 +193,7 @@ void StepsPanel::setIterations(const LiveIterations& iterations) {
   for (const auto& [stage, numbers] : stages) {
     const QString key = QString("stage %1").arg(stage);
     StepRow* step = row(key);
-    if (step == nullptr) step = addRow(key, capitalised(key), true);
+    if (step == nullptr) step = addRow(key, capitalised(key), CalibrationStage::Optimise);
     step->setState(stage == stages.rbegin()->first ? StepState::Running : StepState::Done);
     step->setKeyNumber(costText(numbers.first, numbers.second));
   }
@@ -257,7 +242,12 @@ void StepsPanel::setRun(const CalibrationRun& run) {
       row(stage.stage)->setState(StepState::Done);
   }
   StepRow* const detect = row(CalibrationStage::Detect);
-  detect->setKeyNumber(windowCounts(run.pass.cameras));
+  std::size_t views = 0, windows = 0;
+  for (const BoardObservations& camera : run.pass.cameras) {
+    views += camera.views.size();
+    windows += camera.windows.size();
+  }
+  detect->setKeyNumber(windowCounts(views, windows));
   detect->setTime(std::max(result.timing.read_s, result.timing.detect_s));
   QStringList reprojections;
   for (const CameraFit& camera : result.cameras)

@@ -11,6 +11,7 @@
 #include <QWidget>
 
 #include <map>
+#include <optional>
 
 class QVBoxLayout;
 
@@ -42,8 +43,10 @@ class StepsPanel : public QWidget {
   void dropUnusedSteps();
   void addStages();
   void startPass(const QString& stage);
-  StepRow* addRow(const QString& key, const QString& title, bool sub_step);
-  StepRow* rowAfter(const QString& key, bool sub_step);  // null: none comes after it
+  // `step_of`: the stage that it is a step of; none: it is a stage.
+  StepRow* addRow(const QString& key, const QString& title, std::optional<CalibrationStage> step_of = {});
+  StepRow* rowAfter(const QString& key,
+                    std::optional<CalibrationStage> step_of);  // null: none comes after it
   StepRow* row(const QString& key);
   StepRow* row(CalibrationStage stage);
 

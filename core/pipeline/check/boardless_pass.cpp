@@ -1,6 +1,7 @@
 #include "core/pipeline/check/boardless_pass.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/data/calibration_stage.h"
 #include "core/frontend/front_end_options.h"
 #include "core/pipeline/check/camera_motion.h"
@@ -78,8 +79,8 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
         throw badInput(
             session.recording.string(),
             fmt::format("stream {} holds no events{}", session.cameras[pass.cameras.size() - 1].stream,
-                        session.time_range_s ? " in time_range_s" : ""),
-            "Check the recording with 'evical inspect'");
+                        session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
+            "Check the recording " + howTo(HowTo::Inspect));
     }
     const std::vector<RecordingFault> faults = recording.faults();
     pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());

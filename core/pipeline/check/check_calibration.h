@@ -17,7 +17,7 @@ struct CheckRun {
   RecordingPass pass;                         // where there is none: what was read and detected until then
 };
 
-// Before the stages of the second run, which has the old result as prior (prefixedStage).
+// The part of the second run, which has the old result as prior.
 inline constexpr const char* kTogetherPart = "with the old result";
 
 // Where the board is hardly ever seen, or is not to be looked for, that of check_without_board.h. A recording that tells

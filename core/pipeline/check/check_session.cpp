@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_places.h"
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/data/quantity.h"
 #include "core/pipeline/compare/compared_quantities.h"
@@ -89,7 +90,7 @@ Session sessionFor(const CheckPaths& paths) {
     if (!kept)
       throw badInput(paths.result.string(),
                      "there is no run_session.yaml beside it, which says board and sensors",
-                     "Give the session of the new recording by --session");
+                     "Give the session of the new recording by " + howTo(HowTo::Option, {"session"}));
     session = std::move(*kept);
   }
   setRecording(paths.recording, session);

@@ -36,7 +36,7 @@ const char* adviceFor(WindowUse use) {
     case WindowUse::Uncertain:
       return "Record where the image has edges in all directions";
     case WindowUse::NoGyroscope:
-      return "Check the IMU's samples with 'evical inspect': they do not cover the camera's events";
+      return "Check the IMU's samples: they do not cover the camera's events";
     case WindowUse::OutOfLine:
       return "Check that the lens and the IMU's units are those of this rig";
     case WindowUse::Used:

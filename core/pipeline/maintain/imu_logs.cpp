@@ -1,6 +1,7 @@
 #include "core/pipeline/maintain/imu_logs.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/recording/separate_imu.h"
 
@@ -18,6 +19,12 @@ std::vector<std::string> namesOf(const NamedResult& before) {
   return names;
 }
 
+// As a recording names it once its sensors are joined.
+std::string joinedStreamOf(const SensorDescription& imu) {
+  return imu.accelerometer_stream.empty() ? imu.stream
+                                          : nameOf(SeparateImu{imu.stream, imu.accelerometer_stream});
+}
+
 std::optional<std::size_t> onlyOne(const std::vector<std::size_t>& found) {
   return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
 }
@@ -30,7 +37,7 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   const std::vector<std::string> names = namesOf(before);
   for (const auto& [name, stream] : settings.streams)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw badInput("--imu " + name + "=" + stream, "the old result has no IMU of this name",
+      throw badInput(howTo(HowTo::NameLogOfImu, {name, stream}), "the old result has no IMU of this name",
                      names.empty() ? "It has no IMUs at all" : nameAdvice(name, names));
   std::size_t streams = 0;
   for (const std::filesystem::path& log : logs)
@@ -77,14 +84,15 @@ std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& str
     if (said == settings_.streams.end()) continue;
     const bool is_log = said->second == log.string() || said->second == log.filename().string();
     // Of a log with several, the one that is called so.
-    if (said->second == stream.name || (is_log && (alone || stream.name == before_.imus[i].stream))) return i;
+    if (said->second == stream.name || (is_log && (alone || stream.name == joinedStreamOf(before_.imus[i]))))
+      return i;
   }
   std::vector<std::size_t> by_stream, by_name, open;
   for (std::size_t i = 0; i < before_.imus.size(); ++i) {
     const SensorDescription& imu = before_.imus[i];
     if (settings_.streams.contains(imu.name)) continue;
     open.push_back(i);
-    if (!imu.stream.empty() && imu.stream == stream.name) by_stream.push_back(i);
+    if (!imu.stream.empty() && joinedStreamOf(imu) == stream.name) by_stream.push_back(i);
     if (imu.name == stream.name || imu.name == log.stem().string()) by_name.push_back(i);
   }
   if (const auto found = onlyOne(by_name)) return found;
@@ -144,8 +152,8 @@ void ImuLogs::match(bool only_one) {
   for (const auto& [name, stream] : settings_.streams) {
     const auto there = [&, wanted = name](std::size_t imu) { return before_.imus[imu].name == wanted; };
     if (std::none_of(imus_.begin(), imus_.end(), there))
-      throw badInput("--imu " + name + "=" + stream, "there is no such stream or log",
-                     "See 'evical inspect' for the streams' names");
+      throw badInput(howTo(HowTo::NameLogOfImu, {name, stream}), "there is no such stream or log",
+                     "See the streams' names " + howTo(HowTo::Inspect));
   }
   std::erase_if(streams_.files(), [](const Log& log) { return log.streams.empty(); });
 }
@@ -161,16 +169,15 @@ void ImuLogs::refuseUnknown() const {
   const std::vector<std::string> names = namesOf(before_);
   if (names.empty())
     throw badInput(where, "the old result has no IMUs", "Give the result of a calibration with IMUs");
-  throw badInput(
-      where,
-      fmt::format("the old result does not know the IMU of it: streams {}, IMUs of the result {}",
-                  joined(streams), joined(names)),
-      streams.size() < 2
-          ? fmt::format("Say which it is: --imu {}={}", names.front(), streams.front())
-          : fmt::format(
-                "Say which it is: --imu {0}={1}; if the gyroscope and the accelerometer have separate "
-                "streams: --imu {0}='GYROSCOPE + ACCELEROMETER'",
-                names.front(), streams.front()));
+  const std::string which =
+      "Say which it is: " + howTo(HowTo::NameLogOfImu, {names.front(), streams.front()});
+  throw badInput(where,
+                 fmt::format("the old result does not know the IMU of it: streams {}, IMUs of the result {}",
+                             joined(streams), joined(names)),
+                 streams.size() < 2
+                     ? which
+                     : which + "; if the gyroscope and the accelerometer have separate streams: " +
+                           howTo(HowTo::NameLogOfImu, {names.front(), "'GYROSCOPE + ACCELEROMETER'"}));
 }
 
 const StreamInfo& ImuLogs::stream(std::size_t imu) const {
@@ -205,7 +212,8 @@ void ImuLogs::checkOrder(const Log& log) {
     throw badInput(log.path.string(),
                    fmt::format("has samples of the IMU '{}' at times at which another log has some, too",
                                before_.imus[log.next.sensor].name),
-                   "Say which log is of which IMU: --imu NAME=LOG; or give logs that follow each other");
+                   "Say which log is of which IMU: " + howTo(HowTo::NameLogOfImu, {"NAME", "LOG"}) +
+                       "; or give logs that follow each other");
   latest = {samples.back().time_ns, &log};
 }
 

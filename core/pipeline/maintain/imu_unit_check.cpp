@@ -1,6 +1,7 @@
 #include "core/pipeline/maintain/imu_unit_check.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/numerics/robust.h"
 
 #include <fmt/format.h>
@@ -25,26 +26,26 @@ void checkUnits(const ImuMeans& imu) {
   if (norm > 0.3 && norm < 3.0)
     throw badInput(imu.name,
                    fmt::format("its specific force is {:.2f} m/s^2 on average: the log is in g", norm),
-                   "Give --acceleration-unit g");
+                   "Give " + howTo(HowTo::SetAccelerationUnit, {"g"}));
   if (norm > 30.0)
     throw badInput(imu.name,
                    fmt::format("its specific force is {:.0f} m/s^2 on average: the log is in m/s^2 already, "
                                "or in thousandths of g",
                                norm),
-                   "Give --acceleration-unit m/s^2, or convert the log");
+                   "Give " + howTo(HowTo::SetAccelerationUnit, {"m/s^2"}) + ", or convert the log");
   const double scale = rateScale(imu.windows);
   if (scale > 0.01 && scale < 0.03)
     throw badInput(
         imu.name,
         fmt::format("gravity turns {:.0f} times more slowly than its gyroscope says: the rates are in deg/s",
                     1.0 / scale),
-        "Give --angular-rate-unit deg/s");
+        "Give " + howTo(HowTo::SetAngularRateUnit, {"deg/s"}));
   if (scale > 30.0 && scale < 100.0)
     throw badInput(
         imu.name,
         fmt::format("gravity turns {:.0f} times faster than its gyroscope says: the rates are in rad/s",
                     scale),
-        "Give --angular-rate-unit rad/s");
+        "Give " + howTo(HowTo::SetAngularRateUnit, {"rad/s"}));
 }
 
 void checkDirection(const ImuMeans& own, const ImuMeans& reference,
@@ -68,7 +69,8 @@ void checkDirection(const ImuMeans& own, const ImuMeans& reference,
                  fmt::format("its specific force points against that of {}: one of the two logs has the "
                              "direction of gravity, or that one was mounted upside down",
                              reference.name),
-                 "Convert the log of that one (--acceleration-unit -g is for all), or calibrate again");
+                 "Convert the log of that one (" + howTo(HowTo::SetAccelerationUnit, {"-g"}) +
+                     " is for all), or calibrate again");
 }
 
 }  // namespace evical

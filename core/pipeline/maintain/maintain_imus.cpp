@@ -1,6 +1,7 @@
 #include "core/pipeline/maintain/maintain_imus.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
@@ -95,12 +96,12 @@ void checkBothSensors(const std::string& imu, const std::string& stream,
   const bool alternating = imuStreamKind(whole) == ImuStreamKind::Alternating;
   if (samples.empty() || (rates && forces && !alternating)) return;
   if (alternating)
-    throw badInput(imu,
-                   fmt::format("the messages of {} alternate between gyroscope and accelerometer", stream),
-                   fmt::format("Name it for both sensors: --imu {}='{} + {}'", imu, stream, stream));
+    throw badInput(
+        imu, fmt::format("the messages of {} alternate between gyroscope and accelerometer", stream),
+        "Name it for both sensors: " + howTo(HowTo::NameLogOfImu, {imu, fmt::format("'{0} + {0}'", stream)}));
   throw badInput(
       imu, fmt::format("{} has no measurements of the {}", stream, rates ? "accelerometer" : "gyroscope"),
-      fmt::format("Name both streams: --imu {}='GYROSCOPE + ACCELEROMETER'", imu));
+      "Name both streams: " + howTo(HowTo::NameLogOfImu, {imu, "'GYROSCOPE + ACCELEROMETER'"}));
 }
 
 class Maintainer {
@@ -235,7 +236,8 @@ void Maintainer::agreeClocks(const std::vector<Looked>& seen) {
             fmt::format("its rates are {:.1f} times those of {}: one of the two is in deg/s and the "
                         "log says rad/s, or the other way round",
                         clocks.ratio, name(imus_.front())),
-            "Convert the log of that one, or give --angular-rate-unit where all are in one unit");
+            "Convert the log of that one, or give " + howTo(HowTo::SetAngularRateUnit, {"UNIT"}) +
+                " where all are in one unit");
     if (std::abs(clocks.later_s) > kNear_s) nominal_[k].time_offset_s += clocks.later_s;
   }
 }
@@ -407,7 +409,7 @@ void Maintainer::advise() {
         "{} does not turn as {} does: their clocks differ by more than {:g} s, or they are not on one body",
         imu, name(imus_.front()), input_.options->time_offset_search_s));
     maintenance_.advice.emplace_back(
-        "Record the IMUs on one clock, or search further: --set maintain.time_offset_search_s=...");
+        "Record the IMUs on one clock, or search further (maintain.time_offset_search_s)");
   }
   // Numbers of IMUs that do not move together mean nothing, changed or not.
   if (!disagreeing_.empty()) {

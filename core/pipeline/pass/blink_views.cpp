@@ -1,5 +1,6 @@
 #include "core/pipeline/pass/blink_views.h"
 
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frames/blink_options.h"
 #include "core/frames/frame_options.h"
@@ -40,9 +41,8 @@ void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& 
       fmt::format("something blinks, but a {} of {} x {} was never found in {} pictures of its flashes ({})",
                   boardTypeName(board.type), board.rows, board.cols, observations.windows.size(),
                   outcomes(observations)),
-      "Check type, rows and cols of the session's board, that it is in focus and large enough in the image, "
-      "and that the "
-      "camera all but stands still");
+      "Check type, rows and columns of the board, that it is in focus and large enough in the image, "
+      "and that the camera all but stands still");
 }
 
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera) {
@@ -80,9 +80,9 @@ std::optional<CalibrationError> unexpectedBlink(const Session& session, std::siz
       session.cameras[camera].name,
       fmt::format("the board was never found, and what is seen blinks at {:.0f} Hz ({:.0f} % of the events)",
                   1.0 / notice.blink()->period_s, 100.0 * notice.blink()->share),
-      "If the board is on a screen that flashes, say blinking: true in the session's board and use 'evical "
-      "intrinsics'; "
-      "if a lamp flickers, use daylight or a lamp on direct current");
+      "If the board is on a screen that flashes, " + howTo(HowTo::SayThatBoardFlashes) +
+          " and calibrate the camera " + howTo(HowTo::CalibrateLens) +
+          "; if a lamp flickers, use daylight or a lamp on direct current");
 }
 
 }  // namespace evical

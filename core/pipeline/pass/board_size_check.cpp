@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/board_size_check.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 
 #include <fmt/format.h>
 
@@ -91,18 +92,16 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board) {
                 window.outcome == WindowOutcome::RefinementFailed;
   }
   const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
-  throw calibrationFailed(
-      observations.camera,
-      fmt::format("the board was never found in {} windows ({})", observations.windows.size(),
-                  outcomes(observations)),
-      other_board
-          ? fmt::format(
-                "Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
-                "bright) in the session",
-                board.rows, board.cols)
-          : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) "
-            "in the "
-            "session; 'evical detect --images' draws what is seen");
+  throw calibrationFailed(observations.camera,
+                          fmt::format("the board was never found in {} windows ({})",
+                                      observations.windows.size(), outcomes(observations)),
+                          other_board ? fmt::format("Circles in rows are there, but no {} x {} board: check "
+                                                    "rows, columns and circles (dark or bright) {}",
+                                                    board.rows, board.cols, howTo(HowTo::EditBoard))
+                                      : "Check that the board is in view, in focus and moving, and check "
+                                        "rows, columns and circles (dark or bright) " +
+                                            howTo(HowTo::EditBoard) + "; look at what is seen " +
+                                            howTo(HowTo::LookAtDetections));
 }
 
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
@@ -141,7 +140,7 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
                                       : larger          ? "larger than"
                                                         : "smaller than",
                                       board.rows, board.cols, text),
-                          "Check rows and cols in the session");
+                          "Check rows and columns " + howTo(HowTo::EditBoard));
 }
 
 std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board) {
@@ -152,9 +151,9 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
   if (never == 0) return std::nullopt;
   return RecordingFault{
       observations.camera, FaultKind::BoardSize, 0.0,
-      fmt::format("{}: {} of the board's {} {} were seen in none of {} views: check {} in the session",
+      fmt::format("{}: {} of the board's {} {} were seen in none of {} views: check its {}",
                   observations.camera, never, board.pointCount(), board.hasCircles() ? "circles" : "points",
-                  observations.views.size(), board.hasPattern() ? "rows and cols" : "points_m")};
+                  observations.views.size(), board.hasPattern() ? "rows and columns" : "points_m")};
 }
 
 const char* measurementsOf(CameraKind kind) {

@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/camera_views.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/data/calibration_observer.h"
 #include "core/frontend/board_tracker.h"
 #include "core/frontend/front_end_options.h"
@@ -47,8 +48,9 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
     throw badInput(
         session.cameras[first.camera].name,
         std::string("an event camera in motion cannot see a board of type ") + boardTypeName(board.type),
-        "Use a grid of circles; or, for 'evical intrinsics', show this board on a screen that flashes "
-        "('evical board --blink') and say blinking: true in the session's board");
+        "Use a grid of circles; or show this board on a screen that flashes (a page that does is made " +
+            howTo(HowTo::MakeFlashingPage) + "), " + howTo(HowTo::SayThatBoardFlashes) +
+            " and calibrate the camera " + howTo(HowTo::CalibrateLens));
   return std::make_unique<EventViews>(first, request);
 }
 

@@ -1,5 +1,7 @@
 #include "core/pipeline/pass/detections_check.h"
 
+#include "core/base/file_places.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
@@ -11,13 +13,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 namespace evical {
 namespace {
 
-constexpr const char* kAnother =
-    "Give the folder of a run of this session, or leave --detections out to detect the board anew";
+std::string otherFolder() {
+  return "Give the folder of a run of this session, or leave " + howTo(HowTo::UseDetections) +
+         " out to detect the board anew";
+}
 
 std::string inQuotes(const std::string& text) {
   return "'" + text + "'";
@@ -28,7 +31,7 @@ void checkSame(const YamlNode& map, const char* key, const std::string& session,
   if (node.text() != session)
     throw node.error(fmt::format("the detections are of {} {}, the session is of {}", what,
                                  inQuotes(node.text()), inQuotes(session)),
-                     kAnother);
+                     otherFolder());
 }
 
 // A board that was measured once more is still the same one: what is held against it is how its sizes are to each
@@ -44,7 +47,7 @@ void checkSizes(const YamlNode& map, const Board& board) {
           fmt::format("the detections are of a board on which it is {:.3f} of the spacing, in the "
                       "session it is {:.3f}",
                       then, now),
-          kAnother);
+          otherFolder());
   };
   check("radius_m", board.radius_m);
   check("tag_size_m", board.tag_size_m);
@@ -58,14 +61,14 @@ void checkPoints(const YamlNode& said, const Board& board) {
   if (then_m.size() != board.given_m.size())
     throw node.error(fmt::format("the detections are of a board of {} points, the session's has {}",
                                  then_m.size(), board.given_m.size()),
-                     kAnother);
+                     otherFolder());
   for (std::size_t i = 0; i < then_m.size(); ++i)
     if ((then_m[i] - board.given_m[i]).norm() > kMeasuredAgain * board.spacing_m)
       throw node.error(
           fmt::format("the detections are of a board whose point {} is at {}, {} m, in the session it "
                       "is at {}, {} m",
                       i, then_m[i].x(), then_m[i].y(), board.given_m[i].x(), board.given_m[i].y()),
-          kAnother);
+          otherFolder());
 }
 
 void checkTimeRange(const YamlNode& root, const Session& session) {
@@ -78,7 +81,8 @@ void checkTimeRange(const YamlNode& root, const Session& session) {
       fmt::format(
           "the detections are of {} to {} s, the session is of {}", seen_s[0], seen_s[1],
           wanted_s ? fmt::format("{} to {} s", (*wanted_s)[0], (*wanted_s)[1]) : "all of the recording"),
-      "Give the session a time_range_s within it, or leave --detections out to detect the board anew");
+      "Give the session " + howTo(HowTo::LimitTime) + " within it, or leave " + howTo(HowTo::UseDetections) +
+          " out to detect the board anew");
 }
 
 void logOptions(const YamlNode& map, const Session& session, const RunContext& context) {
@@ -103,18 +107,16 @@ void logOptions(const YamlNode& map, const Session& session, const RunContext& c
 
 YamlNode loadDetections(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "detections.yaml";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
-    throw badInput(
-        file.string(), "is not there",
-        "Give the result folder of `evical calibrate` or `evical detect`; what an earlier version wrote "
-        "has to be detected once more");
+  if (!isThere(file))
+    throw badInput(file.string(), "is not there",
+                   "Give the result folder of a calibration or a detection; what an earlier version wrote "
+                   "has to be detected once more");
   YamlNode root = YamlNode::load(file);
   if (!root.isMap() || !root.has("evical_detections"))
-    throw root.error("holds no detections: the key evical_detections is missing", kAnother);
+    throw root.error("holds no detections: the key evical_detections is missing", otherFolder());
   root["evical_detections"].integer(1, 1);
   const YamlNode start = root["start_ns"];
-  if (!isTime(start.nanoseconds())) throw start.error("is no time", kAnother);
+  if (!isTime(start.nanoseconds())) throw start.error("is no time", otherFolder());
   return root;
 }
 
@@ -147,14 +149,14 @@ YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera) 
     for (const std::string& name : cameras.keys()) names += (names.empty() ? "" : ", ") + name;
     throw cameras.error(
         fmt::format("the session's camera {} is missing; there are: {}", inQuotes(camera.name), names),
-        kAnother);
+        otherFolder());
   }
   checkSame(*map, "stream", camera.stream, "the stream");
   const YamlNode offset = (*map)["clock_offset_s"];
   if (offset.real() != camera.clock_offset_s)
     throw offset.error(fmt::format("the detections are of a clock_offset_s of {}, the session is of {}",
                                    offset.real(), camera.clock_offset_s),
-                       kAnother);
+                       otherFolder());
   return *map;
 }
 
@@ -170,7 +172,7 @@ Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera) {
   if (own.known() && own != seen)
     throw node.error(
         fmt::format("the detections are of {}, the session's camera has {}", sizeText(seen), sizeText(own)),
-        kAnother);
+        otherFolder());
   return seen;
 }
 
@@ -179,13 +181,14 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
   if (!node)
     throw map.error(
         "was detected without intrinsics, and other places would be found with them",
-        "Start from the folder of `evical calibrate`, or give the camera its intrinsics and detect once "
+        "Start from the folder of a calibration, or give the camera its intrinsics and detect once "
         "more");
   CameraIntrinsics seen_with = readIntrinsics(*node);
   if (!camera.intrinsics) {
     if (!map.has("found_first"))
-      throw node->error("the detections are of given intrinsics, the session gives none",
-                        "Give the session the same intrinsics, or leave --detections out");
+      throw node->error(
+          "the detections are of given intrinsics, the session gives none",
+          "Give the session the same intrinsics, or leave " + howTo(HowTo::UseDetections) + " out");
     return seen_with;
   }
   constexpr double kSame_px = 1e-6;
@@ -194,8 +197,9 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
                     (seen_with.resolution_px == given.resolution_px && seen_with.resolution_px.known() &&
                      projectionDifference(seen_with, given).max_px < kSame_px);
   if (!same)
-    throw node->error("the detections are of other intrinsics than the session gives",
-                      "Give the session these, or leave --detections out to detect the board anew");
+    throw node->error(
+        "the detections are of other intrinsics than the session gives",
+        "Give the session these, or leave " + howTo(HowTo::UseDetections) + " out to detect the board anew");
   return seen_with;
 }
 
@@ -216,7 +220,7 @@ void checkOverlap(const Session& session, const RecordingPass& pass) {
           fmt::format("its samples lie at {:.3f} to {:.3f} s, the detections at {:.3f} to {:.3f} s: they "
                       "are of another recording",
                       begin_s, end_s, first_s, last_s),
-          kAnother);
+          otherFolder());
   }
 }
 

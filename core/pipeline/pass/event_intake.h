@@ -17,6 +17,9 @@
 
 namespace evical {
 
+// So many are put in order together: packets are as long as each format has them.
+inline constexpr std::size_t kBatchEvents = 50'000;
+
 enum class EventUse { Bursts, AsTheyAre };
 
 class EventIntake {

@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/merged_streams.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
 
@@ -62,7 +63,7 @@ void setClock(Stream& stream, SensorPacket& packet) {
       throw badInput(
           stream.name,
           "with clock_offset_s and clock_scale its times are centuries away from those of any recording",
-          "Correct these two in the session");
+          "Correct these two " + howTo(HowTo::EditSession));
     }
   });
 }

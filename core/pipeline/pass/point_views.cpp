@@ -48,7 +48,7 @@ void PointViews::checkShare() const {
                     "board's points are 0 to {}",
                     unknown_, seen_, largest_, board_.pointCount() - 1),
         board_.hasPattern()
-            ? "Check type, rows and cols of the board; points are counted row by row, an "
+            ? "Check type, rows and columns of the board; points are counted row by row, an "
               "AprilGrid's four a tag from the bottom left one"
             : "Give all of the board's points in board.points_m, counted as the cameras' are");
   if (kMostShare * outside_ > seen_)

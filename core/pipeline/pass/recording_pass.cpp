@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/recording_pass.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
@@ -27,7 +28,6 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kQueuedBatches = 16;
-constexpr std::size_t kBatchEvents = 50'000;
 
 // The window thread: what each camera saw of the board.
 class WindowWorker {
@@ -231,10 +231,10 @@ class ReadingPass {
 void checkSamples(const Session& session, const RecordingPass& pass) {
   for (const ImuData& imu : pass.imus) {
     if (!imu.samples.empty()) continue;
-    throw badInput(
-        session.recording.string(),
-        fmt::format("IMU {} has no samples{}", imu.name, session.time_range_s ? " in time_range_s" : ""),
-        "Check the recording with 'evical inspect'");
+    throw badInput(session.recording.string(),
+                   fmt::format("IMU {} has no samples{}", imu.name,
+                               session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
+                   "Check the recording " + howTo(HowTo::Inspect));
   }
 }
 
@@ -278,8 +278,8 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
     throw badInput(
         session.recording.string(),
         fmt::format("stream {} holds no {}{}", session.cameras[k].stream, measurementsOf(reading.kind(k)),
-                    session.time_range_s ? " in time_range_s" : ""),
-        "Check the recording with 'evical inspect'");
+                    session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
+        "Check the recording " + howTo(HowTo::Inspect));
   }
   checkSamples(session, result);
   return result;

@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/session_recording.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 
 #include <fmt/format.h>
@@ -95,8 +96,9 @@ void SessionRecording::checkTimed() const {
     throw badInput(
         session_.cameras[camera].name,
         "its pictures have no times, so nothing can be calibrated against them",
-        "Name them by their times in ns, or give a data.csv as EuRoC has it; for its intrinsics alone "
-        "there is 'evical intrinsics'");
+        "Name them by their times in ns, or give a data.csv as EuRoC has it; or, for its intrinsics, "
+        "calibrate the camera " +
+            howTo(HowTo::CalibrateLens));
   }
 }
 
@@ -131,7 +133,7 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
   if (lens && lens->resolution_px.known()) return lens->resolution_px;
   if (info(camera).type == StreamType::Frames) return {};  // the first that is decoded tells
   throw badInput(own.name, "the recording does not say the sensor's resolution",
-                 "Give resolution_px: [width, height] for this camera in the session");
+                 howTo(HowTo::GiveResolution));
 }
 
 std::vector<RecordingFault> SessionRecording::faults() const {

@@ -23,7 +23,7 @@ struct RepeatRun {
   std::size_t own_values_of = 0;  // the recording that the joint result has biases, gravity and offsets of
 };
 
-// Its stages, as progress tells them: those of a calibration behind the recording that is at work (prefixedStage), then
+// Its stages, as progress tells them: those of a calibration of each recording as a part, then
 // the comparison.
 std::string partOfRepeat(const RepeatInput& input, std::size_t recording);
 inline constexpr const char* kComparingStage = "compare";

@@ -2,6 +2,7 @@
 
 #include "core/base/distinct_names.h"
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/pipeline/session/session_of_recording.h"
 
@@ -157,10 +158,11 @@ void checkApart(const std::vector<Session>& sessions) {
       const auto twice =
           std::find_if(own.begin(), own.end(), [&](const auto& file) { return other.contains(file); });
       if (twice == own.end() || !overlap(sessions[k], sessions[j])) continue;
-      throw badInput(twice->string(),
-                     fmt::format("is there twice ({} and {}): a recording says nothing new the second time",
-                                 sessions[j].source.string(), sessions[k].source.string()),
-                     "Name each recording once, or parts of it that do not overlap by time_range_s");
+      throw badInput(
+          twice->string(),
+          fmt::format("is there twice ({} and {}): a recording says nothing new the second time",
+                      sessions[j].source.string(), sessions[k].source.string()),
+          "Name each recording once, or parts of it that do not overlap by " + howTo(HowTo::LimitTime));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "core/pipeline/rig/calibration_checks.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/agreement_check.h"
@@ -79,7 +80,8 @@ void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
     throw badInput(imu.name,
                    fmt::format("{} and {} share only {:.2f} s of {:.2f} s", session.stream,
                                session.accelerometer_stream, std::max(shared_s, 0.0), whole_s),
-                   "Check the timestamps of the two streams, or give time_range_s where both have samples");
+                   "Check the timestamps of the two streams, or give " + howTo(HowTo::LimitTime) +
+                       " where both have samples");
 }
 
 // Drivers that publish the two sensors separately set the values of the other sensor to 0.
@@ -96,8 +98,8 @@ void checkBothSensors(const ImuData& imu, const SessionImu& session) {
                         session.stream)
           : fmt::format("the messages of {} hold {} only, the rest is 0", session.stream,
                         gyroscope ? "angular rates" : "accelerations"),
-      fmt::format("Name both streams in the session, in place of stream: gyroscope: {} and accelerometer: {}",
-                  gyroscope ? session.stream : "STREAM", accelerometer ? session.stream : "STREAM"));
+      howTo(HowTo::NameSeparateStreams,
+            {gyroscope ? session.stream : "STREAM", accelerometer ? session.stream : "STREAM"}));
 }
 
 double durationOf(const BoardObservations& camera) {
@@ -112,10 +114,11 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
   const auto check = [&](const std::string& sensor, double duration_s) {
     if (duration_s >= least_s) return;
     throw withClockRate(
-        calibrationFailed(sensor,
-                          fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}",
-                                      duration_s, least_s, session.time_range_s ? " in time_range_s" : ""),
-                          "Record 20 s or more of varied motion"),
+        calibrationFailed(
+            sensor,
+            fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
+                        least_s, session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
+            "Record 20 s or more of varied motion"),
         session, pass.cameras.front(), pass.imus);
   };
   for (const BoardObservations& camera : pass.cameras) check(camera.camera, durationOf(camera));
@@ -180,21 +183,22 @@ void checkSession(const Session& session) {
         session.source.string() + ": board.blinking",
         "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
         "the sensors' clocks, and the camera must all but stand still before it",
-        "Calibrate each camera's intrinsics with 'evical intrinsics', then move the sensors before a "
-        "printed board of circles");
+        "Calibrate each camera's intrinsics " + howTo(HowTo::CalibrateLens) +
+            ", then move the sensors before a printed board of circles");
   if (session.imus.empty() && session.cameras.size() == 1) {
     throw badInput(
         session.source.string() + ": imus", "there is neither an IMU nor a second camera",
-        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
-        "'evical intrinsics'");
+        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics, calibrate it " +
+            howTo(HowTo::CalibrateLens));
   }
   for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
     if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
-    throw badInput(session.source.string() + ": board",
-                   "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
-                   "against each other",
-                   "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
-                   "there is 'evical intrinsics'");
+    throw badInput(
+        session.source.string() + ": board",
+        "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
+        "against each other",
+        "Use an asymmetric board with an odd number of rows; for its intrinsics, calibrate each camera " +
+            howTo(HowTo::CalibrateLens));
   }
 }
 

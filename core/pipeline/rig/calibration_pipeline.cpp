@@ -1,6 +1,7 @@
 #include "core/pipeline/rig/calibration_pipeline.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/data/calibration_observer.h"
@@ -169,7 +170,7 @@ class Calibration {
     }
     keepLargerParts();
     for (const InitialisationStep& step : initial_.steps)
-      context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
+      context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.text()));
     for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
   }
 
@@ -275,7 +276,7 @@ class Calibration {
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
-                              "Check the board, the lens and the streams in the session")
+                              "Check the board, the lens and the streams " + howTo(HowTo::EditSession))
           .repairedBy(cause.repair);
     if (misfit.doubt.empty() && cause.text.empty()) addDoubt(held, run_.result);
     addDoubt(misfit.doubt, run_.result, "misfit");
@@ -304,7 +305,7 @@ class Calibration {
     tellRejected();
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     for (const InitialisationStep& step : initial_.steps)
-      result.notes.push_back(step.name + ": " + step.result);
+      result.notes.push_back(step.name + ": " + step.text());
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     Timing& timing = result.timing;

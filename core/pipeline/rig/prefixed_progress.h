@@ -1,4 +1,4 @@
-// A part of long work whose stages have the names that other parts have, too: which part it is stands before them.
+// Progress of one part of long work, whose stages have the names that other parts have, too.
 #pragma once
 
 #include "core/base/progress.h"
@@ -9,26 +9,19 @@
 
 namespace evical {
 
-inline std::string prefixedStage(std::string_view prefix, std::string_view stage) {
-  return std::string(prefix).append(": ").append(stage);
-}
-
 class PrefixedProgress final : public ProgressSink {
  public:
-  PrefixedProgress(ProgressSink& progress, std::string prefix)
-      : progress_(progress), prefix_(std::move(prefix)) {}
+  PrefixedProgress(ProgressSink& progress, std::string part) : progress_(progress), part_(std::move(part)) {}
 
-  void stageStarted(std::string_view stage) override {
-    progress_.stageStarted(prefixedStage(prefix_, stage));
-  }
+  void stageStarted(const ProgressStage& stage) override { progress_.stageStarted({stage.name, part_}); }
   void stageProgress(double fraction_of_stage) override { progress_.stageProgress(fraction_of_stage); }
   void log(LogLevel level, std::string_view text) override {
-    progress_.log(level, prefixedStage(prefix_, text));
+    progress_.log(level, part_ + ": " + std::string(text));
   }
 
  private:
   ProgressSink& progress_;
-  std::string prefix_;
+  std::string part_;
 };
 
 }  // namespace evical

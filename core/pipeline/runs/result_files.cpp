@@ -85,7 +85,10 @@ NamedResult namedResult(const Session& session, std::shared_ptr<const Calibratio
   NamedResult named;
   named.reference = session.reference;
   for (const SessionCamera& camera : session.cameras) named.cameras.push_back({camera.name, camera.stream});
-  for (const SessionImu& imu : session.imus) named.imus.push_back({imu.name, imu.joinedStream(), imu.noise});
+  for (const SessionImu& imu : session.imus) {
+    named.imus.push_back({imu.name, imu.stream, imu.noise});
+    named.imus.back().accelerometer_stream = imu.accelerometer_stream;
+  }
   named.boards = {session.board_name};
   for (const FurtherBoard& further : session.further_boards) named.boards.push_back(further.name);
   named.version = version;

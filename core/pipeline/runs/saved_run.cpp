@@ -130,6 +130,7 @@ Session sessionFrom(const NamedResult& named, const std::filesystem::path& folde
     SessionImu& imu = session.imus.emplace_back();
     imu.name = known.name;
     imu.stream = known.stream;
+    imu.accelerometer_stream = known.accelerometer_stream;
     imu.noise = known.noise;
   }
   return session;

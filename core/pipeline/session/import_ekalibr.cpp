@@ -1,3 +1,4 @@
+#include "core/base/file_places.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_sources.h"
 
@@ -5,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <system_error>
 
 namespace evical {
 namespace {
@@ -38,8 +38,7 @@ void readCamera(const ImportSource& source, const YamlNode& entry, ImportedSessi
   const auto intrinsics = value.find("Intrinsics");
   if (intrinsics && !intrinsics->isNull() && !intrinsics->text().empty()) {
     const std::filesystem::path file = besideSource(source, intrinsics->text());
-    std::error_code ignored;
-    if (std::filesystem::exists(file, ignored)) {
+    if (isThere(file)) {
       camera.intrinsics = readIntrinsicsFile(file, camera.name, camera.stream);
     } else {
       imported.notes.push_back(fmt::format("{}: intrinsics {} do not exist here: they will be calibrated",

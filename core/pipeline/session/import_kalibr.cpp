@@ -1,3 +1,4 @@
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_sources.h"
@@ -57,9 +58,8 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
   if (!request.radius_m)
     imported.notes.push_back(
         fmt::format("board: Kalibr's target does not say how large the circles are: {:.4g} mm of radius are "
-                    "assumed; measure, and "
-                    "give --radius-m",
-                    1e3 * board.radius_m));
+                    "assumed; measure, and give {}",
+                    1e3 * board.radius_m, howTo(HowTo::Option, {"radius-m"})));
 }
 
 // Files of Kimera and EuRoC name no topic. Then the recording's only IMU is used.
@@ -69,10 +69,10 @@ std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
     for (const StreamInfo& stream : openRecording(request.recording)->streams())
       if (stream.type == StreamType::Imu) streams.push_back(stream.name);
   if (streams.size() == 1) return streams.front();
-  throw map.error("has no rostopic",
-                  streams.empty()
-                      ? "Add rostopic: with the IMU's topic, or give --recording FILE with one IMU"
-                      : "Add rostopic: with one of " + joined(streams));
+  throw map.error("has no rostopic", streams.empty()
+                                         ? "Add rostopic: with the IMU's topic, or give " +
+                                               howTo(HowTo::Option, {"recording FILE"}) + " with one IMU"
+                                         : "Add rostopic: with one of " + joined(streams));
 }
 
 void readImu(const YamlNode& map, const std::string& key, const ImportRequest& request,
@@ -108,8 +108,8 @@ void readCameras(const YamlNode& root, ImportedSession& imported) {
     camera.intrinsics = readIntrinsics(map);
     camera.resolution_px = camera.intrinsics->resolution_px;
     if (camera.stream.find("image") != std::string::npos)
-      imported.notes.push_back(fmt::format(
-          "{}: {} looks like images: put the topic of the events in the session", key, camera.stream));
+      imported.notes.push_back(fmt::format("{}: {} looks like images: give the topic of the events {}", key,
+                                           camera.stream, howTo(HowTo::EditSession)));
     imported.session.cameras.push_back(std::move(camera));
   }
 }
@@ -122,9 +122,9 @@ const char* nameOf(ImportKind kind) {
 // Before Kalibr has run there is no camchain: then every stream of events is a camera, as `evical init` has it.
 void addRecordedCameras(const ImportRequest& request, ImportedSession& imported) {
   if (request.recording.empty())
-    throw badInput(
-        "cameras", "none of the files describes one",
-        "Give Kalibr's camchain file too; or --recording FILE, whose event streams become the cameras");
+    throw badInput("cameras", "none of the files describes one",
+                   "Give Kalibr's camchain file too; or " + howTo(HowTo::Option, {"recording FILE"}) +
+                       ", whose event streams become the cameras");
   const Inspection inspection = inspectRecording(*openRecording(request.recording));
   Session& session = imported.session;
   for (const StreamSummary& stream : inspection.streams) {

@@ -1,5 +1,7 @@
 #include "core/pipeline/session/import_session.h"
 
+#include "core/base/file_places.h"
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
@@ -24,12 +26,14 @@ void checkFrom(const ImportRequest& request, const std::vector<ImportSource>& so
   if (request.from.empty()) return;
   const std::array<std::string, 3> known{"kalibr", "ekalibr", "ros"};
   if (std::find(known.begin(), known.end(), request.from) == known.end())
-    throw badInput("--from", fmt::format("'{}' is no program whose files can be imported", request.from),
+    throw badInput(howTo(HowTo::Option, {"from"}),
+                   fmt::format("'{}' is no program whose files can be imported", request.from),
                    nameAdvice(request.from, known));
   for (const ImportSource& source : sources) {
     const bool lens = source.kind == ImportKind::Intrinsics;  // eKalibr's, ROS's or Evical's own
     if (request.from != programOf(source.kind) && !(lens && request.from == "ekalibr"))
-      throw badInput(source.path.string(), fmt::format("is no file of {}", request.from), "Leave out --from");
+      throw badInput(source.path.string(), fmt::format("is no file of {}", request.from),
+                     "Leave out " + howTo(HowTo::Option, {"from"}));
   }
 }
 
@@ -44,14 +48,14 @@ void setRecording(const ImportRequest& request, ImportedSession& imported) {
   Session& session = imported.session;
   if (!request.recording.empty()) session.recording = request.recording;
   if (session.recording.empty())
-    throw badInput("recording", "none of the files names one", "Give it with --recording FILE");
-  std::error_code ignored;
-  if (std::filesystem::exists(session.recording, ignored)) return;
+    throw badInput("recording", "none of the files names one",
+                   "Give it with " + howTo(HowTo::Option, {"recording FILE"}));
+  if (isThere(session.recording)) return;
   if (!request.recording.empty())
-    throw badInput(session.recording.string(), "does not exist", "Check the path after --recording");
-  imported.notes.push_back(
-      fmt::format("recording {} does not exist here: give another one with --recording FILE",
-                  session.recording.string()));
+    throw badInput(session.recording.string(), "does not exist",
+                   "Check the path after " + howTo(HowTo::Option, {"recording"}));
+  imported.notes.push_back(fmt::format("recording {} does not exist here: give another one with {}",
+                                       session.recording.string(), howTo(HowTo::Option, {"recording FILE"})));
 }
 
 bool intrinsicsAlone(const std::vector<ImportSource>& sources) {

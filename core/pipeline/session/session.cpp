@@ -1,6 +1,7 @@
 #include "core/pipeline/session/session.h"
 
 #include "core/base/atomic_file.h"
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/session_boards.h"
@@ -88,7 +89,7 @@ void checkRecordings(const Session& session, const std::string& place) {
   if (session.more_recordings.empty()) return;
   if (!session.board_blinks)
     throw badInput(place + ": recording", "is a list, which only a board that blinks can have",
-                   "Name one recording, or say blinking: true in the board if it does");
+                   "Name one recording, or, if it does, " + howTo(HowTo::SayThatBoardFlashes));
   if (session.time_range_s)
     throw badInput(place + ": time_range_s", "says not which of several recordings it is of",
                    "Remove it, or name one recording");

@@ -1,5 +1,7 @@
 #include "core/pipeline/session/session_guess.h"
 
+#include "core/base/how_to.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -248,7 +250,8 @@ std::vector<std::string> notesOn(const Session& session) {
       notes.push_back(
           fmt::format("cameras.{}: give resolution_px, which the recording does not say", camera.name));
   if (session.imus.empty() && session.cameras.size() == 1)
-    notes.emplace_back("no IMU: name its recording, too; without one there is 'evical intrinsics'");
+    notes.push_back("no IMU: name its recording, too; without one, calibrate the camera " +
+                    howTo(HowTo::CalibrateLens));
   return notes;
 }
 

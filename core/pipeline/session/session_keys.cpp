@@ -1,6 +1,7 @@
 #include "core/pipeline/session/session_keys.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
 
 #include <fmt/format.h>
@@ -99,8 +100,7 @@ std::string nameFrom(const YamlNode& node) {
 
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / nameFrom(node);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
+  if (!isThere(path))
     throw node.error(fmt::format("'{}' does not exist", path.string()),
                      "Paths are relative to the session file");
   return path;

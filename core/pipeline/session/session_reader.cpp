@@ -1,3 +1,4 @@
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/export/export_target.h"
 #include "core/format/intrinsics_yaml.h"
@@ -260,8 +261,7 @@ void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& 
 
 void checkSessionRoot(const YamlNode& root) {
   if (!root.isMap() || !root.has("evical_session"))
-    throw root.error("is no session file: the key evical_session is missing",
-                     "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
+    throw root.error("is no session file: the key evical_session is missing", howTo(HowTo::MakeSession));
   root.allowOnly({"evical_session", "recording", "recordings", "time_range_s", "board", "boards", "gravity",
                   "cameras", "imus", "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
@@ -292,7 +292,7 @@ Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const 
   checkSessionRoot(root);
   if (const auto several = root.find("recordings"))
     throw several->error("lists recordings that are calibrated one by one",
-                         "Give it to 'evical repeat', or name one as recording");
+                         "Give it " + howTo(HowTo::CalibrateEach) + ", or name one as recording");
   return sessionFrom(root, folder, file,
                      [&](Session& session) { readRecordings(root["recording"], folder, session); });
 }
@@ -321,7 +321,7 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
     if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
         std::any_of(session.imus.begin(), session.imus.end(), hasOwn))
       throw several->error("lists recordings, but a sensor has one of its own",
-                           "Write a session for each, and give 'evical repeat' all of them");
+                           "Write a session for each, and give all of them " + howTo(HowTo::CalibrateEach));
   }
   return sessions;
 }

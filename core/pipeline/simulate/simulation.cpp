@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/new_folder.h"
 #include "core/base/time.h"
 #include "core/frames/picture_file.h"
@@ -185,7 +186,7 @@ void writeApart(const std::filesystem::path& made, const RecordingFormat& format
   std::copy_if(events.begin(), events.end(), std::back_inserter(imus), is_imu);
   std::erase_if(events, is_imu);
   if (events.size() != 1)
-    throw badInput("--format " + std::string(format.name),
+    throw badInput(howTo(HowTo::Option, {"format"}) + " " + std::string(format.name),
                    fmt::format("holds the events of one camera, and the scenario has {}", events.size()),
                    "Choose another format");
   const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, events);

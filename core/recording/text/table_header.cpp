@@ -1,5 +1,6 @@
 #include "core/recording/text/table_header.h"
 
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/base/time.h"
 #include "core/base/trimmed.h"
@@ -391,9 +392,9 @@ void applyHeader(const TableHeader& header, std::span<const TableColumn> table, 
 std::string columnsAdvice(const std::string& names) {
   const bool open = names.find('?') != std::string::npos;
   return fmt::format(
-      "Name the columns in the session, with the sensor: columns: \"{}\"{}; or put such a line on top of the "
+      "Name the columns {}, with the sensor: columns: \"{}\"{}; or put such a line on top of the "
       "file",
-      names,
+      howTo(HowTo::EditSession), names,
       open ? " (for each ? one of t_s, t_ms, t_us, t_ns, ax, ay, az, gx, gy, gz, x, y, p, or - if it is not "
              "used)"
            : "");

@@ -1,5 +1,7 @@
 #include "core/report/html/html_text.h"
 
+#include "core/base/number.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,8 +64,8 @@ std::string plain(double value) {
 }
 
 std::string withSigma(double value, double sigma, int most_decimals) {
-  if (!std::isfinite(sigma) || !(sigma > 0.0)) return number(value, std::min(most_decimals, 4));
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, most_decimals);
+  const int decimals = decimalsFor(sigma, most_decimals, std::min(most_decimals, 4));
+  if (!std::isfinite(sigma) || !(sigma > 0.0)) return number(value, decimals);
   return fmt::format("{} <span class=\"pm\">\u00b1 {}</span>", number(value, decimals),
                      number(sigma, decimals));
 }

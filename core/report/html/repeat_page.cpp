@@ -1,3 +1,4 @@
+#include "core/base/number.h"
 #include "core/report/assessment_report.h"
 #include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"
@@ -79,12 +80,9 @@ void writeRecordings(const Repeatability& repeat, ReportPage& page) {
 
 // To the second digit of what numbers vary by.
 std::string asVarying(double value, const RepeatedNumber& of) {
-  constexpr int kMost = 6;
   double size = of.mean_sigma > 0.0 ? of.mean_sigma : of.deviation;
   if (of.joint_sigma > 0.0) size = std::min(size, of.joint_sigma);
-  const int decimals =
-      size > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, kMost) : kMost;
-  return html::number(value, decimals);
+  return html::number(value, decimalsFor(size, 6, 6));
 }
 
 void writeStatistics(const Repeatability& repeat, ReportPage& page) {

@@ -21,7 +21,7 @@ namespace {
 
 class Shown final : public ProgressSink {
  public:
-  void stageStarted(std::string_view stage) override { stages.emplace_back(stage); }
+  void stageStarted(const ProgressStage& stage) override { stages.push_back(stage.name); }
   void stageProgress(double fraction) override { fractions.push_back(fraction); }
   void log(LogLevel, std::string_view text) override { texts.emplace_back(text); }
 

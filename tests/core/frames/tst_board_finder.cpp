@@ -247,10 +247,10 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   const PrintedBoard grid = kalibrGrid();
   QTest::newRow("too few tags")
       << grid << boardOfBoardFinder(BoardType::AprilGrid, 5, 6, 0.1144, 0.0, 0.088) << TagBorder::Automatic
-      << "a tag of number 35 was seen, and a board of 5 x 6 tags has 0 to 29: rows and cols";
+      << "a tag of number 35 was seen, and a board of 5 x 6 tags has 0 to 29: rows and columns";
   QTest::newRow("rows for columns")
       << grid << boardOfBoardFinder(BoardType::AprilGrid, 4, 9, 0.1144, 0.0, 0.088) << TagBorder::Automatic
-      << "the tags that were seen do not lie as on a board of 4 x 9 tags: rows and cols";
+      << "the tags that were seen do not lie as on a board of 4 x 9 tags: rows and columns";
   QTest::newRow("border") << grid << grid.board << TagBorder::One
                           << "the border of 2 bits fits, not that of 1";
   QTest::newRow("right") << grid << grid.board << TagBorder::Two << "";

@@ -45,7 +45,7 @@ double offsetError_ms(const CameraState& a, const CameraState& b) {
 // Stops as soon as it has heard of work.
 class StopOnProgress : public ProgressSink {
  public:
-  void stageStarted(std::string_view) override {}
+  void stageStarted(const ProgressStage&) override {}
   void stageProgress(double fraction) override {
     fractions.push_back(fraction);
     source.request_stop();
@@ -60,7 +60,7 @@ class StopOnProgress : public ProgressSink {
 
 class KeepProgress : public ProgressSink {
  public:
-  void stageStarted(std::string_view) override {}
+  void stageStarted(const ProgressStage&) override {}
   void stageProgress(double fraction) override { fractions.push_back(fraction); }
   void log(LogLevel, std::string_view) override {}
   std::vector<double> fractions;

@@ -19,7 +19,7 @@ namespace evical::test {
 // What a conversion reports.
 class Log : public ProgressSink {
  public:
-  void stageStarted(std::string_view /*stage*/) override {}
+  void stageStarted(const ProgressStage& /*stage*/) override {}
   void stageProgress(double /*fraction*/) override {}
   void log(LogLevel /*level*/, std::string_view text) override { said += text; }
   std::string said;

@@ -91,7 +91,7 @@ QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
   auto* const item = new QTreeWidgetItem({fromCore(number.name) + unit});
   // As many decimals as its spread has.
   const double spread = number.deviation > 0.0 ? number.deviation : number.mean_sigma;
-  item->setText(kMean, withSigma(number.mean, spread).section(' ', 0, 0));
+  item->setText(kMean, QString::number(number.mean, 'f', decimalsFor(spread)));
   if (number.count > 1) {
     item->setText(kDeviation, fromCore(html::significant(number.deviation, 2)));
     item->setText(kRatio, QString::number(number.ratio(), 'f', 2));

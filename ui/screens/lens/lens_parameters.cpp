@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/lens/lens_parameters.h"
 
+#include "core/base/number.h"
 #include "core/geometry/intrinsics_numbers.h"
 
 #include <QObject>
@@ -16,11 +17,8 @@ constexpr std::size_t kPixelNumbers = 4;  // fx fy cx cy; distortion has no unit
 
 // As many decimals as the sigma's second digit.
 QString lensText(double value, double sigma) {
-  constexpr int kWithout = 4, kMost = 8;
-  const bool known = sigma > 0.0 && std::isfinite(sigma);
-  const int decimals =
-      known ? std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost) : kWithout;
-  return QString::number(value, 'f', decimals);
+  constexpr int kMost = 8;
+  return QString::number(value, 'f', decimalsFor(sigma, kMost));
 }
 
 QString pixels(double value) {

@@ -2,6 +2,7 @@
 #include "ui/screens/result/result_parameters.h"
 
 #include "core/base/element.h"
+#include "core/base/number.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_table.h"
 #include "core/report/sensor_pose.h"
@@ -10,7 +11,6 @@
 
 #include <QObject>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -19,13 +19,8 @@ namespace {
 
 // A direction has no number of its own, only how far it is from another.
 const char* const kGravityKey = "gravity";
+constexpr int kMostDecimals = 8;
 const QString kAcceleration = QString("m/s") + QChar(0xb2);
-
-int decimalsFor(double sigma) {
-  constexpr int kWithout = 4, kMost = 8;
-  if (!(sigma > 0.0) || !std::isfinite(sigma)) return kWithout;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMost);
-}
 
 QString shownUnit(const std::string& unit) {
   return QString::fromStdString(unit).replace("^2", QChar(0xb2));
@@ -125,14 +120,15 @@ ParameterGroup gravityGroup(const NamedResult& named) {
 }  // namespace
 
 QString ParameterRow::valueText() const {
-  return key == kGravityKey ? QString() : QString::number(value, 'f', decimalsFor(sigma));
+  return key == kGravityKey ? QString() : QString::number(value, 'f', decimalsFor(sigma, kMostDecimals));
 }
 QString ParameterRow::sigmaText() const {
-  return sigma > 0.0 ? QString::number(sigma, 'f', decimalsFor(sigma)) : QString();
+  return sigma > 0.0 ? QString::number(sigma, 'f', decimalsFor(sigma, kMostDecimals)) : QString();
 }
 QString ParameterRow::differenceText() const {
   if (!difference) return {};
-  return (*difference < 0.0 ? "" : "+") + QString::number(*difference, 'f', decimalsFor(sigma));
+  return (*difference < 0.0 ? "" : "+") +
+         QString::number(*difference, 'f', decimalsFor(sigma, kMostDecimals));
 }
 QString ParameterRow::sigmasText() const {
   return difference && sigma > 0.0 ? QString::number(std::abs(*difference) / sigma, 'f', 1) : QString();

@@ -70,7 +70,7 @@ void TestBoardSizeCheck::largerBoard_isNamedWithItsSide() {
   board.rows = 9;
   const std::string rows = failureOfBoardSizeCheck(board, 9, 4, {{80, 76, 80, 0}, {80, 0, 80, 0}});
   VERIFY_SAYS(rows, "left: .*seems larger than 9 x 4: .*beyond its first or last row in 95 % of 80 views");
-  VERIFY_SAYS(rows, "Check rows and cols in the session");
+  VERIFY_SAYS(rows, "Check rows and columns in the session");
   VERIFY_SAYS(failureOfBoardSizeCheck(board, 9, 4, {{80, 0, 80, 0}, {80, 80, 80, 0}}),
               "beyond its first or last column");
 }

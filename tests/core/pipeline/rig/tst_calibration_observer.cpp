@@ -20,9 +20,10 @@ class Notebook final : public CalibrationObserver {
     QVERIFY(steps.isEmpty() && iterations.empty());
     input = given;
   }
-  void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
+  void initialisationStepDone(std::string_view step, std::string_view subject, std::string_view result,
+                              double duration_s) override {
     QVERIFY(iterations.empty());
-    QVERIFY(!result.empty());
+    QVERIFY(!result.empty() && !result.starts_with(std::string(subject) + ":"));
     QVERIFY(duration_s >= 0.0 && duration_s < 60.0);
     duration_of_steps_s += duration_s;
     steps << QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));

@@ -26,9 +26,9 @@ using namespace evical;
 
 class StageRecorder final : public ProgressSink {
  public:
-  void stageStarted(std::string_view stage) override {
+  void stageStarted(const ProgressStage& stage) override {
     const std::scoped_lock lock(mutex_);
-    stage_ = stage;
+    stage_ = stage.name;
   }
   void stageProgress(double) override {}
   void log(LogLevel, std::string_view) override {}

@@ -43,8 +43,8 @@ class Mailbox : public ProgressSink, public CalibrationObserver {
     std::size_t iterations = 0, tracked = 0, searched = 0;
   };
 
-  void stageStarted(std::string_view stage) override {
-    put([&](Contents& box) { box.stage = stage; });
+  void stageStarted(const ProgressStage& stage) override {
+    put([&](Contents& box) { box.stage = stage.name; });
   }
   void stageProgress(double fraction_of_stage) override {
     put([&](Contents& box) { box.fraction = fraction_of_stage; });
@@ -60,7 +60,7 @@ class Mailbox : public ProgressSink, public CalibrationObserver {
     const auto copy = std::make_shared<const CalibrationInput>(input);
     put([&](Contents& box) { box.input = copy; });
   }
-  void initialisationStepDone(std::string_view step, std::string_view, double) override {
+  void initialisationStepDone(std::string_view step, std::string_view, std::string_view, double) override {
     put([&](Contents& box) { box.steps.emplace_back(step); });
   }
   void iterationDone(const IterationRecord&, const CalibrationState& state) override {

@@ -647,7 +647,7 @@ void TestNumpy::conversion_keepsEvents() {
   request.output = scratch_ / "converted.bag";
   class Silence : public ProgressSink {
    public:
-    void stageStarted(std::string_view /*stage*/) override {}
+    void stageStarted(const ProgressStage& /*stage*/) override {}
     void stageProgress(double /*fraction*/) override {}
     void log(LogLevel /*level*/, std::string_view /*text*/) override {}
   } silence;

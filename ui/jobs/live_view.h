@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a calibration has found so far, between core's threads and the GUI.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_state.h"
+#include "ui/jobs/mailbox.h"
+
+#include <QString>
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+
+// Views are copied once and never changed; a list of them costs a pointer a view.
+using SharedViews = std::vector<std::shared_ptr<const BoardView>>;
+SharedViews sharedViews(const std::shared_ptr<const BoardObservations>& observations);
+
+struct LiveCamera {
+  std::size_t windows = 0;
+  SharedViews views;
+};
+using LiveDetections = std::vector<LiveCamera>;  // by camera
+
+struct LiveIterations {
+  std::vector<IterationRecord> records;  // all so far
+  CalibrationState state;                // after the last of them
+};
+
+struct InitialisationNote {
+  QString step, subject, result;
+  double duration_s = 0.0;
+};
+
+// A pass over the recording, and the lens that it left.
+struct LensPass {
+  int number = 0;
+  int views = 0;
+  double reprojection_rms_px = 0.0, moved_px = 0.0;
+};
+
+class LiveView final : public CalibrationObserver {
+ public:
+  // `windows`: sees the front end's windows; may be null. `only`: the camera of the session that core has as its first;
+  // none: core has all of them.
+  LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows,
+           std::optional<std::size_t> only = {})
+      : windows_(std::move(windows)), only_(only), detected_(cameras) {}
+
+  FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override;
+  void windowsDetected(std::size_t camera, const BoardObservations& so_far) override;
+  void detectionDone(const CalibrationInput&) override { detection_done = true; }
+  void intrinsicsPassDone(int pass, const IntrinsicsResult& so_far) override;
+  void initialisationStepDone(std::string_view step, std::string_view subject, std::string_view result,
+                              double duration_s) override;
+  void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override;
+
+  Mailbox<LiveDetections> detections;
+  std::atomic<bool> detection_done = false;
+  Mailbox<std::vector<LensPass>> passes;           // all so far
+  Mailbox<std::vector<InitialisationNote>> notes;  // all so far
+  Mailbox<LiveIterations> iterations;
+
+  // The GUI thread's.
+  bool said_done = false;
+  std::size_t said_notes = 0, said_passes = 0;
+
+ private:
+  std::shared_ptr<CalibrationObserver> windows_;
+  std::optional<std::size_t> only_;
+  LiveDetections detected_;
+  std::chrono::steady_clock::time_point detected_next_;
+  std::vector<LensPass> passes_;
+  std::vector<InitialisationNote> notes_;
+  std::vector<IterationRecord> records_;
+};
+
+}  // namespace evical::ui
