@@ -70,7 +70,7 @@ void detectIn(const Session& session, const std::filesystem::path& output, const
   ImageWriters images(arguments, session, output);
   const RunContext context{console, stop, arguments.images ? &images : nullptr};
   console.stageStarted(nameOf(CalibrationStage::Detect));
-  const RecordingPass pass = readAndDetect(session, context);
+  const DetectionResult pass = readAndDetect(session, context);
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
   writeDetectionFiles(output, session, pass, console.logText());
   console.stageStarted("done");

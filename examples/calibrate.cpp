@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   }
   try {
     Session session = readSession(argv[1]);
-    setOption(session.options, "report.cross_validation",
+    setOption(session.options, "report.split_half_check",
               "false");  // options by the names of `evical options`
     StageNames progress;
     const CalibrationResult result = calibrate(session, RunContext{progress}).result;

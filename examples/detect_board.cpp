@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   }
   try {
     const Session session = readSession(argv[1]);
-    const RecordingPass pass =
+    const DetectionResult pass =
         readAndDetect(session, RunContext{});  // a context could show progress, or stop
     for (const BoardObservations& camera : pass.cameras) printViews(camera);
     return 0;

@@ -1,7 +1,7 @@
 // evical.Result and its sensors.
 #include "core/data/calibration_stage.h"
 #include "core/numerics/angles.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/result.h"

@@ -4,7 +4,7 @@
 #include "core/base/repair.h"
 #include "core/data/calibration_state.h"
 #include "core/data/calibration_status.h"
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/data/quantity_address.h"
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@
 namespace evical {
 
 struct Timing {
-  double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, cross_validate_s = 0.0,
+  double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, split_half_check_s = 0.0,
          total_s = 0.0;
 };
 
@@ -143,7 +143,7 @@ struct QuantityDifference {
 
 // The estimate once more from every other block of the recording, and from the blocks between: where the
 // sigmas are honest the two differ by about one sigma.
-struct CrossValidation {
+struct SplitHalfCheck {
   double block_s = 0.0;
   std::array<int, 2> windows = {0, 0};  // with the board, in either half
   std::vector<QuantityDifference> quantities;
@@ -155,7 +155,7 @@ struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;                    // why not ok, in plain words
   std::optional<Repair> repair;          // of the first of the reasons
-  std::vector<Doubt> causes;             // the reasons one by one, the likeliest first
+  std::vector<QualityWarning> causes;    // the reasons one by one, the likeliest first
   std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
   CalibrationState state;
   UncertaintyReport uncertainty;
@@ -164,9 +164,9 @@ struct CalibrationResult {
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
   std::vector<CircleResidual> circle_residuals;
-  std::vector<RejectedWindow> rejected_windows;     // by hand: camera by camera, in time order
-  std::optional<CrossValidation> cross_validation;  // absent where it was not asked for
-  std::vector<std::string> notes;                   // what initialisation and data checks had to say
+  std::vector<RejectedWindow> rejected_windows;    // by hand: camera by camera, in time order
+  std::optional<SplitHalfCheck> split_half_check;  // absent where it was not asked for
+  std::vector<std::string> notes;                  // what initialisation and data checks had to say
   Timing timing;
   double memory_peak_mb = 0.0;
 };

@@ -57,7 +57,7 @@ struct ImuData {
 enum class Shutter { Global, Rolling };
 
 // Beside the board whose frame is the world: another one, that keeps its place before it.
-struct FurtherBoard {
+struct AdditionalBoard {
   std::string name;
   Board board;
   std::optional<double> spacing_std = {};  // relative; absent: as well known as the world's
@@ -72,7 +72,7 @@ struct SeenBoard {
 struct CameraData {
   std::string name;
   CameraLens lens;
-  BoardObservations observations;  // in the ideal pixels of lens.seen_with
+  BoardObservations observations;  // in the ideal pixels of lens.detection_intrinsics
   SensorPrior prior = {};
   Shutter shutter = Shutter::Global;
   // Another camera whose chip gives these measurements, too (a DAVIS's events and frames): one pose, one lens, one
@@ -87,7 +87,7 @@ struct CalibrationInput {
   std::int64_t start_ns = 0;
   std::string board_name = "board";
   Board board;  // its frame is the world
-  std::vector<FurtherBoard> further_boards = {};
+  std::vector<AdditionalBoard> further_boards = {};
   std::vector<CameraData> cameras;
   std::vector<ImuData> imus;
   std::size_t reference_imu = 0;     // index into imus

@@ -9,7 +9,7 @@
 
 namespace evical {
 
-enum class CalibrationStage { FirstLook, Intrinsics, Detect, Initialise, Optimise, CrossValidate };
+enum class CalibrationStage { FirstLook, Intrinsics, Detect, Initialise, Optimise, CompareHalves };
 
 // What a run starts from decides which stages it has.
 enum class RunStart { KnownIntrinsics, UnknownIntrinsics, Detections };
@@ -30,11 +30,11 @@ inline constexpr std::array<StageRow, 6> kCalibrationStages = {{
     {CalibrationStage::Detect, "detect", "Read and detect", {0.5, 0.25, 0.0}, &Timing::detect_s},
     {CalibrationStage::Initialise, "initialise", "Initialise", {0.05, 0.03, 0.1}, &Timing::initialise_s},
     {CalibrationStage::Optimise, "optimise", "Optimise", {0.35, 0.2, 0.7}, &Timing::optimise_s},
-    {CalibrationStage::CrossValidate,
-     "cross_validate",
+    {CalibrationStage::CompareHalves,
+     "split_half_check",
      "Compare halves",
      {0.1, 0.07, 0.2},
-     &Timing::cross_validate_s},
+     &Timing::split_half_check_s},
 }};
 
 constexpr const StageRow& rowOf(CalibrationStage stage) {

@@ -9,16 +9,17 @@
 namespace evical {
 
 struct CameraLens {
-  std::optional<CameraIntrinsics> given = {};      // by the session; absent: not known beforehand
-  std::optional<CameraIntrinsics> seen_with = {};  // by the front end: observations are in its ideal pixels
-  std::optional<CameraIntrinsics> solved = {};     // together with everything else, where it was free
+  std::optional<CameraIntrinsics> given = {};  // by the session; absent: not known beforehand
+  std::optional<CameraIntrinsics> detection_intrinsics =
+      {};                                       // by the front end: observations are in its ideal pixels
+  std::optional<CameraIntrinsics> solved = {};  // together with everything else, where it was free
   std::optional<LensUncertainty> given_with =
       {};  // how well the session knows what it gives; absent: not said
 
   // Calibrated before everything else, from the same recording.
-  bool foundFirst() const { return seen_with && !given; }
+  bool foundFirst() const { return detection_intrinsics && !given; }
   // The best that is known: what projects points to where the camera sees them.
-  const std::optional<CameraIntrinsics>& inUse() const { return solved ? solved : seen_with; }
+  const std::optional<CameraIntrinsics>& inUse() const { return solved ? solved : detection_intrinsics; }
   // What the calibration itself found; nothing where the lens stayed as it was given.
   std::optional<CameraIntrinsics> found() const { return solved || !given ? inUse() : std::nullopt; }
 

@@ -34,7 +34,7 @@ constexpr double radiansPerSecond(AngularRateUnit unit) {
 
 // How a sensor's own axes are read as the IMU's x, y and z: 2 is its y, -2 the opposite of that.
 using AxesReading = std::array<int, 3>;
-inline constexpr AxesReading kAxesAsTheyAre = {1, 2, 3};
+inline constexpr AxesReading kIdentityAxes = {1, 2, 3};
 
 inline Eigen::Vector3d readAs(const AxesReading& reading, const Eigen::Vector3d& own) {
   const auto axis = [&](std::size_t i) {

@@ -1,8 +1,8 @@
 // The least squares of rotation_alignment.h; not for other folders.
 #pragma once
 
+#include "core/egomotion/integrated_rates.h"
 #include "core/egomotion/rotation_alignment.h"
-#include "core/egomotion/summed_rates.h"
 
 #include <Eigen/Core>
 

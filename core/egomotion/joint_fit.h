@@ -6,8 +6,8 @@
 #include "core/base/progress.h"
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/camera_record.h"
+#include "core/egomotion/integrated_rates.h"
 #include "core/egomotion/lens_rays.h"
-#include "core/egomotion/summed_rates.h"
 #include "core/egomotion/turning_model.h"
 #include "core/egomotion/window_fit.h"
 

@@ -2,8 +2,8 @@
 
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/alignment_start.h"
+#include "core/egomotion/integrated_rates.h"
 #include "core/egomotion/joint_fit.h"
-#include "core/egomotion/summed_rates.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
 

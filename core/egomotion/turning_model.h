@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/egomotion/alignment_fit.h"
-#include "core/egomotion/summed_rates.h"
+#include "core/egomotion/integrated_rates.h"
 
 #include <Eigen/Core>
 

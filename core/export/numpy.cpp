@@ -5,7 +5,7 @@
 #include "core/export/ros_camera.h"
 #include "core/format/npy.h"
 #include "core/geometry/intrinsics_numbers.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 
 #include <algorithm>
 #include <array>

@@ -41,14 +41,14 @@ void BoardTracker::add(EventSpan events) {
   addBursts(new_bursts_, events.front().time_ns, extractor_->completeUntil_ns());
 }
 
-void BoardTracker::addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t first_event_ns,
+void BoardTracker::addBursts(const std::vector<EdgeCrossing>& bursts, std::int64_t first_event_ns,
                              std::int64_t complete_until_ns) {
   if (!started_) {
     next_begin_ns_ = first_event_ns;
     started_ = true;
   }
   history_.add(bursts);
-  for (const EdgeBurst& burst : bursts) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
+  for (const EdgeCrossing& burst : bursts) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   complete_until_ns_ = complete_until_ns;
   processWindows();
 }
@@ -56,7 +56,7 @@ void BoardTracker::addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t 
 BoardObservations BoardTracker::finish() {
   new_bursts_.clear();
   if (extractor_) extractor_->finish(new_bursts_);
-  for (const EdgeBurst& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
+  for (const EdgeCrossing& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   history_.add(new_bursts_);
   const std::int64_t shortest_ns = nanosecondsFrom(options_.detection.shortest_window_s);
   while (started_ && next_begin_ns_ + shortest_ns < last_burst_ns_ && !stop_.stop_requested()) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "core/frontend/front_end_observer.h"
 #include "core/frontend/front_end_options.h"
 #include "core/frontend/polarity_delay.h"
@@ -31,7 +31,7 @@ class BoardTracker {
   void add(EventSpan events);
   // The same for who extracts bursts elsewhere, e.g. in another thread: bursts as a BurstExtractor hands them
   // out, and its completeUntil_ns() after them.
-  void addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t first_event_ns,
+  void addBursts(const std::vector<EdgeCrossing>& bursts, std::int64_t first_event_ns,
                  std::int64_t complete_until_ns);
   BoardObservations finish();
 
@@ -67,7 +67,7 @@ class BoardTracker {
   BurstWindow window_;
   std::int64_t complete_until_ns_;
   std::int64_t last_burst_ns_;
-  std::vector<EdgeBurst> new_bursts_;
+  std::vector<EdgeCrossing> new_bursts_;
   std::optional<BoardMotion> motion_;  // last tracked window
   std::int64_t next_begin_ns_ = 0;     // of the next slot
   std::int64_t last_search_ns_;

@@ -23,15 +23,15 @@ BurstHistory::Slices::const_iterator BurstHistory::firstFrom(std::int64_t index)
                           [](const Slice& slice, std::int64_t wanted) { return slice.index < wanted; });
 }
 
-std::vector<EdgeBurst> BurstHistory::emptySlice() {
+std::vector<EdgeCrossing> BurstHistory::emptySlice() {
   if (spare_.empty()) return {};
-  std::vector<EdgeBurst> slice = std::move(spare_.back());
+  std::vector<EdgeCrossing> slice = std::move(spare_.back());
   spare_.pop_back();
   slice.clear();
   return slice;
 }
 
-std::vector<EdgeBurst>& BurstHistory::sliceAt(std::int64_t index) {
+std::vector<EdgeCrossing>& BurstHistory::sliceAt(std::int64_t index) {
   if (slices_.empty() || slices_.back().index < index)
     return slices_.emplace_back(Slice{index, emptySlice()}).bursts;
   // Without empty times the place is known.
@@ -43,8 +43,8 @@ std::vector<EdgeBurst>& BurstHistory::sliceAt(std::int64_t index) {
                                                    : slices_.insert(at, Slice{index, emptySlice()})->bursts;
 }
 
-void BurstHistory::add(const std::vector<EdgeBurst>& bursts) {
-  for (const EdgeBurst& burst : bursts) sliceAt(sliceOf(burst.time_ns)).push_back(burst);
+void BurstHistory::add(const std::vector<EdgeCrossing>& bursts) {
+  for (const EdgeCrossing& burst : bursts) sliceAt(sliceOf(burst.time_ns)).push_back(burst);
 }
 
 void BurstHistory::dropBefore(std::int64_t time_ns) {
@@ -55,10 +55,11 @@ void BurstHistory::dropBefore(std::int64_t time_ns) {
   }
 }
 
-void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const {
+void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns,
+                          std::vector<EdgeCrossing>& bursts) const {
   const std::int64_t last = sliceOf(end_ns - 1);
   for (auto slice = firstFrom(sliceOf(begin_ns)); slice != slices_.end() && slice->index <= last; ++slice) {
-    for (const EdgeBurst& burst : slice->bursts) {
+    for (const EdgeCrossing& burst : slice->bursts) {
       if (burst.time_ns >= begin_ns && burst.time_ns < end_ns) bursts.push_back(burst);
     }
   }
@@ -78,13 +79,13 @@ std::optional<std::int64_t> BurstHistory::nextAfter(std::int64_t from_ns) const 
   return std::max(from_ns, slice->index * kSlice_ns);
 }
 
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts) {
+void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeCrossing>& bursts) {
   const int stride = resolution_px.width_px + 2;
   std::vector<std::uint8_t> occupied(static_cast<std::size_t>(stride * (resolution_px.height_px + 2)), 0);
-  for (const EdgeBurst& burst : bursts) {
+  for (const EdgeCrossing& burst : bursts) {
     occupied[static_cast<std::size_t>((burst.y_px + 1) * stride + burst.x_px + 1)] |= burst.brighter ? 1 : 2;
   }
-  std::erase_if(bursts, [&](const EdgeBurst& burst) {
+  std::erase_if(bursts, [&](const EdgeCrossing& burst) {
     const std::uint8_t bit = burst.brighter ? 1 : 2;
     int support = 0;
     for (int dy = 0; dy <= 2; ++dy) {
@@ -102,23 +103,23 @@ BurstWindow::BurstWindow(const BoardScene& scene)
       columns_((scene.resolution_px.width_px >> kCellShift) + 1),
       rows_((scene.resolution_px.height_px >> kCellShift) + 1) {}
 
-void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns) {
+void BurstWindow::assign(const std::vector<EdgeCrossing>& bursts, std::int64_t middle_ns) {
   middle_ns_ = middle_ns;
   cell_begin_.assign(static_cast<std::size_t>(columns_ * rows_) + 2, 0);
-  const auto cellOf = [&](const EdgeBurst& burst) {
+  const auto cellOf = [&](const EdgeCrossing& burst) {
     return static_cast<std::size_t>((burst.y_px >> kCellShift) * columns_ + (burst.x_px >> kCellShift));
   };
-  for (const EdgeBurst& burst : bursts) ++cell_begin_[cellOf(burst) + 2];
+  for (const EdgeCrossing& burst : bursts) ++cell_begin_[cellOf(burst) + 2];
   for (std::size_t i = 2; i < cell_begin_.size(); ++i) cell_begin_[i] += cell_begin_[i - 1];
   bursts_.resize(bursts.size());
   const IdealPixels* const pixels = pixels_.get();
-  const auto indexOf = [&](const EdgeBurst& burst) {
+  const auto indexOf = [&](const EdgeCrossing& burst) {
     return static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px);
   };
   for (std::size_t k = 0; k < bursts.size(); ++k) {
-    const EdgeBurst& burst = bursts[k];
+    const EdgeCrossing& burst = bursts[k];
     if (pixels && k + kBurstsFetchedAhead < bursts.size()) {
-      const EdgeBurst& later = bursts[k + kBurstsFetchedAhead];
+      const EdgeCrossing& later = bursts[k + kBurstsFetchedAhead];
       __builtin_prefetch(&pixels->ideal(later.x_px, later.y_px));
       __builtin_prefetch(pixels->stretch.data() + indexOf(later));
     }

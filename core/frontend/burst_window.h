@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/frontend/board_scene.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -18,11 +18,11 @@ namespace evical {
 // takes no room.
 class BurstHistory {
  public:
-  void add(const std::vector<EdgeBurst>& bursts);
+  void add(const std::vector<EdgeCrossing>& bursts);
   void dropBefore(std::int64_t time_ns);
 
   // Appends all bursts with begin_ns <= time < end_ns.
-  void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const;
+  void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeCrossing>& bursts) const;
   std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
   // End of the time without bursts from this time on, to a slice's accuracy; nothing without later bursts.
   std::optional<std::int64_t> nextAfter(std::int64_t from_ns) const;
@@ -31,21 +31,21 @@ class BurstHistory {
  private:
   struct Slice {
     std::int64_t index;  // time over a slice's length
-    std::vector<EdgeBurst> bursts;
+    std::vector<EdgeCrossing> bursts;
   };
   using Slices = std::deque<Slice>;
 
-  std::vector<EdgeBurst>& sliceAt(std::int64_t index);
-  std::vector<EdgeBurst> emptySlice();
+  std::vector<EdgeCrossing>& sliceAt(std::int64_t index);
+  std::vector<EdgeCrossing> emptySlice();
   Slices::const_iterator firstFrom(std::int64_t index) const;
 
-  Slices slices_;                              // ascending, none of them empty
-  std::vector<std::vector<EdgeBurst>> spare_;  // memory of slices that were dropped, for those to come
+  Slices slices_;                                 // ascending, none of them empty
+  std::vector<std::vector<EdgeCrossing>> spare_;  // memory of slices that were dropped, for those to come
 };
 
 // Drops isolated bursts: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
 // included.
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
+void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeCrossing>& bursts);
 
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the
 // same where nothing is known).
@@ -65,7 +65,7 @@ class BurstWindow {
 
   explicit BurstWindow(const BoardScene& scene);
 
-  void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
+  void assign(const std::vector<EdgeCrossing>& bursts, std::int64_t middle_ns);
   // The history's bursts no further than half_window_s from the middle.
   void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
   // The same without isolated bursts (keepSupported).
@@ -90,7 +90,7 @@ class BurstWindow {
   bool dark_circles_;
   int columns_, rows_;
   std::int64_t middle_ns_ = 0;
-  std::vector<EdgeBurst> gathered_;  // kept for its memory
+  std::vector<EdgeCrossing> gathered_;  // kept for its memory
   std::vector<WindowBurst> bursts_;
   std::vector<std::uint32_t> cell_begin_;  // columns_ * rows_ + 1
 };

@@ -43,12 +43,12 @@ EdgeSlopeFinder::EdgeSlopeFinder(Resolution resolution_px, const EdgeSlopeOption
       margin_ns_(nanosecondsFrom(options.longest_crossing_s)),
       sink_(std::move(sink)) {}
 
-void EdgeSlopeFinder::add(const std::vector<EdgeBurst>& bursts, std::int64_t complete_until_ns) {
+void EdgeSlopeFinder::add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns) {
   history_.add(bursts);
-  for (const EdgeBurst& burst : bursts) newest_ns_ = std::max(newest_ns_, burst.time_ns);
+  for (const EdgeCrossing& burst : bursts) newest_ns_ = std::max(newest_ns_, burst.time_ns);
   if (history_.empty()) return;
   if (next_ns_ == std::numeric_limits<std::int64_t>::min()) {
-    for (const EdgeBurst& burst : bursts)
+    for (const EdgeCrossing& burst : bursts)
       next_ns_ = std::min(next_ns_ == std::numeric_limits<std::int64_t>::min() ? burst.time_ns : next_ns_,
                           burst.time_ns);
     // Bursts come in order of their ends: earlier ones may follow.
@@ -72,7 +72,7 @@ void EdgeSlopeFinder::runWindow(std::int64_t begin_ns) {
   history_.gather(begin_ns - margin_ns_, begin_ns + window_ns_ + margin_ns_, gathered_);
   if (!gathered_.empty()) {
     sortByPixel();
-    for (const EdgeBurst& burst : gathered_) {
+    for (const EdgeCrossing& burst : gathered_) {
       if (burst.time_ns < begin_ns || burst.time_ns >= begin_ns + window_ns_) continue;
       EdgeSlope slope;
       if (slopeAt(burst, slope)) slopes_.push_back(slope);
@@ -87,15 +87,15 @@ std::size_t EdgeSlopeFinder::slotOf(int x_px, int y_px, bool brighter) const {
 
 void EdgeSlopeFinder::sortByPixel() {
   begin_.assign(2 * static_cast<std::size_t>(resolution_px_.pixelCount()) + 2, 0);
-  for (const EdgeBurst& burst : gathered_) ++begin_[slotOf(burst.x_px, burst.y_px, burst.brighter) + 2];
+  for (const EdgeCrossing& burst : gathered_) ++begin_[slotOf(burst.x_px, burst.y_px, burst.brighter) + 2];
   for (std::size_t k = 2; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
   times_ns_.resize(gathered_.size());
-  for (const EdgeBurst& burst : gathered_)
+  for (const EdgeCrossing& burst : gathered_)
     times_ns_[begin_[slotOf(burst.x_px, burst.y_px, burst.brighter) + 1]++] = burst.time_ns;
 }
 
 // The burst nearest to the plane, for each pixel around the centre.
-void EdgeSlopeFinder::nearestBursts(const EdgeBurst& centre, const Plane& plane) {
+void EdgeSlopeFinder::nearestBursts(const EdgeCrossing& centre, const Plane& plane) {
   neighbours_.clear();
   const int r = options_.radius_px;
   for (int dy = -r; dy <= r; ++dy) {
@@ -146,7 +146,7 @@ bool EdgeSlopeFinder::fitPlane(double largest_error_s, Plane& plane) const {
   return true;
 }
 
-bool EdgeSlopeFinder::slopeAt(const EdgeBurst& burst, EdgeSlope& slope) {
+bool EdgeSlopeFinder::slopeAt(const EdgeCrossing& burst, EdgeSlope& slope) {
   const int r = options_.radius_px;
   if (burst.x_px < r || burst.y_px < r || burst.x_px + r >= resolution_px_.width_px ||
       burst.y_px + r >= resolution_px_.height_px)

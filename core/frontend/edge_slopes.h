@@ -7,7 +7,7 @@
 #include "core/base/option_struct.h"
 #include "core/data/edge_slope.h"
 #include "core/frontend/burst_window.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "core/geometry/resolution.h"
 
 #include <cstdint>
@@ -40,7 +40,7 @@ class EdgeSlopeFinder {
   EdgeSlopeFinder(Resolution resolution_px, const EdgeSlopeOptions& options, double window_s, Sink sink);
 
   // `complete_until_ns`: bursts before have all been handed in (BurstExtractor::completeUntil_ns).
-  void add(const std::vector<EdgeBurst>& bursts, std::int64_t complete_until_ns);
+  void add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns);
   void finish();
 
  private:
@@ -56,9 +56,9 @@ class EdgeSlopeFinder {
 
   void runWindow(std::int64_t begin_ns);
   void sortByPixel();
-  bool slopeAt(const EdgeBurst& burst, EdgeSlope& slope);
+  bool slopeAt(const EdgeCrossing& burst, EdgeSlope& slope);
   std::size_t slotOf(int x_px, int y_px, bool brighter) const;
-  void nearestBursts(const EdgeBurst& centre, const Plane& plane);
+  void nearestBursts(const EdgeCrossing& centre, const Plane& plane);
   bool fitPlane(double largest_error_s, Plane& plane) const;
 
   Resolution resolution_px_;
@@ -67,7 +67,7 @@ class EdgeSlopeFinder {
   Sink sink_;
   BurstHistory history_;
   std::int64_t next_ns_ = std::numeric_limits<std::int64_t>::min(), newest_ns_ = next_ns_;
-  std::vector<EdgeBurst> gathered_;     // in the window and around it
+  std::vector<EdgeCrossing> gathered_;  // in the window and around it
   std::vector<std::uint32_t> begin_;    // by slot: of its times
   std::vector<std::int64_t> times_ns_;  // slot by slot
   std::vector<Neighbour> neighbours_;

@@ -17,13 +17,13 @@ namespace {
 
 constexpr int kColumns = 41, kRows = 31;  // of rays that are fitted to
 
-struct Sight {
+struct DetectionSetup {
   Eigen::Vector2d pixel;
   Eigen::Vector3d ray;
 };
 
 struct Sights {
-  std::vector<Sight> seen;
+  std::vector<DetectionSetup> seen;
   bool whole_image = true;
 };
 
@@ -64,10 +64,10 @@ struct Misfit {
 };
 
 // Infinite where the camera does not see one of the rays at all.
-Misfit misfitOf(const CameraIntrinsics& camera, const std::vector<Sight>& sights) {
+Misfit misfitOf(const CameraIntrinsics& camera, const std::vector<DetectionSetup>& sights) {
   constexpr double kNotSeen = std::numeric_limits<double>::infinity();
   Misfit misfit;
-  for (const Sight& sight : sights) {
+  for (const DetectionSetup& sight : sights) {
     const auto pixel = project(camera, sight.ray);
     if (!pixel) return {kNotSeen, kNotSeen};
     const double distance_px = (*pixel - sight.pixel).norm();
@@ -78,11 +78,11 @@ Misfit misfitOf(const CameraIntrinsics& camera, const std::vector<Sight>& sights
 }
 
 // One damped step; `used` parameters of the nine.
-Parameters stepOf(const CameraIntrinsics& camera, const std::vector<Sight>& sights, int used,
+Parameters stepOf(const CameraIntrinsics& camera, const std::vector<DetectionSetup>& sights, int used,
                   double damping) {
   Eigen::Matrix<double, 9, 9> information = Eigen::Matrix<double, 9, 9>::Zero();
   Parameters gradient = Parameters::Zero();
-  for (const Sight& sight : sights) {
+  for (const DetectionSetup& sight : sights) {
     IntrinsicsJacobian jacobian;
     const auto pixel = project(camera, sight.ray, nullptr, &jacobian);
     if (!pixel) continue;
@@ -96,7 +96,7 @@ Parameters stepOf(const CameraIntrinsics& camera, const std::vector<Sight>& sigh
 }
 
 CameraIntrinsics startOf(const CameraIntrinsics& camera, CameraModel model, int coefficients,
-                         const std::vector<Sight>& sights) {
+                         const std::vector<DetectionSetup>& sights) {
   const CameraIntrinsics plain = plainLens(camera, model);
   if (model != camera.model) return plain;
   CameraIntrinsics start = camera;
@@ -122,7 +122,7 @@ CameraIntrinsics plainLens(const CameraIntrinsics& like, CameraModel model) {
 }
 
 LensFit fitLens(const CameraIntrinsics& camera, CameraModel model, int coefficients) {
-  const std::vector<Sight> sights = sightsOf(camera, model, kColumns, kRows).seen;
+  const std::vector<DetectionSetup> sights = sightsOf(camera, model, kColumns, kRows).seen;
   LensFit fit;
   fit.camera = startOf(camera, model, coefficients, sights);
   double error = misfitOf(fit.camera, sights).sum_px2;

@@ -110,7 +110,7 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
     context.throwIfStopped();
     const BoardView& view = camera.observations.views[v];
     if (view.circles.size() < kLeastCircles) continue;
-    const auto found = planarPoses(atOneTime(view), *camera.lens.seen_with, board);
+    const auto found = planarPoses(atOneTime(view), *camera.lens.detection_intrinsics, board);
     if (!found.empty()) errors_px.push_back(found.front().first);
     if (found.empty() || !(found.front().first <= options.largest_reprojection_px)) {
       ++result.rejected;

@@ -30,7 +30,7 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
                                input.cameras[input.worldCamera()].name),
                    "Put the board first that it sees");
   for (const CameraData& camera : input.cameras) {
-    if (!camera.lens.seen_with)
+    if (!camera.lens.detection_intrinsics)
       throw calibrationFailed(camera.name, "has no intrinsics", "Give them " + howTo(HowTo::EditSession));
   }
   if (input.imus.empty() && input.cameras.size() == 1) {

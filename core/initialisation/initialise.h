@@ -5,7 +5,7 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
-#include "core/initialisation/offset_by_parts.h"
+#include "core/initialisation/piecewise_time_offset.h"
 #include "core/initialisation/rotation_agreement.h"
 
 #include <string>

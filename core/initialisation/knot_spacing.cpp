@@ -214,7 +214,7 @@ ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const
     std::vector<double> angles_rad, distances_m;
     for (const CameraPose& pose : each.poses) {
       const double circles = static_cast<double>(camera.observations.views[pose.view].circles.size());
-      const double focal_px = idealFocalLength_px(*camera.lens.seen_with).mean();
+      const double focal_px = idealFocalLength_px(*camera.lens.detection_intrinsics).mean();
       angles_rad.push_back(pose.reprojection_px / (focal_px * std::sqrt(circles)));
       distances_m.push_back(pose.world_from_camera.translation_m.norm());
     }

@@ -151,13 +151,15 @@ bool hasLead(const Bundle& bundle) {
 
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
                                     const RunContext& context, IntrinsicsStory* story) {
-  const std::vector<SensorView> all = sensorViews(input.observations, input.board, input.seen_with, options);
+  const std::vector<SensorView> all =
+      sensorViews(input.observations, input.board, input.detection_intrinsics, options);
   checkCount(all, all.size(), "views", input, options);
   const CameraIntrinsics rough =
-      input.start ? *input.start : roughStart(all, input.board, input.resolution_px, input.seen_with);
+      input.start ? *input.start
+                  : roughStart(all, input.board, input.resolution_px, input.detection_intrinsics);
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
   checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
-  const Estimation given{input.board, input.resolution_px, input.seen_with, options, context};
+  const Estimation given{input.board, input.resolution_px, input.detection_intrinsics, options, context};
   Solution solution = input.start ? Solution{bestOf({*input.start}, views, given), {}} : solve(views, given);
   const Bundle& bundle = solution.bundle;
 

@@ -1,7 +1,7 @@
 // Camera intrinsics from board views (docs/maths.md, 7): views are chosen, a start is found, intrinsics and
 // poses are adjusted together, and the result is judged.
 //
-// The centres of ellipses were fitted in the ideal pixels of `seen_with`. Where that is far from the camera
+// The centres of ellipses were fitted in the ideal pixels of `detection_intrinsics`. Where that is far from the camera
 // as found, they are not quite the centres of true ellipses: let the front end see the events again with the
 // result, and estimate once more.
 #pragma once
@@ -23,7 +23,8 @@ struct IntrinsicsInput {
   const Board& board;
   Resolution resolution_px;
   const BoardObservations& observations;
-  std::optional<CameraIntrinsics> seen_with;  // none: the observations are in the sensor's own pixels
+  std::optional<CameraIntrinsics>
+      detection_intrinsics;  // none: the observations are in the sensor's own pixels
   // Of an estimate before, whose model is kept; none: a start is found, and models are tried.
   std::optional<CameraIntrinsics> start;
 };

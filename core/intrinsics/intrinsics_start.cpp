@@ -123,11 +123,12 @@ CameraIntrinsics otherSide(const CameraIntrinsics& sphere) {
 
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
-                                               const std::optional<CameraIntrinsics>& seen_with) {
+                                               const std::optional<CameraIntrinsics>& detection_intrinsics) {
   std::vector<CameraIntrinsics> starts;
-  if (seen_with) starts.push_back(sameLens(*seen_with, model));
+  if (detection_intrinsics) starts.push_back(sameLens(*detection_intrinsics, model));
   // A plain lens is a guess, which may lead elsewhere.
-  const bool guessed = !seen_with || seen_with->distortion == CameraIntrinsics{}.distortion;
+  const bool guessed =
+      !detection_intrinsics || detection_intrinsics->distortion == CameraIntrinsics{}.distortion;
   const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;
   if (camera) starts.push_back(sameLens(*camera, model));
   if (isSphereModel(model)) {
@@ -141,14 +142,15 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
 }
 
 CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& board,
-                            Resolution resolution_px, const std::optional<CameraIntrinsics>& seen_with) {
+                            Resolution resolution_px,
+                            const std::optional<CameraIntrinsics>& detection_intrinsics) {
   constexpr double kGood_px = 1.0, kClearlyBetter = 0.3;
   const CameraIntrinsics pinhole =
-      intrinsicsStarts(views, board, CameraModel::PinholeRadtan, resolution_px, seen_with).back();
+      intrinsicsStarts(views, board, CameraModel::PinholeRadtan, resolution_px, detection_intrinsics).back();
   const double error_px = startError_px(pinhole, views, board);
   if (error_px < kGood_px) return pinhole;
   const CameraIntrinsics wide =
-      intrinsicsStarts(views, board, CameraModel::DoubleSphere, resolution_px, seen_with).front();
+      intrinsicsStarts(views, board, CameraModel::DoubleSphere, resolution_px, detection_intrinsics).front();
   return startError_px(wide, views, board) < kClearlyBetter * error_px ? wide : pinhole;
 }
 

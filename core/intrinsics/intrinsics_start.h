@@ -24,10 +24,11 @@ CameraIntrinsics otherSide(const CameraIntrinsics& sphere);
 // these and of a few lenses from 100 to 200 degrees across.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
-                                               const std::optional<CameraIntrinsics>& seen_with);
+                                               const std::optional<CameraIntrinsics>& detection_intrinsics);
 
 // One that shows where the boards were: radial-tangential, or double sphere where that sees them clearly better.
 CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& board,
-                            Resolution resolution_px, const std::optional<CameraIntrinsics>& seen_with);
+                            Resolution resolution_px,
+                            const std::optional<CameraIntrinsics>& detection_intrinsics);
 
 }  // namespace evical

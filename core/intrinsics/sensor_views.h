@@ -28,10 +28,10 @@ struct SensorView {
   std::vector<SensorCircle> circles;
 };
 
-// `seen_with`: the camera whose ideal pixels the observations are in; none: they are the sensor's. Views with
+// `detection_intrinsics`: the camera whose ideal pixels the observations are in; none: they are the sensor's. Views with
 // fewer circles than options.least_circles are left out.
 std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
-                                    const std::optional<CameraIntrinsics>& seen_with,
+                                    const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options);
 
 }  // namespace evical

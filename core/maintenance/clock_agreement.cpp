@@ -37,7 +37,7 @@ Moments momentsAt(const std::vector<double>& reference, const std::vector<double
 
 }  // namespace
 
-void RateNorms::add(double time_s, const Eigen::Vector3d& rate_rad_s) {
+void AngularSpeedSeries::add(double time_s, const Eigen::Vector3d& rate_rad_s) {
   const long bin = std::lround(std::floor(time_s / kBin_s));
   if (sums_.empty()) first_ = bin;
   constexpr long kMost = 100'000;  // a thousand seconds
@@ -51,21 +51,21 @@ void RateNorms::add(double time_s, const Eigen::Vector3d& rate_rad_s) {
   counts_[place] += 1.0;
 }
 
-std::vector<double> RateNorms::filled() const {
+std::vector<double> AngularSpeedSeries::filled() const {
   std::vector<double> values(sums_.size(), 0.0);
   for (std::size_t i = 0; i < sums_.size(); ++i)
     values[i] = counts_[i] > 0.0 ? sums_[i] / counts_[i] : i > 0 ? values[i - 1] : 0.0;
   return values;
 }
 
-ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
-                              const MaintenanceOptions& options) {
+ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const AngularSpeedSeries& own,
+                                    const MaintenanceOptions& options) {
   constexpr double kFewest = 300.0;  // bins
   constexpr double kNone = -2.0;     // where too little overlaps
   ClockAgreement best;
   const std::vector<double> a = reference.filled(), b = own.filled();
   const long between = own.firstBin() - reference.firstBin();
-  const long reach = std::lround(std::ceil(options.time_offset_search_s / RateNorms::kBin_s));
+  const long reach = std::lround(std::ceil(options.time_offset_search_s / AngularSpeedSeries::kBin_s));
   std::vector<double> correlations;
   for (long lag = -reach; lag <= reach; ++lag) {
     const Moments sum = momentsAt(a, b, lag - between);
@@ -76,16 +76,16 @@ ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
     best.moved = true;
     if (correlations.back() <= best.correlation) continue;
     best.correlation = correlations.back();
-    best.later_s = -static_cast<double>(lag) * RateNorms::kBin_s;
+    best.later_s = -static_cast<double>(lag) * AngularSpeedSeries::kBin_s;
     best.ratio = std::sqrt(std::max(sum.varianceB(), 0.0) / sum.varianceA());
   }
   // Between bins by a parabola.
-  const long at = reach - std::lround(best.later_s / RateNorms::kBin_s);
+  const long at = reach - std::lround(best.later_s / AngularSpeedSeries::kBin_s);
   if (best.moved && at > 0 && at < 2 * reach) {
     const auto i = static_cast<std::size_t>(at);
     const double bend = correlations[i - 1] - 2.0 * correlations[i] + correlations[i + 1];
     if (bend < 0.0 && correlations[i - 1] > kNone && correlations[i + 1] > kNone)
-      best.later_s -= 0.5 * RateNorms::kBin_s * (correlations[i - 1] - correlations[i + 1]) / bend;
+      best.later_s -= 0.5 * AngularSpeedSeries::kBin_s * (correlations[i - 1] - correlations[i + 1]) / bend;
   }
   return best;
 }

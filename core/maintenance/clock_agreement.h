@@ -12,7 +12,7 @@ namespace evical {
 struct MaintenanceOptions;
 
 // Means of a rate's norm over hundredths of a second.
-class RateNorms {
+class AngularSpeedSeries {
  public:
   static constexpr double kBin_s = 0.01;
 
@@ -36,7 +36,7 @@ struct ClockAgreement {
 };
 
 // Times of both on the reference's clock by the nominal offset.
-ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
-                              const MaintenanceOptions& options);
+ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const AngularSpeedSeries& own,
+                                    const MaintenanceOptions& options);
 
 }  // namespace evical

@@ -45,7 +45,7 @@ PairStateVector walkOf(const PairModel& model, const MaintenanceOptions& options
   return walk;
 }
 
-using PairColours = std::array<NoiseColour, kPairBlocks.size()>;
+using PairColours = std::array<NoiseAutocorrelation, kPairBlocks.size()>;
 
 // Each few windows beside those just before them, which nothing but a change in their midst can part.
 PairColours coloursOf(std::span<const WeighedWindow> windows, const PairModel& model,

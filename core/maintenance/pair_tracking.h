@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/maintenance/imu_pairs.h"
-#include "core/maintenance/noise_colour.h"
+#include "core/maintenance/noise_autocorrelation.h"
 #include "core/numerics/change_test.h"
 
 #include <Eigen/Core>
@@ -41,7 +41,7 @@ struct PairTrack {
   std::vector<PairStep> steps;
   double gyroscope_noise_rad_s = 0.0, accelerometer_noise_m_s2 = 0.0;  // of a point
   // By how much variances are larger than white noise makes them, by block: sigmas above hold it, information does not.
-  std::array<NoiseColour, kPairBlocks.size()> colours;
+  std::array<NoiseAutocorrelation, kPairBlocks.size()> colours;
 };
 
 // `alarm_probability`: that of a false alarm in all of this pair's tests together.

@@ -6,7 +6,7 @@
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/levenberg_marquardt.h"
-#include "core/optimisation/release_words.h"
+#include "core/optimisation/parameter_stage_names.h"
 #include "core/optimisation/sample_errors.h"
 #include "core/optimisation/trajectory_smoothness.h"
 
@@ -78,8 +78,8 @@ class Batch {
   BatchSolution refine();
 
  private:
-  std::vector<ReleaseStages> stages() const;
-  void solveStage(ReleaseStages stage, int index, double tolerance);
+  std::vector<ParameterStages> stages() const;
+  void solveStage(ParameterStages stage, int index, double tolerance);
   void tellReleased(IterationReporter& reporter);
   void solveLastStage();
   void holdStillAxes();
@@ -107,16 +107,16 @@ class Batch {
   std::vector<std::string> free_;  // solved for so far, in words
 };
 
-std::vector<ReleaseStages> Batch::stages() const {
-  std::vector<ReleaseStages> all = {ReleaseStages::Extrinsics};
-  if (input_.imus.size() > 1) all.push_back(ReleaseStages::FurtherImus);
-  if (!input_.imus.empty() && options_.free_imu_intrinsics) all.push_back(ReleaseStages::Mappings);
+std::vector<ParameterStages> Batch::stages() const {
+  std::vector<ParameterStages> all = {ParameterStages::Extrinsics};
+  if (input_.imus.size() > 1) all.push_back(ParameterStages::FurtherImus);
+  if (!input_.imus.empty() && options_.free_imu_intrinsics) all.push_back(ParameterStages::Mappings);
   const bool late = options_.freesIntrinsics() || options_.free_board_size || options_.board_bow;
   if (late && all.back() != lastStage(options_)) all.push_back(lastStage(options_));  // that releases them
   return all;
 }
 
-void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
+void Batch::solveStage(ParameterStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
   IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
   const SolverLimits limits{options_.max_iterations, tolerance, options_.threads};
@@ -219,7 +219,7 @@ Batch::ImuFits Batch::imuFits(const std::vector<SampleErrors>& errors) const {
 }
 
 BatchSolution Batch::run() {
-  const std::vector<ReleaseStages> all = stages();
+  const std::vector<ParameterStages> all = stages();
   updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
   for (std::size_t i = 0; i < all.size(); ++i) {
     solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
@@ -238,7 +238,7 @@ void Batch::holdStillAxes() {
 
 // Solves until convergence with weights that follow from the residuals, and again where they change.
 void Batch::solveLastStage() {
-  const std::vector<ReleaseStages> all = stages();
+  const std::vector<ParameterStages> all = stages();
   constexpr int kMostReweightings = 3;
   for (int i = 0; i == 0 || (i < kMostReweightings && updateWeights()); ++i) {
     solveStage(all.back(), static_cast<int>(all.size()), options_.function_tolerance);
@@ -322,7 +322,7 @@ void Batch::reportNotes() {
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
     for (std::string& note : notesOfUnused(input_, i, weights_.used_samples[i]))
       solution_.notes.push_back(std::move(note));
-    const StillAxes& held = weights_.held_axes[i];
+    const UnexcitedAxes& held = weights_.held_axes[i];
     sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
             options_.gyroscope_rotation
                 ? "the gyroscope's scale and its turn against the accelerometer stay as they are"
@@ -332,7 +332,7 @@ void Batch::reportNotes() {
   }
   if (!input_.imus.empty()) {
     sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
-            weights_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
+            weights_.held_axes[input_.reference_imu].axesWithoutRotation().size(), "translations stay at 0");
   }
   if (!solution_.converged) {
     solution_.notes.emplace_back("the optimiser stopped at its iteration limit before it converged");
@@ -346,7 +346,7 @@ void assertComplete([[maybe_unused]] const CalibrationInput& input,
   assert(initial.cameras.size() == input.cameras.size() && initial.imus.size() == input.imus.size());
   assert(initial.world_from_imu_rotation.segmentCount() >= 1 && initial.imu_in_world_m.segmentCount() >= 1);
   assert(std::all_of(input.cameras.begin(), input.cameras.end(),
-                     [](const CameraData& camera) { return camera.lens.seen_with.has_value(); }));
+                     [](const CameraData& camera) { return camera.lens.detection_intrinsics.has_value(); }));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<double> timeOffsets_s(const CalibrationInput& input, const Calibrati
   for (std::size_t i = 0; i < state.cameras.size(); ++i) {
     append(state.cameras[i]);
     const double furthest_row =
-        0.5 * input.cameras[i].lens.seen_with->resolution_px.height_px;  // from the middle one
+        0.5 * input.cameras[i].lens.detection_intrinsics->resolution_px.height_px;  // from the middle one
     offsets_s.push_back(1e-6 * furthest_row * state.cameras[i].line_delay_us);
     constexpr double kFurthest_sigmas = 2.0;
     offsets_s.push_back(kFurthest_sigmas * exposureSpread_s(input.cameras[i].observations) *
@@ -50,12 +50,12 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   for (const CameraData& camera : input.cameras) {
     const Board& board = input.boardAt(camera.board);
     circle_models_.push_back(
-        {*camera.lens.seen_with, board.radius_m, options.huber_sigma, options.freesIntrinsics()});
+        {*camera.lens.detection_intrinsics, board.radius_m, options.huber_sigma, options.freesIntrinsics()});
     pixel_errors_.emplace_back(camera, board, pixel_error_px);
   }
 }
 
-void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
+void CalibrationProblem::build(ParameterStages stage, const Weights& weights) {
   parameters_.followSensors();
   const CalibrationState& state = parameters_.moved();
   residuals_.clear();
@@ -65,7 +65,7 @@ void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     addCircles(builder, i, circle_models_[i], pixel_errors_[i]);
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
-    if (builder.isReference(i) || stage != ReleaseStages::Extrinsics) addImu(builder, i);
+    if (builder.isReference(i) || stage != ParameterStages::Extrinsics) addImu(builder, i);
   }
   addPriors(builder);
   addKnownValues(builder);
@@ -118,7 +118,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   for (const Quantity& quantity : parameters_.quantities()) {
     const QuantityRelease release = quantity.info->release;
     const bool held =
-        (release == QuantityRelease::ImuIntrinsics && builder.stage != ReleaseStages::Mappings) ||
+        (release == QuantityRelease::ImuIntrinsics && builder.stage != ParameterStages::Mappings) ||
         (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
         (release == QuantityRelease::BoardBow && !(last && options_.board_bow)) ||
         (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld()) ||

@@ -24,7 +24,7 @@ class CalibrationProblem {
   CalibrationProblem& operator=(const CalibrationProblem&) = delete;
 
   // Assigns every measurement to the spline segment where the time offsets put it now.
-  void build(ReleaseStages stage, const Weights& weights);
+  void build(ParameterStages stage, const Weights& weights);
 
   ceres::Problem& problem() { return *problem_; }
   const std::vector<BlockInfo>& blocks() const { return residuals_; }

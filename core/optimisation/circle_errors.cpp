@@ -23,10 +23,11 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
                                                const BoardState& board_state) {
   const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.point_m(circle.circle));
   const Eigen::Vector3d normal = camera_from_world.rotation * board_state.normal();
-  const auto projected = state.lens.solved
-                             ? projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px),
-                                                   *state.lens.solved, in_camera_m, normal, board.radius_m)
-                             : projectCircle(*camera.lens.seen_with, in_camera_m, normal, board.radius_m);
+  const auto projected =
+      state.lens.solved
+          ? projectCircleBeside(seenCentre(*camera.lens.detection_intrinsics, circle.centre_px),
+                                *state.lens.solved, in_camera_m, normal, board.radius_m)
+          : projectCircle(*camera.lens.detection_intrinsics, in_camera_m, normal, board.radius_m);
   return projected ? std::optional(projected->centre_px) : std::nullopt;
 }
 
@@ -55,7 +56,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                             input.boardOf(c), state.boardAt(camera.board));
         if (centre_px) {
           const EdgeLeadEffect lead =
-              edgeLeadEffect(*camera.lens.seen_with, circle, options.slow_edge_speed_px_s);
+              edgeLeadEffect(*camera.lens.detection_intrinsics, circle, options.slow_edge_speed_px_s);
           error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
           const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
           error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);

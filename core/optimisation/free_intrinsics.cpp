@@ -15,8 +15,9 @@
 #include <vector>
 
 namespace evical {
-SeenCentre seenCentre(const CameraIntrinsics& seen_with, const Eigen::Vector2d& ideal_px) {
-  return {ideal_px, pixelFromIdeal(seen_with, ideal_px), idealPixelScale(seen_with, ideal_px)};
+SeenCentre seenCentre(const CameraIntrinsics& detection_intrinsics, const Eigen::Vector2d& ideal_px) {
+  return {ideal_px, pixelFromIdeal(detection_intrinsics, ideal_px),
+          idealPixelScale(detection_intrinsics, ideal_px)};
 }
 
 std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const CameraIntrinsics& camera,
@@ -38,7 +39,7 @@ std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const
 
 IntrinsicsBlock::IntrinsicsBlock(const CameraLens& lens, const CameraState& state,
                                  const OptimisationOptions& options)
-    : seen_with_(*lens.seen_with) {
+    : seen_with_(*lens.detection_intrinsics) {
   writeIntrinsics(state.lens.solved.value_or(seen_with_), parameters_.data());
   writeIntrinsics(seen_with_, prior_mean_.data());
   const IntrinsicsMatrix covariance = lensPriorCovariance(lens, options);

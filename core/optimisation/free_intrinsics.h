@@ -3,8 +3,8 @@
 // Measured centres stay in the ideal pixels of the camera that the front end saw with: there,
 // covariances, leads and the pixels' errors are known. What another camera predicts is compared on
 // the sensor and brought there:
-//   r = S [ project(camera, centre of the projected circle's conic) - distort(seen_with, measured) ],
-//   S = d(ideal pixel)/d(pixel) of seen_with at the measured centre.
+//   r = S [ project(camera, centre of the projected circle's conic) - distort(detection_intrinsics, measured) ],
+//   S = d(ideal pixel)/d(pixel) of detection_intrinsics at the measured centre.
 // Where the camera is the one seen with, r is predicted - measured in ideal pixels, to second order in r.
 #pragma once
 
@@ -32,7 +32,7 @@ struct SeenCentre {
   Eigen::Vector2d sensor_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d ideal_from_sensor = Eigen::Matrix2d::Identity();  // S
 };
-SeenCentre seenCentre(const CameraIntrinsics& seen_with, const Eigen::Vector2d& ideal_px);
+SeenCentre seenCentre(const CameraIntrinsics& detection_intrinsics, const Eigen::Vector2d& ideal_px);
 
 // As projectCircle, with the result in the ideal pixels that `seen` is in.
 std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const CameraIntrinsics& camera,

@@ -21,11 +21,11 @@ void holdScaleRatherThanLength(const CameraIntrinsics& camera, IntrinsicsMatrix&
 
 IntrinsicsMatrix lensPriorCovariance(const CameraLens& lens, const OptimisationOptions& options) {
   IntrinsicsVector weak = IntrinsicsVector::Constant(options.camera_distortion_sigma);
-  weak.head<2>() = options.camera_focal_length_sigma * lens.seen_with->focal_length_px;
+  weak.head<2>() = options.camera_focal_length_sigma * lens.detection_intrinsics->focal_length_px;
   weak.segment<2>(2).setConstant(options.camera_principal_point_sigma_px);
   IntrinsicsMatrix covariance = weak.cwiseAbs2().asDiagonal();
   if (!lens.given_with) {
-    holdScaleRatherThanLength(*lens.seen_with, covariance);
+    holdScaleRatherThanLength(*lens.detection_intrinsics, covariance);
     return covariance;
   }
   const IntrinsicsMatrix given = lens.given_with->covariance();

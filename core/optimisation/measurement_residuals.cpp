@@ -39,7 +39,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.on_board_m = builder.input.boardOf(camera).point_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead = edgeLeadEffect(*data.lens.seen_with, observed, builder.options.slow_edge_speed_px_s);
+  m.lead = edgeLeadEffect(*data.lens.detection_intrinsics, observed, builder.options.slow_edge_speed_px_s);
   m.pixel_error_px = pixel_errors.at(observed);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);

@@ -9,14 +9,14 @@
 namespace evical {
 
 // How far the staged release has gone.
-enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
+enum class ParameterStages { Extrinsics, FurtherImus, Mappings };
 
 struct OptimisationOptions : ModelOptions, PriorOptions, SolverOptions, VerdictOptions {
   bool operator==(const OptimisationOptions&) const = default;
 };
 
-inline ReleaseStages lastStage(const ModelOptions& options) {
-  return options.free_imu_intrinsics ? ReleaseStages::Mappings : ReleaseStages::FurtherImus;
+inline ParameterStages lastStage(const ModelOptions& options) {
+  return options.free_imu_intrinsics ? ParameterStages::Mappings : ParameterStages::FurtherImus;
 }
 
 }  // namespace evical

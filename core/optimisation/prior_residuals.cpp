@@ -49,7 +49,8 @@ void holdTranslation(ProblemBuilder& builder, double* translation_m,
                      const std::optional<KnownVector>& known) {
   constexpr double kSigma_m = 1e-4;
   if (builder.input.imus.empty() || !builder.has(translation_m)) return;
-  for (const Eigen::Vector3d& axis : builder.weights.held_axes[builder.input.reference_imu].leverless()) {
+  for (const Eigen::Vector3d& axis :
+       builder.weights.held_axes[builder.input.reference_imu].axesWithoutRotation()) {
     builder.addPrior(
         new HeldTranslationCost(axis, known ? known->value : Eigen::Vector3d::Zero().eval(), kSigma_m),
         {translation_m});
@@ -68,7 +69,7 @@ void addCameraPriors(ProblemBuilder& builder) {
   std::vector<CameraState>& cameras = builder.parameters.moved().cameras;
   const auto add = [&](std::size_t i, std::initializer_list<QuantityId> ids) {
     const CameraData& data = builder.input.cameras[i];
-    const PriorOwner owner{data.lens.seen_with->resolution_px.height_px};
+    const PriorOwner owner{data.lens.detection_intrinsics->resolution_px.height_px};
     addWeakPriors(builder, kCameraQuantities, ids, owner, data.prior, cameras[i]);
   };
   for (std::size_t i = 0; i < cameras.size(); ++i) add(i, {QuantityId::EdgeLead, QuantityId::SlowEdgeLead});
@@ -103,8 +104,8 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
   const ImuNoise& noise = builder.input.imus[imu].noise;
   for (const ceres::ResidualBlockId id : addDriftPriors(builder.problem, builder.options, noise, state))
     builder.residuals.push_back({id});
-  if (builder.stage != ReleaseStages::Mappings) return;
-  const StillAxes& held = builder.weights.held_axes[imu];
+  if (builder.stage != ParameterStages::Mappings) return;
+  const UnexcitedAxes& held = builder.weights.held_axes[imu];
   add({QuantityId::GyroscopeMapping, QuantityId::AccelerometerMapping, QuantityId::AccelerometerDelay});
   holdMapping(builder, builder.parameters.of(state.gyroscope_mapping), held.gyroscope,
               prior.gyroscope_mapping);

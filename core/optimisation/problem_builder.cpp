@@ -17,7 +17,7 @@ double exposureSpread_s(const BoardObservations& observations) {
 
 bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
   const std::optional<KnownRotation>& prior = input.imus[imu].prior.gyroscope_rotation;
-  return (options.gyroscope_rotation || prior) && !isGiven(prior) && stage == ReleaseStages::Mappings &&
+  return (options.gyroscope_rotation || prior) && !isGiven(prior) && stage == ParameterStages::Mappings &&
          weights.held_axes[imu].gyroscope.empty();
 }
 
@@ -37,14 +37,14 @@ bool ProblemBuilder::drifts(const SensorPrior& prior) const {
 
 bool ProblemBuilder::rolls(std::size_t camera) const {
   const CameraData& data = input.cameras[camera];
-  return data.observations.kind != CameraKind::Events && stage != ReleaseStages::Extrinsics &&
+  return data.observations.kind != CameraKind::Events && stage != ParameterStages::Extrinsics &&
          (data.shutter == Shutter::Rolling || options.line_delay);
 }
 
 // Where all frames are exposed as long, what passes before a stamp is part of the time offset.
 bool ProblemBuilder::exposuresVary(std::size_t camera) const {
   constexpr double kLeast_s = 1e-4;  // half of it is a time that can be told
-  return stage != ReleaseStages::Extrinsics &&
+  return stage != ParameterStages::Extrinsics &&
          exposureSpread_s(input.cameras[camera].observations) > kLeast_s;
 }
 

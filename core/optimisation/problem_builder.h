@@ -32,7 +32,7 @@ struct ProblemBuilder {
   const CalibrationInput& input;
   const OptimisationOptions& options;
   const Weights& weights;
-  ReleaseStages stage;
+  ParameterStages stage;
   ParameterBlocks& parameters;
   ceres::Problem& problem;
   std::vector<BlockInfo>& residuals;

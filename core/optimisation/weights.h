@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/unfit_samples.h"
-#include "core/optimisation/still_axes.h"
+#include "core/optimisation/unexcited_axes.h"
 
 #include <cstdint>
 #include <vector>
@@ -27,7 +27,7 @@ struct Weights {
   CircleSelection used_circles;
   std::vector<SampleSelection> used_samples;  // by IMU
   // By IMU: along these a mapping stays as it is, and translations stay at 0.
-  std::vector<StillAxes> held_axes;
+  std::vector<UnexcitedAxes> held_axes;
 };
 
 CircleSelection allCircles(const CalibrationInput& input);

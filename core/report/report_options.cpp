@@ -6,10 +6,10 @@ namespace evical {
 namespace {
 
 constexpr std::tuple kReportFields{
-    Switch{"cross_validation", &ReportOptions::cross_validation, true,
+    Switch{"split_half_check", &ReportOptions::split_half_check, true,
            "Estimate once more from each half of the recording, and say how far the two differ.",
            Level::Public},
-    Field{"cross_validation_block_s", &ReportOptions::cross_validation_block_s, 2.5, within(0.2, 1000.0), "s",
+    Field{"split_half_check_block_s", &ReportOptions::split_half_check_block_s, 2.5, within(0.2, 1000.0), "s",
           "Blocks of this length go to the one half and to the other in turn; shorter where that makes fewer "
           "than 4.",
           Level::Expert}};

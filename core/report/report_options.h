@@ -6,8 +6,8 @@
 namespace evical {
 
 struct ReportOptions {
-  bool cross_validation;
-  double cross_validation_block_s;
+  bool split_half_check;
+  double split_half_check_block_s;
 
   ReportOptions();  // the defaults
   constexpr explicit ReportOptions(NoDefaults) {}

@@ -4,7 +4,7 @@
 #include "core/format/intrinsics_yaml.h"
 #include "core/format/quantity_yaml.h"
 #include "core/numerics/angles.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 #include "core/report/result_yaml.h"
 
 #include <fmt/format.h>
@@ -241,7 +241,7 @@ void readUncertainty(const YamlNode& root, const NamedResult& named, const Calib
   }
 }
 
-void readCrossValidation(const YamlNode& map, CrossValidation& validation) {
+void readSplitHalfCheck(const YamlNode& map, SplitHalfCheck& validation) {
   get(map, "block_s", validation.block_s);
   get(map, "failure", validation.failure);
   get(map, "rms_sigmas", validation.rms_sigmas);
@@ -295,11 +295,11 @@ void readRun(const YamlNode& root, NamedResult& named, CalibrationResult& result
     }
 }
 
-void readCauses(const YamlNode& root, std::vector<Doubt>& causes) {
+void readCauses(const YamlNode& root, std::vector<QualityWarning>& causes) {
   const auto list = root.find("causes");
   if (!list) return;
   for (const YamlNode& item : list->items()) {
-    Doubt& cause = causes.emplace_back();
+    QualityWarning& cause = causes.emplace_back();
     get(item, "name", cause.name);
     get(item, "explains", cause.explains);
     get(item, "text", cause.text);
@@ -343,8 +343,8 @@ NamedResult resultFrom(const YamlNode& root) {
       result.rejected_windows.push_back({cameraOf(window["camera"], named), window["time_s"].real()});
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
   readUncertainty(root, named, result.state, result.uncertainty);
-  if (const auto validation = root.find("cross_validation"))
-    readCrossValidation(*validation, result.cross_validation.emplace());
+  if (const auto validation = root.find("split_half_check"))
+    readSplitHalfCheck(*validation, result.split_half_check.emplace());
   readRun(root, named, result);
   named.result = std::make_shared<const CalibrationResult>(std::move(result));
   return named;

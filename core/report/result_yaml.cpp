@@ -7,7 +7,7 @@
 #include "core/format/quantity_yaml.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 #include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
@@ -201,9 +201,9 @@ std::string uncertaintyYaml(const NamedResult& named) {
   return text;
 }
 
-std::string crossValidationYaml(const CrossValidation& validation) {
+std::string splitHalfCheckYaml(const SplitHalfCheck& validation) {
   std::string text =
-      fmt::format("cross_validation:\n  block_s: {}\n  windows: [{}, {}]\n", roundedYaml(validation.block_s),
+      fmt::format("split_half_check:\n  block_s: {}\n  windows: [{}, {}]\n", roundedYaml(validation.block_s),
                   validation.windows[0], validation.windows[1]);
   if (!validation.failure.empty()) return text + fmt::format("  failure: {}\n", yamlText(validation.failure));
   text += fmt::format("  rms_sigmas: {}\n  differences:\n", roundedYaml(validation.rms_sigmas));
@@ -223,9 +223,9 @@ std::string rejectedYaml(const NamedResult& named) {
 }
 
 // What makes it doubtful, or fail, one by one.
-std::string causesYaml(const std::vector<Doubt>& causes) {
+std::string causesYaml(const std::vector<QualityWarning>& causes) {
   std::string text;
-  for (const Doubt& cause : causes) {
+  for (const QualityWarning& cause : causes) {
     text += fmt::format("  - name: {}\n", yamlText(cause.name));
     if (cause.explains > 0.0) text += fmt::format("    explains: {}\n", roundedYaml(cause.explains));
     text += fmt::format("    text: {}\n", yamlText(cause.text));
@@ -288,7 +288,7 @@ std::string resultYaml(const NamedResult& named) {
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
   text += uncertaintyYaml(named);
-  if (named.result->cross_validation) text += crossValidationYaml(*named.result->cross_validation);
+  if (named.result->split_half_check) text += splitHalfCheckYaml(*named.result->split_half_check);
   return text + runYaml(named);
 }
 

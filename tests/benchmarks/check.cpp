@@ -65,8 +65,8 @@ Change apply(int k, double factor, SimulatedCamera& camera) {
 }
 
 // As the old result's lens sees it.
-RecordingPass passOf(const Scenario& scenario, const CameraIntrinsics& lens, bool from_events) {
-  RecordingPass pass = test::perfectPass(scenario, kNoise_px, kWindow_s);
+DetectionResult passOf(const Scenario& scenario, const CameraIntrinsics& lens, bool from_events) {
+  DetectionResult pass = test::perfectPass(scenario, kNoise_px, kWindow_s);
   if (from_events) {
     BoardTracker tracker(scenario.board, lens.resolution_px, lens, {}, scenario.start_ns);
     simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
@@ -90,7 +90,7 @@ void makePoor(int kind, Scenario& scenario) {
 }
 
 // The half of the board, and that for a part of the time only.
-void hideHalf(const Board& board, RecordingPass& pass) {
+void hideHalf(const Board& board, DetectionResult& pass) {
   for (BoardView& view : pass.cameras.front().views)
     std::erase_if(view.circles,
                   [&](const CircleObservation& circle) { return 2 * circle.circle < board.pointCount(); });
@@ -187,8 +187,8 @@ NamedResult resultBefore(const Arguments& arguments, int five) {
   scenario.duration_s = arguments.before_s;
   scenario.seed += static_cast<std::uint64_t>(five);
   Session session = test::sessionFor(scenario);
-  session.options.report.edit().cross_validation = false;
-  RecordingPass pass = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
+  session.options.report.edit().split_half_check = false;
+  DetectionResult pass = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
   const CalibrationRun run = calibrate(session, std::move(pass), {});
   return namedResult(session, std::make_shared<const CalibrationResult>(run.result), "benchmark");
 }
@@ -214,7 +214,7 @@ Row checkPair(const Arguments& arguments, int pair, const NamedResult& before) {
     setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
   }
   const CheckInput input = checkInputOf(before, session);
-  RecordingPass pass = passOf(scenario, *input.session.cameras.front().intrinsics, arguments.events);
+  DetectionResult pass = passOf(scenario, *input.session.cameras.front().intrinsics, arguments.events);
   if (of_five == 4 && poor == 2) hideHalf(scenario.board, pass);
   row.check = checkCalibration(input, std::move(pass), {}).check;
   return row;

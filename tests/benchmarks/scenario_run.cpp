@@ -62,8 +62,8 @@ BoardObservations fromFrames(const Scenario& scenario, const Session& session, s
   return found;
 }
 
-RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
-  RecordingPass pass;
+DetectionResult detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
+  DetectionResult pass;
   pass.start_ns = scenario.start_ns;
   double busy_s = 0.0;
   std::uint64_t events_read = 0;
@@ -103,7 +103,7 @@ Outcome runScenario(const Scenario& scenario, const std::function<void(Session&)
   Outcome outcome;
   Session session = test::sessionFor(scenario);
   if (change) change(session);
-  RecordingPass pass = detect(scenario, session, outcome);
+  DetectionResult pass = detect(scenario, session, outcome);
   outcome.windows_found = windowsFound(scenario, pass.cameras.front());
   const Stopwatch stopwatch;
   try {

@@ -27,7 +27,7 @@ BoardObservations detect(const Scenario& scenario, const std::vector<Event>& eve
   BoardTracker tracker(scenario.board, camera.resolution_px, camera, options, scenario.start_ns);
   double extracting_s = 0.0, tracking_s = 0.0;
   std::size_t burst_count = 0;
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (std::size_t k = 0; k < events.size(); k += kBatch) {
     const EventSpan batch(events.data() + k, std::min(kBatch, events.size() - k));
     double begin = test::threadCpu_s();
@@ -56,7 +56,7 @@ void search(const Scenario& scenario, const std::vector<Event>& events) {
   options.detection.try_both = false;
   const BoardScene scene(scenario.board, camera.resolution_px, camera);
   BurstExtractor extractor(camera.resolution_px, options.bursts);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   extractor.add(events, bursts);
   extractor.finish(bursts);
   BurstHistory history;

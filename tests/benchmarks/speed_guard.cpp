@@ -17,7 +17,7 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
-#include "core/pipeline/rig/cross_validation.h"
+#include "core/pipeline/rig/split_half_check.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/recording/recording_reader.h"
 #include "core/report/report_options.h"
@@ -60,7 +60,7 @@ std::string processor() {
 
 // What a tracker gets with each batch of events.
 struct BurstBatch {
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   std::int64_t first_event_ns, complete_until_ns;
 };
 
@@ -77,7 +77,7 @@ class Stages {
     session_ = simulated.session;
     // One thread: waiting for another is no work.
     session_.options.optimisation.edit().threads = 1;
-    start_ = startCalibration(session_, std::move(simulated.pass), context_);
+    start_ = initialiseCalibration(session_, std::move(simulated.pass), context_);
   }
 
   void reference() { speedReference(); }
@@ -129,8 +129,8 @@ class Stages {
     estimateUncertainty(start_.input, solution_, *session_.options.optimisation, context_);
   }
   void halves() {
-    crossValidate(start_.input, solution_.state, *session_.options.optimisation,
-                  session_.options.report->cross_validation_block_s, context_);
+    checkHalves(start_.input, solution_.state, *session_.options.optimisation,
+                session_.options.report->split_half_check_block_s, context_);
   }
   void lens() {
     estimateIntrinsics({lens_.session.board,
@@ -152,7 +152,7 @@ class Stages {
   Session session_;
   std::vector<Event> events_;
   std::vector<BurstBatch> batches_;
-  CalibrationStart start_;
+  InitialisedCalibration start_;
   BatchSolution solution_;
   test::SimulatedPass lens_;
 };

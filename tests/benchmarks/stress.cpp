@@ -96,7 +96,7 @@ Misfit misfitOf(const CalibrationRun& run) {
     misfit.accelerometer = std::max(
         misfit.accelerometer, fit.accelerometer_rms_m_s2 / (imu.noise.accelerometer_density * root_rate));
   }
-  if (run.result.cross_validation) misfit.halves_sigmas = run.result.cross_validation->rms_sigmas;
+  if (run.result.split_half_check) misfit.halves_sigmas = run.result.split_half_check->rms_sigmas;
   return misfit;
 }
 
@@ -123,7 +123,7 @@ Outcome calibrated(const Recorded& recorded) {
 struct Source {
   bool perfect = false;  // circles as a perfect front end sees them: in seconds
 
-  RecordingPass pass(const Scenario& scenario, const Session& session) const {
+  DetectionResult pass(const Scenario& scenario, const Session& session) const {
     constexpr double kSigma_px = 0.05, kWindow_s = 0.02;
     return perfect ? test::perfectPass(scenario, kSigma_px, kWindow_s)
                    : test::detectedPass(scenario, session);

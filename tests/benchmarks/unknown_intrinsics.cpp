@@ -129,7 +129,7 @@ int run(int argc, char** argv) {
       scenario.intrinsics_in_session = false;
       const SimulationSummary made = simulate(scenario, folder, {});
       Session session = readSession(made.session);
-      session.options.report.edit().cross_validation = false;
+      session.options.report.edit().split_half_check = false;
       const NamedResult truth = readResultYaml(made.truth);
       const std::array<CalibrationRun, kWays> runs = calibrateEveryWay(session, scenario);
       std::filesystem::remove_all(folder);

@@ -31,7 +31,7 @@ def bag():
 @pytest.fixture
 def session():
     session = evical.Session.load(SIMULATED / "short_bag" / "session.yaml")
-    session.set("report.cross_validation", False)
+    session.set("report.split_half_check", False)
     return session
 
 
@@ -40,7 +40,7 @@ def calibrated(tmp_path_factory):
     """The result of the short recording, and the folder that it was written into."""
     folder = tmp_path_factory.mktemp("calibrated") / "result"
     session = evical.Session.load(SIMULATED / "short_bag" / "session.yaml")
-    session.set("report.cross_validation", False)
+    session.set("report.split_half_check", False)
     return evical.calibrate(session, output=folder), folder
 
 

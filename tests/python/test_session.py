@@ -25,7 +25,7 @@ def test_a_session_saved_is_the_session_loaded(session, tmp_path):
     assert loaded.imus["left_imu"].gyroscope_noise_density == 2e-3
     assert list(loaded.time_range_s) == [0.5, 5]
     assert loaded.options["grid.least_circles"] == 9
-    assert loaded.options["report.cross_validation"] is False
+    assert loaded.options["report.split_half_check"] is False
     assert pathlib.Path(loaded.source) == file
 
 
@@ -104,7 +104,7 @@ def test_the_boards_points_are_in_metres(session):
 
 def test_an_assignment_that_would_be_lost_is_refused(session):
     with pytest.raises(TypeError, match="does not support item assignment"):
-        session.options["report.cross_validation"] = False
+        session.options["report.split_half_check"] = False
     with pytest.raises(TypeError):
         session.cameras["right"] = session.cameras["left"]
     with pytest.raises(AttributeError):

@@ -148,7 +148,7 @@ Session LyingRecording::tell(std::span<const std::uint8_t> lies) const {
   write(std::move(content));
   Session session = sessionFor(scenario_);
   session.recording = folder_ / "lies.bag";
-  session.options.report.edit().cross_validation = false;
+  session.options.report.edit().split_half_check = false;
   return session;
 }
 

@@ -18,7 +18,7 @@ namespace evical::test {
 struct Recorded {
   Scenario scenario;
   Session session;
-  RecordingPass pass;
+  DetectionResult pass;
 };
 
 enum class PerturbedStage {

@@ -16,7 +16,7 @@ namespace {
 template <class Change>
 void changeLens(Recorded& recorded, Change&& change) {
   for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
-    const CameraIntrinsics truth = *recorded.pass.lenses[k].seen_with;
+    const CameraIntrinsics truth = *recorded.pass.lenses[k].detection_intrinsics;
     CameraIntrinsics said = truth;
     change(said);
     recorded.session.cameras[k].intrinsics = said;

@@ -44,7 +44,7 @@ void moveCircles(Recorded& recorded, PairAt&& pairAt) {
   const SinusoidMotion motion(recorded.scenario);
   for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
     const SimulatedCamera& camera = recorded.scenario.cameras[k];
-    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
+    CameraIntrinsics ideal = *recorded.pass.lenses[k].detection_intrinsics;
     ideal.distortion = {};
     ideal.model = CameraModel::PinholeRadtan;
     for (BoardView& view : recorded.pass.cameras[k].views) {

@@ -18,10 +18,10 @@ namespace evical::test {
 namespace {
 
 // Of lens and noise as the session has them, which need not be true.
-RecordingPass passWith(const Scenario& scenario, const CameraIntrinsics& lens,
-                       BoardObservations observations) {
+DetectionResult passWith(const Scenario& scenario, const CameraIntrinsics& lens,
+                         BoardObservations observations) {
   const Scenario said = asSessionSays(scenario);
-  RecordingPass pass;
+  DetectionResult pass;
   pass.start_ns = scenario.start_ns;
   observations.camera = scenario.cameras.front().name;
   pass.cameras.push_back(std::move(observations));
@@ -63,7 +63,7 @@ Session sessionFor(const Scenario& truth) {
   return session;
 }
 
-RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
+DetectionResult detectedPass(const Scenario& scenario, const Session& session) {
   const CameraIntrinsics camera = asSessionSays(scenario).cameras.front().intrinsics;
   BoardTracker tracker(session.board, camera.resolution_px, camera, *session.options.front_end,
                        scenario.start_ns);
@@ -71,7 +71,7 @@ RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
   return passWith(scenario, camera, tracker.finish());
 }
 
-RecordingPass perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s) {
+DetectionResult perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s) {
   const CameraIntrinsics &truth = scenario.cameras.front().intrinsics,
                          said = asSessionSays(scenario).cameras.front().intrinsics;
   BoardObservations observations = simulateObservations(scenario, 0, centre_sigma_px, window_s);

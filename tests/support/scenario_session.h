@@ -12,9 +12,9 @@ Session sessionFor(const Scenario& scenario);
 
 // The IMUs' samples, and the first camera's circles as the front end finds them in the simulated events, looking
 // for the session's board.
-RecordingPass detectedPass(const Scenario& scenario, const Session& session);
+DetectionResult detectedPass(const Scenario& scenario, const Session& session);
 // The same with circles as a perfect front end sees them, with noise: without events, and quickly.
-RecordingPass perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s);
+DetectionResult perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s);
 
 NamedResult truthOf(const Scenario& scenario);
 

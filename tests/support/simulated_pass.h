@@ -13,7 +13,7 @@ namespace evical::test {
 struct SimulatedPass {
   Scenario truth;
   Session session;
-  RecordingPass pass;
+  DetectionResult pass;
 };
 
 // A scenario of config/scenarios, shortened; circle centres with a noise of 0.05 px.

@@ -14,7 +14,7 @@ SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptio
   const SimulatedCamera& camera = scenario.cameras.front();
   CameraMotion motion(camera.intrinsics, options, scenario.start_ns);
   BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end->bursts);
-  std::vector<EdgeBurst> found;
+  std::vector<EdgeCrossing> found;
   simulateEvents(
       scenario, 0,
       [&](EventSpan events) {

@@ -230,7 +230,7 @@ void TestCommandLine::calibrate_profileTellsWhereItsTimeGoes() {
   QStringList stages;
   for (const QJsonValue& event : QJsonDocument::fromJson(readFile(trace)).object()["traceEvents"].toArray())
     if (event["ph"].toString() == "X" && event["tid"].toInt() == 0) stages.append(event["name"].toString());
-  QCOMPARE(stages, (QStringList{"detect", "initialise", "optimise", "cross_validate"}));
+  QCOMPARE(stages, (QStringList{"detect", "initialise", "optimise", "split_half_check"}));
 }
 
 void TestCommandLine::export_writesTheFoldersOfTargets() {

@@ -24,7 +24,7 @@ namespace evical::ui::test {
 struct Recorded {
   QTemporaryDir folder;  // for what tests write
   Session session;
-  RecordingPass pass;
+  DetectionResult pass;
 
   explicit Recorded(const std::string& name = "davis346", double duration_s = 2.0) {
     session = readSession(evical::test::simulatedRecording(name, duration_s));

@@ -47,7 +47,7 @@ inline Example makeExample(double duration_s) {
   Example example;
   example.rig = evical::test::simulateRig(options);
   example.session = sessionOf(example.rig.input);
-  RecordingPass pass;
+  DetectionResult pass;
   pass.start_ns = example.rig.input.start_ns;
   for (const CameraData& camera : example.rig.input.cameras) {
     pass.cameras.push_back(camera.observations);

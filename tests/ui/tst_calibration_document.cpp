@@ -189,7 +189,7 @@ class TestCalibrationDocument : public QObject {
     document.startSession(session);
     const auto run = std::make_shared<CalibrationRun>();
     run->intrinsics.emplace_back(IntrinsicsResult{}).value().intrinsics = known;
-    run->result.state.cameras.emplace_back().lens.seen_with = known;
+    run->result.state.cameras.emplace_back().lens.detection_intrinsics = known;
     document.addRun({run, document.session(), {}});
     QVERIFY(document.last().run->result.state.cameras[0].lens.inUse() == known);
     QVERIFY(!document.last().session.cameras[0].intrinsics);

@@ -12,9 +12,9 @@
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/timeline.h"
 #include "ui/jobs/growing_recording.h"
-#include "ui/screens/check_words.h"
 #include "ui/screens/recording/check_card.h"
 #include "ui/screens/recording/recording_screen.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/window/session_files.h"
 
 #include <QCheckBox>

@@ -208,7 +208,7 @@ class TestMainWindow : public QObject {
     QVERIFY2(steps->textOf("intrinsics").contains("done"), qPrintable(steps->textOf("intrinsics")));
     const RunRecord& last = test.document().last();
     const auto lens = [&] { return last.run->result.state.cameras[0].lens; };
-    QVERIFY(std::abs(lens().seen_with->focal_length_px.x() - truth_px) < 0.005 * truth_px);
+    QVERIFY(std::abs(lens().detection_intrinsics->focal_length_px.x() - truth_px) < 0.005 * truth_px);
     QVERIFY(!test.document().runIsOutdated());
     test.window.showScreen("result");
     spin(200);  // filled in a turn of its own

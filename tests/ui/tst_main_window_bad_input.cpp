@@ -96,7 +96,7 @@ class TestMainWindowBadInput : public QObject {
     QCOMPARE(button->text(), QString("Set accelerometer_axes to x,y,z and calibrate again"));
     QTest::mouseClick(button, Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    QVERIFY(test.document().session().imus[0].accelerometer_axes == kAxesAsTheyAre);
+    QVERIFY(test.document().session().imus[0].accelerometer_axes == kIdentityAxes);
     QVERIFY(test.document().last().run);
     QVERIFY(!test.child<ErrorPanel>()->isVisible());
     test.press(Qt::Key_Z, Qt::ControlModifier);

@@ -126,7 +126,7 @@ void TestResidualsScreen::rejecting_improvesTheCalibration() {
   ResidualsScreen screen;
   fill(screen);
   screen.setThreshold(0.11);
-  const RecordingPass kept = withoutViews(run_->pass, 0, screen.rejectedWindows());
+  const DetectionResult kept = withoutViews(run_->pass, 0, screen.rejectedWindows());
   const CalibrationRun again = calibrate(simulated_.session, kept, {});
   QVERIFY(again.result.cameras[0].reprojection_rms_px < run_->result.cameras[0].reprojection_rms_px);
 }

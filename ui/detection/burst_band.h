@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/frontend/burst_window.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "ui/detection/event_cache.h"
 
 #include <memory>
@@ -35,7 +35,7 @@ class BurstBand {
   std::int64_t covered_from_ns_ = 0, fed_until_ns_ = 0;
   bool running_ = false;
   std::vector<Event> events_;
-  std::vector<EdgeBurst> bursts_;
+  std::vector<EdgeCrossing> bursts_;
 };
 
 }  // namespace evical::ui

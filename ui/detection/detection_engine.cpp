@@ -22,7 +22,7 @@ std::filesystem::path cacheFolder() {
       .toStdString();
 }
 
-std::size_t eventsOfWindow(const EventCache& cache, std::int64_t start_ns, const DetectionWish& wish) {
+std::size_t eventsOfWindow(const EventCache& cache, std::int64_t start_ns, const DetectionRequest& wish) {
   return cache.count(start_ns + nanosecondsFrom(wish.time_s - wish.half_width_s),
                      start_ns + nanosecondsFrom(wish.time_s + wish.half_width_s));
 }
@@ -123,7 +123,7 @@ class DetectionEngine::Analyst {
   }
 
   DetectionEngine& engine_;
-  Sight sight_;
+  DetectionSetup sight_;
   std::shared_ptr<const BoardScene> scene_;
   BurstOptions bursts_;
   std::shared_ptr<const EventCache> cache_;
@@ -180,7 +180,7 @@ PictureSource DetectionEngine::pictureSource() const {
   return {overview.kind, caches.events, caches.frames, overview.start_ns, overview.resolution_px};
 }
 
-void DetectionEngine::show(const DetectionWish& wish) {
+void DetectionEngine::show(const DetectionRequest& wish) {
   if (!reader_) return;
   const RecordingOverview overview = reader_->overview();
   const RecordingCaches caches = reader_->caches();
@@ -335,7 +335,7 @@ void DetectionEngine::renderSurface(const RenderTask& task) {
     put(std::move(frame), task.source.opening);
     return;
   }
-  const DetectionWish& wish = task.wish;
+  const DetectionRequest& wish = task.wish;
   const std::int64_t time_ns = task.source.start_ns + nanosecondsFrom(wish.time_s);
   SurfaceFrame frame;
   try {

@@ -25,7 +25,7 @@ namespace evical::ui {
 // Of a camera that has a companion of the other kind.
 enum class PictureChoice { Alone, SideBySide, Overlaid };
 
-struct DetectionWish {
+struct DetectionRequest {
   double time_s = 0.0, half_width_s = 0.01;
   SurfaceStyle style;
   PictureChoice picture = PictureChoice::Alone;  // Overlaid: of frames, where a result says how
@@ -34,11 +34,11 @@ struct DetectionWish {
 };
 
 // What windows are searched for, and seen through.
-struct Sight {
+struct DetectionSetup {
   Board board;
   std::optional<CameraIntrinsics> lens = {};
 
-  bool operator==(const Sight&) const = default;
+  bool operator==(const DetectionSetup&) const = default;
 };
 
 // Events that can be looked up from any thread.
@@ -58,7 +58,7 @@ class DetectionEngine : public QObject {
   ~DetectionEngine() override;
 
   void open(const Session& session, std::size_t camera);
-  void setSight(const Sight& sight) { sight_ = sight; }
+  void setSight(const DetectionSetup& sight) { sight_ = sight; }
   void setOptions(const FrontEndOptions& options, const FrameOptions& frames) {
     options_ = options;
     frame_options_ = frames;
@@ -66,7 +66,7 @@ class DetectionEngine : public QObject {
   // What a run found, of the recording that is open; null: nothing.
   void setResult(std::shared_ptr<const CalibrationState> result) { result_ = std::move(result); }
   void setObservations(std::shared_ptr<const BoardObservations> observations);
-  void show(const DetectionWish& wish);  // nothing before the recording is open
+  void show(const DetectionRequest& wish);  // nothing before the recording is open
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
 
   bool isOpen() const { return reader_ != nullptr; }
@@ -101,13 +101,13 @@ class DetectionEngine : public QObject {
   };
   struct RenderTask {
     Source source;
-    DetectionWish wish;
+    DetectionRequest wish;
     std::shared_ptr<const LiveWindow> live;  // in place of the cache
   };
   struct AnalysisTask {
     Source source;
-    Sight sight;
-    DetectionWish wish;
+    DetectionSetup sight;
+    DetectionRequest wish;
     FrontEndOptions options;
     FrameOptions frame_options;
     std::string camera;
@@ -125,7 +125,7 @@ class DetectionEngine : public QObject {
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
 
-  Sight sight_;
+  DetectionSetup sight_;
   FrontEndOptions options_;
   FrameOptions frame_options_;
   std::string camera_name_;

@@ -100,7 +100,7 @@ void DetectionScreen::setSession(const Session& session) {
   engine_->setOptions(options_, *session.options.frames);
   timeline_->setUsedRange(session.time_range_s);
   if (same) {
-    engine_->setSight(sightOf(camera_));
+    engine_->setSight(detectionSetupOf(camera_));
     request();
     return;
   }
@@ -161,9 +161,9 @@ const CalibrationRun* DetectionScreen::runInView() const {
 }
 
 // Of a run, its own: what it saw fits no other board and no other lens.
-Sight DetectionScreen::sightOf(std::size_t camera) const {
+DetectionSetup DetectionScreen::detectionSetupOf(std::size_t camera) const {
   if (const CalibrationRun* const run = runInView())
-    return {run_session_.boardOf(camera), run->pass.lenses.at(camera).seen_with};
+    return {run_session_.boardOf(camera), run->pass.lenses.at(camera).detection_intrinsics};
   if (!session_ || camera >= session_->cameras.size()) return {};
   return {session_->boardOf(camera), session_->sensor(camera).intrinsics};
 }
@@ -175,7 +175,7 @@ void DetectionScreen::showRun() {
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
   engine_->setObservations(seenBy(camera_));
   engine_->setResult(posed ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
-  engine_->setSight(sightOf(camera_));
+  engine_->setSight(detectionSetupOf(camera_));
   listWindows();
   showMarksAlone();
   offerPictures();
@@ -294,7 +294,7 @@ void DetectionScreen::request() {
   const bool playing = timer_.isActive();
   const DetectionOptions& detection = options_.detection;
   const auto window = timeline_->windowAt(time_s_);
-  DetectionWish wish;
+  DetectionRequest wish;
   wish.time_s = time_s_;
   wish.half_width_s =
       window ? window->half_width_s : 0.25 * (detection.shortest_window_s + detection.longest_window_s);

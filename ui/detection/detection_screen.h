@@ -38,10 +38,10 @@ inline bool hasPoses(const CalibrationRun& run) {
 
 class DetectionEngine;
 struct KeptEvents;
-struct DetectionWish;
+struct DetectionRequest;
 enum class PictureChoice;
 struct RecordingOverview;
-struct Sight;
+struct DetectionSetup;
 class EventView;
 class SecondCamera;
 class Timeline;
@@ -128,7 +128,7 @@ class DetectionScreen : public QWidget {
 
   void chooseCamera(std::size_t camera);
   const CalibrationRun* runInView() const;  // null: there is none of this recording
-  Sight sightOf(std::size_t camera) const;
+  DetectionSetup detectionSetupOf(std::size_t camera) const;
   void showRun();
   void select(double time_s);
   void moveTo(double time_s);
@@ -152,7 +152,7 @@ class DetectionScreen : public QWidget {
   void offerPictures();  // those that there are of this camera
   void refreshCompanion();
   void keepSecondOpen();
-  void showSecond(const DetectionWish& wish);
+  void showSecond(const DetectionRequest& wish);
   std::shared_ptr<const BoardObservations> seenBy(std::size_t camera) const;
   std::vector<QPolygonF> reprojectionInto(std::size_t camera, double time_s) const;
   bool following() const { return live_ && following_ && !framesInView(); }

@@ -147,10 +147,10 @@ void DetectionScreen::keepSecondOpen() {
 }
 
 // At the same moment, as far as a result tells how far the clocks are apart.
-void DetectionScreen::showSecond(const DetectionWish& wish) {
+void DetectionScreen::showSecond(const DetectionRequest& wish) {
   if (!second_ || !second_camera_->isOf(*second_)) return;
-  second_camera_->know(*session_, sightOf(*second_), seenBy(*second_));
-  DetectionWish there = wish;
+  second_camera_->know(*session_, detectionSetupOf(*second_), seenBy(*second_));
+  DetectionRequest there = wish;
   const CalibrationRun* const run = runInView();
   if (run && std::max(camera_, *second_) < run->result.state.cameras.size())
     there.time_s =

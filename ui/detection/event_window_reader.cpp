@@ -94,9 +94,7 @@ class EventWindowReader::CacheFilling {
  public:
   CacheFilling(EventCache& cache, std::size_t camera, const SessionCamera& session, Resolution resolution_px,
                std::int64_t start_ns)
-      : cache_(cache),
-        start_ns_(start_ns),
-        intake_(camera, session, resolution_px, {}, EventUse::AsTheyAre) {}
+      : cache_(cache), start_ns_(start_ns), intake_(camera, session, resolution_px, {}, EventUse::Raw) {}
 
   void take(const std::vector<Event>& events) {
     pending_.insert(pending_.end(), events.begin(), events.end());

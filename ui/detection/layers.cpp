@@ -361,16 +361,17 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size() || seen.index > state.further_boards.size()) return outlines;
   const CameraState& own = state.cameras[camera];
-  if (!own.lens.seen_with) return outlines;
+  if (!own.lens.detection_intrinsics) return outlines;
   const double late_s =
       view.circles.empty() ? 0.0 : own.exposure_share * view.circles.front().longer_exposed_s;
   const std::map<int, Eigen::Vector2d> leads =
-      idealLeads(own, *own.lens.seen_with, view, slow_edge_speed_px_s);
+      idealLeads(own, *own.lens.detection_intrinsics, view, slow_edge_speed_px_s);
   for (int circle = 0; circle < seen.board.pointCount(); ++circle) {
     const auto outline = imageInRows(circle, state, own, seen, time_s + late_s);
     const auto lead = leads.find(circle);
     if (outline)
-      outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, *own.lens.seen_with));
+      outlines.push_back(lead == leads.end() ? *outline
+                                             : moved(*outline, lead->second, *own.lens.detection_intrinsics));
   }
   return outlines;
 }

@@ -55,9 +55,9 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
     if (search.motion || !due()) return;  // a found board is tracked next
     auto live = begin(middle_ns);
     const std::int64_t half_ns = nanosecondsFrom(search.half_window_s);
-    std::vector<EdgeBurst> bursts;
+    std::vector<EdgeCrossing> bursts;
     tracker_.history().gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
-    for (const EdgeBurst& burst : bursts)
+    for (const EdgeCrossing& burst : bursts)
       live->bursts.push_back({burst.time_ns, burst.x_px, burst.y_px, burst.brighter});
     auto analysis = std::make_shared<WindowAnalysis>();
     analysis->half_width_s = search.half_window_s;

@@ -41,7 +41,7 @@ void SecondCamera::close() {
   view_.setFrame(nullptr);
 }
 
-void SecondCamera::know(const Session& session, const Sight& sight,
+void SecondCamera::know(const Session& session, const DetectionSetup& sight,
                         std::shared_ptr<const BoardObservations> seen) {
   if (!engine_) return;
   engine_->setOptions(*session.options.front_end, *session.options.frames);
@@ -49,7 +49,7 @@ void SecondCamera::know(const Session& session, const Sight& sight,
   engine_->setObservations(std::move(seen));
 }
 
-void SecondCamera::show(const DetectionWish& wish, const LayerSet& layers) {
+void SecondCamera::show(const DetectionRequest& wish, const LayerSet& layers) {
   if (!engine_) return;
   wish_ = wish;
   layers_ = layers;

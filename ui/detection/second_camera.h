@@ -30,8 +30,9 @@ class SecondCamera : public QObject {
   void open(const Session& session, std::size_t camera);  // what was open is forgotten
   void close();
   // What the next wishes are answered with; nothing happens where none is open.
-  void know(const Session& session, const Sight& sight, std::shared_ptr<const BoardObservations> seen);
-  void show(const DetectionWish& wish, const LayerSet& layers);
+  void know(const Session& session, const DetectionSetup& sight,
+            std::shared_ptr<const BoardObservations> seen);
+  void show(const DetectionRequest& wish, const LayerSet& layers);
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
 
  signals:
@@ -44,7 +45,7 @@ class SecondCamera : public QObject {
   EventView& view_;
   Reprojection reprojection_;
   std::size_t camera_ = 0;
-  std::optional<DetectionWish> wish_;  // the last one, before the recording was open perhaps
+  std::optional<DetectionRequest> wish_;  // the last one, before the recording was open perhaps
   LayerSet layers_;
   std::shared_ptr<const WindowAnalysis> analysis_;
   std::unique_ptr<DetectionEngine> engine_;

@@ -26,7 +26,7 @@ class CalibrationJob : public QObject {
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
   // From detections that are there already.
-  bool startAgain(const Session& session, RecordingPass pass,
+  bool startAgain(const Session& session, DetectionResult pass,
                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
   bool running() const { return live_ != nullptr; }
   // What the latest one started from.

@@ -38,8 +38,8 @@ class PassNames final : public ProgressSink {
 };
 
 // The camera was seen alone, in time from its own start.
-RecordingPass inSession(const Session& session, std::size_t camera, const RecordingPass& alone) {
-  RecordingPass all;
+DetectionResult inSession(const Session& session, std::size_t camera, const DetectionResult& alone) {
+  DetectionResult all;
   all.start_ns = session.cameras.size() == 1 && session.imus.empty() ? alone.start_ns
                                                                      : SessionRecording(session).start_ns();
   all.cameras.resize(session.cameras.size());

@@ -6,7 +6,7 @@
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
-#include "ui/plots/stage_words.h"
+#include "ui/plots/stage_labels.h"
 
 #include <QComboBox>
 #include <QGridLayout>

@@ -221,10 +221,11 @@ int ResidualsScreen::camera() const {
 void ResidualsScreen::compute() {
   if (!run_ || camera_->count() == 0) return job_->discard();
   const int wanted = camera();
-  const auto seen_with = run_->pass.lenses.at(static_cast<std::size_t>(wanted)).seen_with;
-  job_->start([this, run = run_, wanted, seen_with](const std::stop_token&) {
+  const auto detection_intrinsics =
+      run_->pass.lenses.at(static_cast<std::size_t>(wanted)).detection_intrinsics;
+  job_->start([this, run = run_, wanted, detection_intrinsics](const std::stop_token&) {
     const auto statistics = std::make_shared<const ResidualStatistics>(
-        residualStatistics(run->result.circle_residuals, wanted, seen_with));
+        residualStatistics(run->result.circle_residuals, wanted, detection_intrinsics));
     return [this, statistics] {
       statistics_ = statistics;
       draw();

@@ -176,7 +176,7 @@ void SignalsScreen::compute() {
     drawing->accelerometer = makeSignalLines(prediction.force_m_s2, samples.accelerometerRate_hz(),
                                              samples.noise.accelerometer_density);
     const CameraLens& lens = run->pass.lenses.at(camera);
-    if (lens.seen_with) {
+    if (lens.detection_intrinsics) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
                                      session.boardOf(camera), state.cameras[camera], samples, state.imus[imu],
                                      run->pass.start_ns, *session.options.initialisation, context);

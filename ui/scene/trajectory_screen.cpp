@@ -225,7 +225,7 @@ void TrajectoryScreen::setBoards(const Session& session) {
 
 void TrajectoryScreen::Private::setBoards(const Session& session) {
   further_boards.clear();
-  for (const FurtherBoard& further : session.further_boards) further_boards.push_back(further.board);
+  for (const AdditionalBoard& further : session.further_boards) further_boards.push_back(further.board);
   seen_boards.clear();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) seen_boards.push_back(session.seenBoard(k));
   placeFurtherBoards();
@@ -278,8 +278,8 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
   d_->pose_inputs.clear();
   d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
   for (std::size_t k = 0; k < lenses.size(); ++k) {
-    if (!lenses[k].seen_with) continue;
-    setDetections(sharedViews({run, &run->pass.cameras[k]}), *lenses[k].seen_with, k);
+    if (!lenses[k].detection_intrinsics) continue;
+    setDetections(sharedViews({run, &run->pass.cameras[k]}), *lenses[k].detection_intrinsics, k);
   }
 }
 

@@ -2,7 +2,7 @@
 #include "ui/window/error_panel.h"
 
 #include "ui/forms/repair_button.h"
-#include "ui/screens/check_words.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>

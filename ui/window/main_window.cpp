@@ -6,7 +6,7 @@
 #include "ui/detection/detection_screen.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
-#include "ui/jobs/window_words.h"
+#include "ui/jobs/window_how_to.h"
 #include "ui/plots/residuals_screen.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/screens/result/result_screen.h"
@@ -58,7 +58,7 @@ MainWindow::MainWindow(const QString& version)
     : workbench_(version),
       files_(new SessionFiles(workbench_, this)),
       lens_files_(new LensFiles(workbench_, this)) {
-  speakWith(windowWords);
+  speakWith(windowHowTo);
   setAcceptDrops(true);
   qApp->installEventFilter(new SessionUndoKeys(this));
   makeCentre();

@@ -238,7 +238,7 @@ void StepsPanel::setRun(const CalibrationRun& run) {
     if (stage.duration_s == nullptr) continue;
     row(stage.stage)->setTime(result.timing.*stage.duration_s);
     // Also of a run of another time.
-    if (stage.stage != CalibrationStage::CrossValidate || result.cross_validation)
+    if (stage.stage != CalibrationStage::CompareHalves || result.split_half_check)
       row(stage.stage)->setState(StepState::Done);
   }
   StepRow* const detect = row(CalibrationStage::Detect);
@@ -253,13 +253,13 @@ void StepsPanel::setRun(const CalibrationRun& run) {
   for (const CameraFit& camera : result.cameras)
     reprojections << tr("%1 px").arg(camera.reprojection_rms_px, 0, 'g', 3);
   row(CalibrationStage::Optimise)->setKeyNumber(tr("reprojection %1").arg(reprojections.join(", ")));
-  StepRow* const halves = row(CalibrationStage::CrossValidate);
-  if (!result.cross_validation) {
+  StepRow* const halves = row(CalibrationStage::CompareHalves);
+  if (!result.split_half_check) {
     halves->setKeyNumber(tr("not asked for"));
-  } else if (result.cross_validation->failure.empty()) {
-    halves->setKeyNumber(tr("they differ by %1 sigmas").arg(result.cross_validation->rms_sigmas, 0, 'f', 2));
+  } else if (result.split_half_check->failure.empty()) {
+    halves->setKeyNumber(tr("they differ by %1 sigmas").arg(result.split_half_check->rms_sigmas, 0, 'f', 2));
   } else {
-    halves->setKeyNumber(QString::fromStdString(result.cross_validation->failure));
+    halves->setKeyNumber(QString::fromStdString(result.split_half_check->failure));
   }
 }
 

@@ -266,7 +266,7 @@ ChangeDoubt doubtOfChanges(const CalibrationInput& input, const ProjectedInforma
   ChangeDoubt result;
   for (const SensorChange& change : findChanges(information)) {
     if (change.sigmas < result.sigmas || !matters(change, options)) continue;
-    result = {Doubt{wordsOf(input, change), repairOf(change, information), "change"}, change.sigmas};
+    result = {QualityWarning{wordsOf(input, change), repairOf(change, information), "change"}, change.sigmas};
   }
   return result;
 }

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "core/data/calibration_setup.h"
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 
@@ -39,7 +39,7 @@ std::vector<SensorChange> findChanges(const ProjectedInformation& information);
 // The most certain one that matters, beyond changed_sigmas and what is needed: of poses and clocks, with the larger part of
 // the recording as what to calibrate instead, and of biases that are taken for constant.
 struct ChangeDoubt {
-  Doubt doubt;  // without a text: none
+  QualityWarning doubt;  // without a text: none
   double sigmas = 0.0;
 };
 ChangeDoubt doubtOfChanges(const CalibrationInput& input, const ProjectedInformation& information,

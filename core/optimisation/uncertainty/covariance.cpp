@@ -5,8 +5,8 @@
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/change_test.h"
-#include "core/optimisation/uncertainty/credible_information.h"
 #include "core/optimisation/uncertainty/drift_uncertainty.h"
+#include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/observability.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/scale_check.h"
@@ -22,7 +22,7 @@ ProjectedInformation projected(CalibrationProblem& problem, const CalibrationInp
                                const RunContext& context) {
   context.throwIfStopped();
   problem.build(lastStage(options), {solution.scales, solution.used_circles, solution.used_samples,
-                                     std::vector<StillAxes>(input.imus.size())});
+                                     std::vector<UnexcitedAxes>(input.imus.size())});
   return projectInformation(problem, options.correlation_time_s, options.threads, context);
 }
 

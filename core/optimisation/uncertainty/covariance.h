@@ -8,7 +8,7 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ struct UncertaintyEstimate {
   // for who has ruled that out.
   std::string turned_gyroscopes;
   std::string wandering_imus;  // of IMUs whose errors last, which looks much the same
-  Doubt
+  QualityWarning
       change;  // of what moved, or stepped, within the recording, where that is more certain than such turns
   std::string bent_board;          // the same of a board that is taken for flat
   std::string wrong_lenses;        // what is doubtful of lenses that are held

@@ -1,6 +1,6 @@
 #include "core/optimisation/uncertainty/observability.h"
 
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/dense.h"
 
@@ -207,21 +207,22 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
     const double uncertain_ms = 0.5e3 * camera.observations.stamp_step_s;
     if (!options.judge_sigmas || input.imus.empty() || uncertain_ms <= options.needed_time_offset_ms)
       continue;
-    addDoubt(fmt::format("the time stamps of {}'s events step by {:.3g} ms, which leaves its time offset "
-                         "open by {:.2g} ms "
-                         "(needed: {:.2g}): record the sensor's own stamps, in us",
-                         camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
-             result);
+    flagDoubtful(fmt::format("the time stamps of {}'s events step by {:.3g} ms, which leaves its time offset "
+                             "open by {:.2g} ms "
+                             "(needed: {:.2g}): record the sensor's own stamps, in us",
+                             camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
+                 result);
   }
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const QuantityInfo& info = *covariance.quantities[i].info;
     if (info.need != QuantityNeed::Translation || !options.judge_sigmas) continue;
     const double whole_mm = 1e3 * worstOf(covariance, i).sigma, own_mm = 1e3 * worstOf(scale_known, i).sigma;
     if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
-    addDoubt(fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "
-                         "{:.2g}): measure it better and say so by board.spacing_std, or come nearer to it",
-                         sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
-             result);
+    flagDoubtful(
+        fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "
+                    "{:.2g}): measure it better and say so by board.spacing_std, or come nearer to it",
+                    sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
+        result);
   }
   return result;
 }

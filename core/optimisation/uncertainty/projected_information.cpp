@@ -4,8 +4,8 @@
 #include "core/optimisation/block_jacobian.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/normal_equations.h"
-#include "core/optimisation/uncertainty/local_sums.h"
-#include "core/optimisation/uncertainty/noise_information.h"
+#include "core/optimisation/uncertainty/block_scores.h"
+#include "core/optimisation/uncertainty/expected_noise_information.h"
 #include "core/optimisation/uncertainty/spline_elimination.h"
 #include "core/optimisation/unknown_columns.h"
 

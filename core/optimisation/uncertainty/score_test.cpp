@@ -6,8 +6,8 @@
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/scaled_inverse.h"
-#include "core/optimisation/uncertainty/credible_information.h"
-#include "core/optimisation/uncertainty/kept_columns.h"
+#include "core/optimisation/uncertainty/noise_corrected_information.h"
+#include "core/optimisation/uncertainty/schur_columns.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
@@ -127,7 +127,8 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
 
 void testShutter(const CameraData& camera, const Step& step, const OptimisationOptions& options,
                  std::string& doubts) {
-  const double readout_ms = 1e-3 * std::abs(step.change[0]) * camera.lens.seen_with->resolution_px.height_px;
+  const double readout_ms =
+      1e-3 * std::abs(step.change[0]) * camera.lens.detection_intrinsics->resolution_px.height_px;
   if (step.sigmas < options.rolling_shutter_sigmas || readout_ms < options.rolling_shutter_ms) return;
   add(doubts, fmt::format("{}: its shutter rolls: each row is exposed {:.2g} us {} the one above it ({:.0f} "
                           "sigmas); set shutter: rolling for this camera",

@@ -6,9 +6,9 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/scaled_inverse.h"
-#include "core/optimisation/uncertainty/credible_information.h"
-#include "core/optimisation/uncertainty/kept_columns.h"
+#include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/projected_information.h"
+#include "core/optimisation/uncertainty/schur_columns.h"
 
 #include <fmt/format.h>
 

@@ -15,7 +15,7 @@ UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovari
   for (std::size_t i = 0; i < quantities.quantities.size(); ++i) {
     QuantityAddress number = quantities.quantities[i].address();
     if (number.id == QuantityId::Intrinsics)
-      number.model = input.cameras[number.sensor].lens.seen_with->model;
+      number.model = input.cameras[number.sensor].lens.detection_intrinsics->model;
     // Of intrinsics and gravity those without a column come last.
     for (Eigen::Index k = quantities.first_column[i]; k < quantities.first_column[i + 1];
          ++k, ++number.component)

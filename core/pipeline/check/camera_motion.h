@@ -4,7 +4,7 @@
 #include "core/egomotion/camera_record.h"
 #include "core/egomotion/egomotion_options.h"
 #include "core/egomotion/lens_rays.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "core/frontend/edge_slopes.h"
 #include "core/pipeline/session/calibration_options.h"
 
@@ -20,7 +20,7 @@ class CameraMotion {
   CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options, std::int64_t start_ns);
 
   // Bursts as BurstExtractor hands them out.
-  void add(const std::vector<EdgeBurst>& bursts, std::int64_t complete_until_ns) {
+  void add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns) {
     slopes_.add(bursts, complete_until_ns);
   }
   CameraRecord finish();

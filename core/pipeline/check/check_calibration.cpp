@@ -24,7 +24,7 @@ Session freeSession(const CheckInput& input) {
   Session session = input.session;
   session.options.optimisation.edit().judge_sigmas = false;
   session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Free;
-  session.options.report.edit().cross_validation = false;
+  session.options.report.edit().split_half_check = false;
   return session;
 }
 
@@ -37,7 +37,7 @@ struct BoardSeen {
   }
 };
 
-BoardSeen boardSeen(const RecordingPass& pass) {
+BoardSeen boardSeen(const DetectionResult& pass) {
   BoardSeen seen;
   for (const BoardObservations& camera : pass.cameras) {
     seen.windows += camera.windows.size();
@@ -104,9 +104,10 @@ class Check {
   // What is known after both; a check of its own that the old result and the recording fit it is not.
   void solveTogether(const Session& session) {
     const Session weighed = withPriorOf(input_.before, session);
-    RecordingPass pass = out_.run->pass;
+    DetectionResult pass = out_.run->pass;
     for (std::size_t k = 0; k < pass.lenses.size(); ++k)
-      pass.lenses[k] = givenLens(pass.lenses[k].seen_with, weighed.cameras[k].intrinsics_uncertainty);
+      pass.lenses[k] =
+          givenLens(pass.lenses[k].detection_intrinsics, weighed.cameras[k].intrinsics_uncertainty);
     PrefixedProgress progress(context_.progress, kTogetherPart);
     const CalibrationOutcome outcome =
         runCalibration(weighed, std::move(pass), RunContext{progress, context_.stop, context_.observer});
@@ -165,7 +166,7 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   return without;
 }
 
-CheckRun checkCalibration(const CheckInput& input, RecordingPass pass, const RunContext& context) {
+CheckRun checkCalibration(const CheckInput& input, DetectionResult pass, const RunContext& context) {
   return Check(input, context).run([&](const Session& session) {
     return runCalibration(session, std::move(pass), context);
   });

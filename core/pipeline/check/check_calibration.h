@@ -14,7 +14,7 @@ namespace evical {
 struct CheckRun {
   CalibrationCheck check;
   std::shared_ptr<const CalibrationRun> run;  // the free one; empty where there is none
-  RecordingPass pass;                         // where there is none: what was read and detected until then
+  DetectionResult pass;                       // where there is none: what was read and detected until then
 };
 
 // The part of the second run, which has the old result as prior.
@@ -26,6 +26,6 @@ inline constexpr const char* kTogetherPart = "with the old result";
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context);
 
 // The same from what was detected, through the lenses of the old result.
-CheckRun checkCalibration(const CheckInput& input, RecordingPass pass, const RunContext& context);
+CheckRun checkCalibration(const CheckInput& input, DetectionResult pass, const RunContext& context);
 
 }  // namespace evical

@@ -66,7 +66,7 @@ Eigen::MatrixXd informationOf(const Eigen::VectorXd& sigmas) {
 // Only a given lens has a prior: a lens from the recording adds no information. The information of the estimated
 // coefficients is that with all others fixed.
 void setLensPrior(const OptimisationOptions& options, CameraLens& mean, RigQuantity& quantity) {
-  if (!mean.given || !mean.seen_with) return;
+  if (!mean.given || !mean.detection_intrinsics) return;
   quantity.prior_information =
       inverseOf(lensPriorCovariance(mean, options)).topLeftCorner(quantity.size(), quantity.size());
   mean.solved = mean.given;

@@ -9,7 +9,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_options.h"
-#include "core/pipeline/lens/lens_pilot.h"
+#include "core/pipeline/lens/intrinsics_bootstrap.h"
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/session_recording.h"
@@ -47,14 +47,14 @@ Session cameraAlone(const Session& session, std::size_t camera) {
 }
 
 // A board of another size than the session says may fail in any way: that is told first.
-IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
+IntrinsicsResult estimate(const Session& alone, const DetectionResult& pass,
                           const std::optional<CameraIntrinsics>& start, const RunContext& context,
                           IntrinsicsStory& story) {
   const BoardObservations& observations = pass.cameras.front();
   try {
-    return estimateIntrinsics(
-        {alone.board, pass.resolutions_px.front(), observations, pass.lenses.front().seen_with, start},
-        *alone.options.intrinsics, context, &story);
+    return estimateIntrinsics({alone.board, pass.resolutions_px.front(), observations,
+                               pass.lenses.front().detection_intrinsics, start},
+                              *alone.options.intrinsics, context, &story);
   } catch (const CalibrationError&) {
     checkBoardSize(observations, alone.board, alone.options.front_end->extent);
     throw;
@@ -62,7 +62,7 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
 }
 
 // The second pass's views come behind the first's.
-void append(RecordingPass&& more, RecordingPass& pass) {
+void append(DetectionResult&& more, DetectionResult& pass) {
   constexpr double kBetween_s = 1.0;
   BoardObservations &all = pass.cameras.front(), &added = more.cameras.front();
   if (more.resolutions_px != pass.resolutions_px)
@@ -80,8 +80,8 @@ void append(RecordingPass&& more, RecordingPass& pass) {
 }
 
 // One after the other; those in which nothing blinks are told and left out, if others do.
-RecordingPass passOver(const Session& alone, const RunContext& context) {
-  std::optional<RecordingPass> all;
+DetectionResult passOver(const Session& alone, const RunContext& context) {
+  std::optional<DetectionResult> all;
   std::optional<CalibrationError> failure;
   std::vector<std::filesystem::path> recordings = alone.more_recordings;
   recordings.insert(recordings.begin(), alone.recording);
@@ -90,7 +90,7 @@ RecordingPass passOver(const Session& alone, const RunContext& context) {
     one.recording = recording;
     one.more_recordings.clear();
     try {
-      RecordingPass pass = readAndDetect(one, {CameraLens{}}, context);
+      DetectionResult pass = readAndDetect(one, {CameraLens{}}, context);
       if (all)
         append(std::move(pass), *all);
       else
@@ -127,7 +127,7 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
 IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
   CameraLens lens;
-  lens.seen_with = lookThroughPlainLenses(alone, context);
+  lens.detection_intrinsics = lookThroughPlainLenses(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics->most_passes; ++pass) {
@@ -142,9 +142,10 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
     if (start) run.story.tried = std::move(tried);
     run.result.passes = pass;
     const CameraIntrinsics found = run.result.intrinsics;
-    const auto moved =
-        lens.seen_with ? std::optional(projectionDifference(found, *lens.seen_with)) : std::nullopt;
-    lens.seen_with = start = found;
+    const auto moved = lens.detection_intrinsics
+                           ? std::optional(projectionDifference(found, *lens.detection_intrinsics))
+                           : std::nullopt;
+    lens.detection_intrinsics = start = found;
     if (moved) run.result.moved_px = moved->rms_px;
     tellPass(run, context);
     if (!moved) continue;

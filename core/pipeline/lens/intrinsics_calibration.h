@@ -15,7 +15,7 @@ namespace evical {
 struct IntrinsicsRun {
   IntrinsicsResult result;
   IntrinsicsStory story;  // models as the first pass tried them, views as the last one used them
-  RecordingPass pass;     // the last one, of this camera alone
+  DetectionResult pass;   // the last one, of this camera alone
 };
 
 // What the session says of the camera's intrinsics, and its IMUs, are left aside. Progress goes by the stages

@@ -77,8 +77,8 @@ struct ImuPass {
 };
 
 // Of the log's beginning.
-struct Looked {
-  RateNorms norms;
+struct InitialSegment {
+  AngularSpeedSeries norms;
   ImuTimes times;
   std::vector<ImuSample> samples;
 };
@@ -150,7 +150,7 @@ class Maintainer {
   void advise();
 
   PairNominal nominalOf(std::size_t imu) const;
-  void agreeClocks(const std::vector<Looked>& seen);
+  void agreeClocks(const std::vector<InitialSegment>& seen);
   bool isNearNominal(const PairTrack& track) const;
   PairTrack trackOf(std::size_t k, double false_alarms) const;
 
@@ -191,7 +191,7 @@ void Maintainer::look() {
   }
   nominal_before_ = nominal_;
   maintenance_.notes = logs.notes();
-  std::vector<Looked> seen(imus_.size());
+  std::vector<InitialSegment> seen(imus_.size());
   SensorPacket packet;
   while (logs.read(packet)) {
     context_.throwIfStopped();
@@ -205,24 +205,25 @@ void Maintainer::look() {
       seen[k].norms.add(time_s + nominal_[k].time_offset_s,
                         sample.angular_rate_rad_s - state(packet.sensor).gyroscope_bias_rad_s);
     }
-    if (std::all_of(seen.begin(), seen.end(), [](const Looked& imu) { return imu.times.to_s() > kLook_s; }))
+    if (std::all_of(seen.begin(), seen.end(),
+                    [](const InitialSegment& imu) { return imu.times.to_s() > kLook_s; }))
       break;
   }
   context_.throwIfStopped();
   for (std::size_t k = 0; k < seen.size(); ++k)
     checkBothSensors(name(imus_[k]), streams_[k], std::exchange(seen[k].samples, {}));
   double slowest_hz = 0.0;
-  for (const Looked& imu : seen)
+  for (const InitialSegment& imu : seen)
     for (const double rate_hz : {imu.times.rates.rate_hz(), imu.times.forces.rate_hz()})
       if (rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz)) slowest_hz = rate_hz;
   smoothing_s_ = smoothingFor(slowest_hz, *input_.options);
   agreeClocks(seen);
 }
 
-void Maintainer::agreeClocks(const std::vector<Looked>& seen) {
+void Maintainer::agreeClocks(const std::vector<InitialSegment>& seen) {
   constexpr double kNear_s = 0.004;
   for (std::size_t k = 1; k < imus_.size(); ++k) {
-    const ClockAgreement clocks = clockAgreement(seen.front().norms, seen[k].norms, *input_.options);
+    const ClockAgreement clocks = crossCorrelateClocks(seen.front().norms, seen[k].norms, *input_.options);
     if (!clocks.moved) continue;
     if (clocks.correlation < input_.options->same_motion) {
       disagreeing_.push_back(name(imus_[k]));
@@ -394,7 +395,7 @@ void Maintainer::addPairs(double false_alarms) {
     addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
                       *input_.options, false_alarms, maintenance_);
     double wider = 1.0;
-    for (const NoiseColour& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
+    for (const NoiseAutocorrelation& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
     if (wider > kWorthAdvice) shaken_ = pair;
     if (wider > kWorthANote)
       maintenance_.notes.push_back(fmt::format(

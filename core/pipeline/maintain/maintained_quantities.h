@@ -4,7 +4,7 @@
 #include "core/data/maintenance.h"
 #include "core/maintenance/pair_tracking.h"
 #include "core/maintenance/stop_calibration.h"
-#include "core/maintenance/trajectory_lag.h"
+#include "core/maintenance/trajectory_segment.h"
 #include "core/report/result_yaml.h"
 
 #include <cstddef>

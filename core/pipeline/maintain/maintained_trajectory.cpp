@@ -42,7 +42,7 @@ std::vector<BodyRate> ratesOf(const std::vector<TimedPose>& poses,
   return rates;
 }
 
-Eigen::Quaterniond asItIs(const TimedPose& pose) {
+Eigen::Quaterniond unchanged(const TimedPose& pose) {
   return pose.world_from_imu;
 }
 Eigen::Quaterniond inverted(const TimedPose& pose) {
@@ -112,16 +112,18 @@ class TrajectoryCheck {
   const std::string& name() const { return input_.before.imus[imu_].name; }
 
   // Times, then turns.
-  double agree(std::vector<TimedPose>& poses, const TurnedRates& turned, const RateNorms& of_imu) const {
-    const std::vector<BodyRate> rates = ratesOf(poses, asItIs);
+  double agree(std::vector<TimedPose>& poses, const TurnedRates& turned,
+               const AngularSpeedSeries& of_imu) const {
+    const std::vector<BodyRate> rates = ratesOf(poses, unchanged);
     if (turned.times_s.size() < 2 || rates.empty() || rates.front().from_s > turned.times_s.back() ||
         rates.back().to_s < turned.times_s.front())
       throw badInput(place(), "has no time in common with the log",
                      "Give its times in seconds since the log's start, or since 1970 as the log has them");
-    RateNorms of_body;
+    AngularSpeedSeries of_body;
     for (const BodyRate& rate : rates)
-      for (double t = rate.from_s; t < rate.to_s; t += RateNorms::kBin_s) of_body.add(t, rate.rate_rad_s);
-    const ClockAgreement clocks = clockAgreement(of_imu, of_body, *input_.options);
+      for (double t = rate.from_s; t < rate.to_s; t += AngularSpeedSeries::kBin_s)
+        of_body.add(t, rate.rate_rad_s);
+    const ClockAgreement clocks = crossCorrelateClocks(of_imu, of_body, *input_.options);
     constexpr double kNear_s = 0.004;
     if (!clocks.moved) return 0.0;
     if (clocks.correlation < input_.options->same_motion) sayOther(poses, turned);
@@ -162,7 +164,7 @@ class TrajectoryCheck {
  private:
   void checkTurns(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
     constexpr double kExplained = 0.9, kTurned_rad = kRadPerDeg;
-    const TurnAgreement agreement = agreementOf(ratesOf(poses, asItIs), turned);
+    const TurnAgreement agreement = agreementOf(ratesOf(poses, unchanged), turned);
     if (agreement.correlation < kExplained) sayOther(poses, turned);
     const double angle = agreement.imu_from_body.angularDistance(Eigen::Quaterniond::Identity());
     if (angle < kTurned_rad) return;
@@ -217,7 +219,7 @@ TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double 
   }
   std::vector<TimedPose> poses = readTrajectory(input.trajectory, start_ns);
   TurnedRates turned;
-  RateNorms norms;
+  AngularSpeedSeries norms;
   const double from_s = poses.front().time_s - 2.0, to_s = poses.front().time_s + kLook_s + 2.0;
   const Eigen::Matrix3d rates = before.gyroscopeMatrix().inverse();
   forSamples(input, imu, context, [&](double time_s, const ImuSample& sample) {
@@ -231,8 +233,8 @@ TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double 
   const TrajectoryCheck check(input, imu);
   TrajectoryRun run;
   run.later_s = check.agree(poses, turned, norms);
-  TrajectoryLags lags(std::move(poses), before, gravity_m_s2,
-                      input.before.imus[imu].noise.accelerometer_density, *input.options);
+  TrajectorySegment lags(std::move(poses), before, gravity_m_s2,
+                         input.before.imus[imu].noise.accelerometer_density, *input.options);
   forSamples(input, imu, context, [&](double time_s, const ImuSample& sample) {
     lags.add(time_s, sample);
     return true;

@@ -1,7 +1,7 @@
 // What a trajectory says of the reference IMU's accelerometer; first whether it is this IMU's, in metres, on this clock.
 #pragma once
 
-#include "core/maintenance/trajectory_lag.h"
+#include "core/maintenance/trajectory_segment.h"
 #include "core/pipeline/maintain/maintain_imus.h"
 
 #include <cstddef>

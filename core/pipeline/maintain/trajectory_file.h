@@ -2,7 +2,7 @@
 // blanks, lines with # left out).
 #pragma once
 
-#include "core/maintenance/trajectory_lag.h"
+#include "core/maintenance/trajectory_segment.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -18,7 +18,7 @@ namespace evical {
 BlinkViews::BlinkViews(const CameraBatch& first, const ViewRequest& request)
     : camera_(request.session.cameras[first.camera]),
       context_(request.context),
-      lens_(request.lens.seen_with),
+      lens_(request.lens.detection_intrinsics),
       tracker_(camera_.name, request.session.board, *first.opened_px, *request.session.options.frames,
                *request.session.options.blink, first.start_ns) {}
 

@@ -4,7 +4,7 @@
 #include "core/data/board_observations.h"
 #include "core/data/event.h"
 #include "core/data/frame.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "core/geometry/resolution.h"
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace evical {
 
 struct CameraBatch {
   std::size_t camera = 0;
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   std::int64_t first_event_ns = 0, complete_until_ns = 0;
   std::vector<Event> events;  // of a blinking board, in the place of bursts
   std::vector<Frame> frames;

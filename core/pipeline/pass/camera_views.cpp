@@ -15,7 +15,7 @@ namespace {
 class EventViews final : public CameraViews {
  public:
   EventViews(const CameraBatch& first, const ViewRequest& request)
-      : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.seen_with,
+      : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.detection_intrinsics,
                  *request.session.options.front_end, first.start_ns) {
     tracker_.stopWith(request.context.stop);
     if (request.context.observer != nullptr)

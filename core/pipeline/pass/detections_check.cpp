@@ -177,33 +177,34 @@ Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera) {
 }
 
 CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
-  const auto node = map.find("seen_with");
+  const auto node = map.find("detection_intrinsics");
   if (!node)
     throw map.error(
         "was detected without intrinsics, and other places would be found with them",
         "Start from the folder of a calibration, or give the camera its intrinsics and detect once "
         "more");
-  CameraIntrinsics seen_with = readIntrinsics(*node);
+  CameraIntrinsics detection_intrinsics = readIntrinsics(*node);
   if (!camera.intrinsics) {
     if (!map.has("found_first"))
       throw node->error(
           "the detections are of given intrinsics, the session gives none",
           "Give the session the same intrinsics, or leave " + howTo(HowTo::UseDetections) + " out");
-    return seen_with;
+    return detection_intrinsics;
   }
   constexpr double kSame_px = 1e-6;
   const CameraIntrinsics& given = *camera.intrinsics;
-  const bool same = seen_with == given ||
-                    (seen_with.resolution_px == given.resolution_px && seen_with.resolution_px.known() &&
-                     projectionDifference(seen_with, given).max_px < kSame_px);
+  const bool same =
+      detection_intrinsics == given || (detection_intrinsics.resolution_px == given.resolution_px &&
+                                        detection_intrinsics.resolution_px.known() &&
+                                        projectionDifference(detection_intrinsics, given).max_px < kSame_px);
   if (!same)
     throw node->error(
         "the detections are of other intrinsics than the session gives",
         "Give the session these, or leave " + howTo(HowTo::UseDetections) + " out to detect the board anew");
-  return seen_with;
+  return detection_intrinsics;
 }
 
-void checkOverlap(const Session& session, const RecordingPass& pass) {
+void checkOverlap(const Session& session, const DetectionResult& pass) {
   double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
   for (const BoardObservations& camera : pass.cameras) {
     if (camera.views.empty()) continue;

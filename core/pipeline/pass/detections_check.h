@@ -29,7 +29,7 @@ Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera);
 CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera);
 
 // IMUs whose samples lie elsewhere in time are of another recording.
-void checkOverlap(const Session& session, const RecordingPass& pass);
+void checkOverlap(const Session& session, const DetectionResult& pass);
 
 // Those that decide what is detected, where they are not at their defaults.
 std::vector<OptionRow> detectionOptions(const CalibrationOptions& options);

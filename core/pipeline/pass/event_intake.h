@@ -4,7 +4,7 @@
 
 #include "core/data/event.h"
 #include "core/data/recording_fault.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 #include "core/pipeline/pass/camera_batch.h"
 #include "core/pipeline/session/session.h"
 #include "core/recording/read_out_load.h"
@@ -20,7 +20,7 @@ namespace evical {
 // So many are put in order together: packets are as long as each format has them.
 inline constexpr std::size_t kBatchEvents = 50'000;
 
-enum class EventUse { Bursts, AsTheyAre };
+enum class EventUse { Bursts, Raw };
 
 class EventIntake {
  public:

@@ -15,7 +15,7 @@ FrameViews::FrameViews(const CameraBatch& first, const ViewRequest& request)
     : camera_(request.session.cameras[first.camera]),
       context_(request.context),
       start_ns_(first.start_ns),
-      lens_(request.lens.seen_with),
+      lens_(request.lens.detection_intrinsics),
       tracker_(camera_.name, request.session.boardOf(first.camera), *request.session.options.frames),
       resolution_px_(*first.opened_px) {
   so_far_.kind = CameraKind::Frames;

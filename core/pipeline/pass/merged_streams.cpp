@@ -69,7 +69,7 @@ void setClock(Stream& stream, SensorPacket& packet) {
 }
 
 // Units and clock; the storage changes hands.
-void bringHome(File& file, Stream& stream) {
+void toSessionUnitsAndClock(File& file, Stream& stream) {
   SensorPacket& packet = file.next;
   packet.sensor = stream.sensor;
   std::swap(packet.events, file.raw.events);
@@ -80,7 +80,7 @@ void bringHome(File& file, Stream& stream) {
   setClock(stream, packet);
 }
 
-void letIn(Stream& stream, SensorPacket& packet) {
+void filterImplausible(Stream& stream, SensorPacket& packet) {
   for (const ImuSample& sample : packet.imu_samples) {
     if (!isMeasurable(sample) && stream.immeasurable++ == 0) stream.immeasurable_ns = sample.time_ns;
   }
@@ -168,8 +168,8 @@ void MergedStreams::advance(File& file) {
     if (file.read_out) break;
     if (file.raw.empty()) continue;
     Stream& stream = *std::ranges::find(file.streams, file.raw.stream, &Stream::in_file);
-    bringHome(file, stream);
-    letIn(stream, file.next);
+    toSessionUnitsAndClock(file, stream);
+    filterImplausible(stream, file.next);
     if (!file.next.empty()) return;
   }
   file.finished = !flushNext(file);

@@ -20,7 +20,7 @@ void holdTimeOffsets(CalibrationInput& input) {
 
 }  // namespace
 
-CalibrationInput takeInput(const Session& session, RecordingPass& pass) {
+CalibrationInput makeInput(const Session& session, DetectionResult& pass) {
   CalibrationInput input;
   input.start_ns = pass.start_ns;
   input.board_name = session.board_name;
@@ -43,7 +43,7 @@ CalibrationInput takeInput(const Session& session, RecordingPass& pass) {
   return input;
 }
 
-void returnInput(CalibrationInput input, RecordingPass& pass) {
+void restorePass(CalibrationInput input, DetectionResult& pass) {
   if (input.cameras.empty()) return;
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
     pass.cameras[k] = std::move(input.cameras[k].observations);

@@ -9,9 +9,9 @@ namespace evical {
 
 // With what the session says of its sensors. Takes what cameras and IMUs saw out of the pass: of long recordings that
 // is most of the memory.
-CalibrationInput takeInput(const Session& session, RecordingPass& pass);
+CalibrationInput makeInput(const Session& session, DetectionResult& pass);
 
 // Gives it back; an input that took nothing changes nothing.
-void returnInput(CalibrationInput input, RecordingPass& pass);
+void restorePass(CalibrationInput input, DetectionResult& pass);
 
 }  // namespace evical

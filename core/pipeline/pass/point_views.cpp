@@ -18,7 +18,7 @@ PointViews::PointViews(const CameraBatch& first, const ViewRequest& request)
       resolution_px_(*first.opened_px),
       start_ns_(first.start_ns),
       unsaid_sigma_px_(request.session.options.frames->point_sigma_px),
-      lens_(request.lens.seen_with) {
+      lens_(request.lens.detection_intrinsics) {
   so_far_.kind = CameraKind::Points;
 }
 

@@ -92,7 +92,7 @@ class WindowWorker {
 class ReadingPass {
  public:
   // `start_ns`: of the whole session, where not all of its sensors are read; its time range counts from there.
-  ReadingPass(const Session& session, const RunContext& context, RecordingPass& result,
+  ReadingPass(const Session& session, const RunContext& context, DetectionResult& result,
               std::optional<std::int64_t> start_ns = {})
       : session_(session),
         recording_(session, context.stop),
@@ -109,7 +109,7 @@ class ReadingPass {
       if (intake.kind == CameraKind::Events)
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
                               session.options.front_end->bursts,
-                              session.board_blinks ? EventUse::AsTheyAre : EventUse::Bursts);
+                              session.board_blinks ? EventUse::Raw : EventUse::Bursts);
     }
   }
 
@@ -223,12 +223,12 @@ class ReadingPass {
 
   const Session& session_;
   SessionRecording recording_;
-  RecordingPass& result_;
+  DetectionResult& result_;
   std::vector<Intake> intakes_;  // by camera
   SessionTimeRange range_;
 };
 
-void checkSamples(const Session& session, const RecordingPass& pass) {
+void checkSamples(const Session& session, const DetectionResult& pass) {
   for (const ImuData& imu : pass.imus) {
     if (!imu.samples.empty()) continue;
     throw badInput(session.recording.string(),
@@ -240,13 +240,13 @@ void checkSamples(const Session& session, const RecordingPass& pass) {
 
 }  // namespace
 
-RecordingPass readAndDetect(const Session& session, const RunContext& context) {
+DetectionResult readAndDetect(const Session& session, const RunContext& context) {
   return readAndDetect(session, givenLenses(session), context);
 }
 
-RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
-                            const RunContext& context) {
-  RecordingPass result;
+DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> lenses,
+                              const RunContext& context) {
+  DetectionResult result;
   result.lenses = std::move(lenses);
   const Stopwatch stopwatch;
   ReadingPass reading(session, context, result);
@@ -285,8 +285,8 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   return result;
 }
 
-RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunContext& context) {
-  RecordingPass result;
+DetectionResult readImus(const Session& session, std::int64_t start_ns, const RunContext& context) {
+  DetectionResult result;
   if (session.imus.empty()) return result;
   Session imus_only = session;
   imus_only.cameras.clear();

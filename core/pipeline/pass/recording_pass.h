@@ -15,7 +15,7 @@ namespace evical {
 class BoardTracker;
 class FrontEndObserver;
 
-struct RecordingPass {
+struct DetectionResult {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams
   std::vector<BoardObservations> cameras;
   std::vector<CameraLens> lenses;  // by camera: what the observations were seen with
@@ -29,13 +29,13 @@ struct RecordingPass {
 
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
 // events. Throws BadInput for streams that are missing, empty, or do not fit the session.
-RecordingPass readAndDetect(const Session& session, const RunContext& context);
+DetectionResult readAndDetect(const Session& session, const RunContext& context);
 
 // The same through these lenses, one a camera, whatever the session gives.
-RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
-                            const RunContext& context);
+DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> lenses,
+                              const RunContext& context);
 
 // The IMUs alone, of a recording whose start is known: what cameras saw is not read.
-RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunContext& context);
+DetectionResult readImus(const Session& session, std::int64_t start_ns, const RunContext& context);
 
 }  // namespace evical

@@ -42,7 +42,7 @@ LatticeEnds endsFrom(const YamlNode& node) {
   return {count(0), count(1), count(2), count(3)};
 }
 
-std::string cameraYaml(const SessionCamera& camera, const RecordingPass& pass, std::size_t k,
+std::string cameraYaml(const SessionCamera& camera, const DetectionResult& pass, std::size_t k,
                        const std::optional<IntrinsicsResult>& found) {
   const BoardObservations& seen = pass.cameras[k];
   const Resolution size = elementOrNone(pass.resolutions_px, k);
@@ -57,13 +57,14 @@ std::string cameraYaml(const SessionCamera& camera, const RecordingPass& pass, s
   if (seen.polarity_delay)
     text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
                         seen.polarity_delay->std_s);
-  if (pass.lenses[k].seen_with) text += "    seen_with:\n" + intrinsicsYaml(*pass.lenses[k].seen_with, 6);
+  if (pass.lenses[k].detection_intrinsics)
+    text += "    detection_intrinsics:\n" + intrinsicsYaml(*pass.lenses[k].detection_intrinsics, 6);
   if (found) text += "    found_first:\n" + foundIntrinsicsYaml(*found, 6);
   return text;
 }
 
 // Those of IMUs are found again.
-std::string faultsYaml(const Session& session, const RecordingPass& pass) {
+std::string faultsYaml(const Session& session, const DetectionResult& pass) {
   std::string text;
   for (const RecordingFault& fault : pass.faults)
     if (!isOfImu(fault, session))
@@ -79,7 +80,7 @@ std::string optionsYaml(const Session& session) {
   return text.empty() ? "options: {}\n" : "options:\n" + text;
 }
 
-std::string detectionsYaml(const Session& session, const RecordingPass& pass,
+std::string detectionsYaml(const Session& session, const DetectionResult& pass,
                            std::span<const std::optional<IntrinsicsResult>> intrinsics) {
   std::string text = fmt::format("evical_detections: 1\nrecording: {}\nstart_ns: {}\n",
                                  yamlText(session.recording.filename().string()), pass.start_ns);
@@ -97,10 +98,10 @@ std::string detectionsYaml(const Session& session, const RecordingPass& pass,
 CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_t k) {
   const SessionCamera& sensor = session.sensor(k);
   CameraLens lens = givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty);
-  lens.seen_with = checkedLens(checkedCamera(root, sensor), sensor);
+  lens.detection_intrinsics = checkedLens(checkedCamera(root, sensor), sensor);
   if (session.sensorOf(k) == k) return lens;
   SessionCamera camera = session.cameras[k];
-  camera.intrinsics = lens.seen_with;
+  camera.intrinsics = lens.detection_intrinsics;
   checkedLens(checkedCamera(root, camera), camera);
   return lens;
 }
@@ -123,7 +124,7 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
   const CameraLens lens = restoredLens(root, session, k);
   restored.intrinsics.emplace_back();
   if (lens.foundFirst() && session.sensorOf(k) == k)
-    restored.intrinsics.back() = foundIntrinsicsFrom(map["found_first"], *lens.seen_with);
+    restored.intrinsics.back() = foundIntrinsicsFrom(map["found_first"], *lens.detection_intrinsics);
   restored.pass.lenses.push_back(lens);
 }
 
@@ -146,7 +147,7 @@ void keepWithin(const std::optional<std::array<double, 2>>& range_s, Items& item
   });
 }
 
-void restoreViews(const std::filesystem::path& folder, const Session& session, RecordingPass& pass) {
+void restoreViews(const std::filesystem::path& folder, const Session& session, DetectionResult& pass) {
   std::vector<int> point_counts;
   for (std::size_t k = 0; k < session.cameras.size(); ++k)
     point_counts.push_back(session.boardOf(k).pointCount());
@@ -163,8 +164,8 @@ void restoreViews(const std::filesystem::path& folder, const Session& session, R
   }
 }
 
-void readSamples(const Session& session, const RunContext& context, RecordingPass& pass) {
-  RecordingPass samples = readImus(session, pass.start_ns, context);
+void readSamples(const Session& session, const RunContext& context, DetectionResult& pass) {
+  DetectionResult samples = readImus(session, pass.start_ns, context);
   pass.imus = std::move(samples.imus);
   pass.read_s = samples.read_s;
   for (RecordingFault& fault : samples.faults) {
@@ -176,7 +177,7 @@ void readSamples(const Session& session, const RunContext& context, RecordingPas
 
 }  // namespace
 
-std::vector<FileContent> detectionFiles(const Session& session, const RecordingPass& pass,
+std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& pass,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics) {
   return {{"detections.csv", {}, [&pass](const TextSink& sink) { detectionsCsv(pass.cameras, sink); }},
           {"windows.csv", windowsCsv(pass.cameras)},

@@ -17,11 +17,11 @@
 namespace evical {
 
 // The three files of a pass. `intrinsics`: of lenses that were calibrated first, by camera; empty where none was.
-std::vector<FileContent> detectionFiles(const Session& session, const RecordingPass& pass,
+std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& pass,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics);
 
 struct RestoredDetections {
-  RecordingPass pass;
+  DetectionResult pass;
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // as the run had them
 };
 

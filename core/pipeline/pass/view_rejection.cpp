@@ -42,9 +42,9 @@ void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
 
 }  // namespace
 
-RecordingPass withRejected(const RecordingPass& pass, const RejectedTimes& rejected_s) {
+DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& rejected_s) {
   assert(rejected_s.size() == pass.cameras.size());
-  RecordingPass divided = pass;
+  DetectionResult divided = pass;
   divided.rejected_views.resize(pass.cameras.size());
   for (std::size_t k = 0; k < rejected_s.size(); ++k)
     divide(rejected_s[k], divided.cameras[k], divided.rejected_views[k]);
@@ -52,7 +52,7 @@ RecordingPass withRejected(const RecordingPass& pass, const RejectedTimes& rejec
   return divided;
 }
 
-RecordingPass withoutViews(const RecordingPass& pass, std::size_t camera, std::span<const int> views) {
+DetectionResult withoutViews(const DetectionResult& pass, std::size_t camera, std::span<const int> views) {
   assert(camera < pass.cameras.size());
   RejectedTimes rejected_s = rejectedTimes_s(pass);
   std::vector<double>& times_s = rejected_s[camera];
@@ -62,7 +62,7 @@ RecordingPass withoutViews(const RecordingPass& pass, std::size_t camera, std::s
   return withRejected(pass, rejected_s);
 }
 
-RejectedTimes rejectedTimes_s(const RecordingPass& pass) {
+RejectedTimes rejectedTimes_s(const DetectionResult& pass) {
   RejectedTimes times_s;
   for (const BoardObservations& camera : pass.cameras) times_s.push_back(rejectedTimes_s(camera));
   return times_s;

@@ -16,12 +16,12 @@ using RejectedTimes = std::vector<std::vector<double>>;
 // The pass with these windows rejected, and no others: views that it had left out come back. Windows that were
 // rejected and whose views are not known any more stay so. What is rejected is reported as such, so that whatever is
 // counted of the pass agrees. Nothing was read for the new pass: its read_s and detect_s are 0.
-RecordingPass withRejected(const RecordingPass& pass, const RejectedTimes& rejected_s);
+DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& rejected_s);
 
 // The pass without these views of a camera, too: indices into pass.cameras[camera].views, in any order, also twice.
-RecordingPass withoutViews(const RecordingPass& pass, std::size_t camera, std::span<const int> views);
+DetectionResult withoutViews(const DetectionResult& pass, std::size_t camera, std::span<const int> views);
 
-RejectedTimes rejectedTimes_s(const RecordingPass& pass);
+RejectedTimes rejectedTimes_s(const DetectionResult& pass);
 // Of one camera; and the sentence about them, empty where there are none.
 std::vector<double> rejectedTimes_s(const BoardObservations& camera);
 std::string rejectedSentence(const BoardObservations& camera);

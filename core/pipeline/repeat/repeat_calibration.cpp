@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/chi_squared.h"
 #include "core/optimisation/optimisation_options.h"
@@ -268,8 +268,8 @@ class Repeat {
                             out().own_values_of);
     for (const std::size_t k : fitting_)
       if (const RepeatedRecording& one = recordingOf(k); one.status == CalibrationStatus::Doubtful)
-        addDoubt(one.name + ": " + one.reason, *result);
-    addDoubt(sigmaDoubt(*result), *result);
+        flagDoubtful(one.name + ": " + one.reason, *result);
+    flagDoubtful(sigmaDoubt(*result), *result);
     named.result = std::move(result);
     run_.joint = std::move(named);
   }
@@ -320,7 +320,7 @@ class Repeat {
     if (run_.joint && out().verdict == Verdict::Changed &&
         recordingOf(fitting_.front()).outcome != RepeatOutcome::Fits) {
       auto doubtful = std::make_shared<CalibrationResult>(*run_.joint->result);
-      addDoubt(out().reason, *doubtful);
+      flagDoubtful(out().reason, *doubtful);
       run_.joint->result = std::move(doubtful);
     }
   }
@@ -347,7 +347,7 @@ std::string partOfRepeat(const RepeatInput& input, std::size_t recording) {
 
 Session sessionOfRepeat(Session session) {
   session.options.optimisation.edit().judge_sigmas = false;
-  session.options.report.edit().cross_validation = false;
+  session.options.report.edit().split_half_check = false;
   return session;
 }
 

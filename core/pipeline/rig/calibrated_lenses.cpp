@@ -1,6 +1,6 @@
 #include "core/pipeline/rig/calibrated_lenses.h"
 
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/lens/joint_intrinsics.h"
@@ -45,10 +45,10 @@ void tellLenses(const Session& session, CalibrationRun& run) {
     if (lens.given_with) notes.push_back(name + ": weighed by the sigmas that they were given with");
     notes.push_back(
         fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
-                    projectionDifference(*lens.seen_with, *lens.solved).rms_px));
+                    projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
-  addDoubt(doubt, run.result, "first_look_at_lens");
+  flagDoubtful(doubt, run.result, "first_look_at_lens");
 }
 
 }  // namespace evical

@@ -109,7 +109,7 @@ double durationOf(const ImuData& imu) {
   return imu.samples.empty() ? 0.0 : secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
 }
 
-void checkDuration(const Session& session, const RecordingPass& pass) {
+void checkDuration(const Session& session, const DetectionResult& pass) {
   const double least_s = session.options.initialisation->least_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
     if (duration_s >= least_s) return;
@@ -125,7 +125,7 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
   for (const ImuData& imu : pass.imus) check(imu.name, durationOf(imu));
 }
 
-void logDetections(const RecordingPass& pass, const RunContext& context) {
+void logDetections(const DetectionResult& pass, const RunContext& context) {
   for (const BoardObservations& camera : pass.cameras) {
     const bool windows = camera.kind == CameraKind::Events;
     context.progress.log(LogLevel::Info,
@@ -202,7 +202,7 @@ void checkSession(const Session& session) {
   }
 }
 
-void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
+void checkPass(const Session& session, const RunContext& context, DetectionResult& pass) {
   for (std::size_t k = 0; k < pass.imus.size(); ++k) {
     const ImuData& imu = pass.imus[k];
     if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);

@@ -6,7 +6,7 @@
 #include "core/base/stopwatch.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
-#include "core/data/doubt.h"
+#include "core/data/quality_warning.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"
@@ -21,10 +21,10 @@
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/rig/calibrated_lenses.h"
 #include "core/pipeline/rig/calibration_checks.h"
-#include "core/pipeline/rig/causes.h"
-#include "core/pipeline/rig/cross_validation.h"
 #include "core/pipeline/rig/detected_recording.h"
-#include "core/pipeline/rig/misfit.h"
+#include "core/pipeline/rig/misfit_diagnosis.h"
+#include "core/pipeline/rig/residual_consistency.h"
+#include "core/pipeline/rig/split_half_check.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/report/report_options.h"
 
@@ -41,9 +41,9 @@ namespace {
 // A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
 void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
                       CalibrationResult& result) {
-  result.cross_validation = crossValidate(input, result.state, *session.options.optimisation,
-                                          session.options.report->cross_validation_block_s, context);
-  const CrossValidation& validation = *result.cross_validation;
+  result.split_half_check = checkHalves(input, result.state, *session.options.optimisation,
+                                        session.options.report->split_half_check_block_s, context);
+  const SplitHalfCheck& validation = *result.split_half_check;
   context.progress.log(
       LogLevel::Info,
       validation.failure.empty()
@@ -76,7 +76,7 @@ class Calibration {
     });
   }
 
-  CalibrationOutcome fromDetections(RecordingPass pass,
+  CalibrationOutcome fromDetections(DetectionResult pass,
                                     std::vector<std::optional<IntrinsicsResult>> intrinsics) {
     run_.pass = std::move(pass);
     run_.intrinsics = std::move(intrinsics);
@@ -88,8 +88,8 @@ class Calibration {
     });
   }
 
-  CalibrationStart toInitialState(RecordingPass pass,
-                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  InitialisedCalibration toInitialState(DetectionResult pass,
+                                        std::vector<std::optional<IntrinsicsResult>> intrinsics) {
     run_.pass = std::move(pass);
     run_.intrinsics = std::move(intrinsics);
     checkSession(session_);
@@ -129,7 +129,7 @@ class Calibration {
   void runFrom(CalibrationStage first) {
     for (const StageWork& each : kWork) {
       if (each.stage < first) continue;
-      if (each.stage == CalibrationStage::CrossValidate && !session_.options.report->cross_validation)
+      if (each.stage == CalibrationStage::CompareHalves && !session_.options.report->split_half_check)
         continue;
       const StageRow& row = rowOf(each.stage);
       context_.progress.stageStarted(row.name);
@@ -149,13 +149,13 @@ class Calibration {
 
   void prepareInput() {
     checkPass(session_, context_, run_.pass);
-    input_ = takeInput(session_, run_.pass);
+    input_ = makeInput(session_, run_.pass);
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);
   }
 
   // What the input took of it, and what was left out of that.
   void returnPass() {
-    returnInput(std::exchange(input_, {}), run_.pass);
+    restorePass(std::exchange(input_, {}), run_.pass);
     for (std::size_t k = 0; k < whole_views_.size(); ++k)
       if (std::optional<std::vector<BoardView>> whole = std::exchange(whole_views_[k], std::nullopt))
         run_.pass.cameras[k].views = std::move(*whole);
@@ -168,14 +168,14 @@ class Calibration {
       if (input_.cameras.empty()) throw;
       throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
     }
-    keepLargerParts();
+    dropViewsAcrossClockStep();
     for (const InitialisationStep& step : initial_.steps)
       context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.text()));
     for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
   }
 
   // Where clocks step, one offset holds for a part of the recording only.
-  void keepLargerParts() {
+  void dropViewsAcrossClockStep() {
     std::string doubt;
     for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
       const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
@@ -204,24 +204,26 @@ class Calibration {
     PriorCheck priors = checkPriors(input_, solution, options, context_);
     result.status = uncertainty.status;
     result.reason = uncertainty.reason;
-    if (!result.reason.empty()) result.causes = {Doubt{result.reason, {}, "observability"}};
+    if (!result.reason.empty()) result.causes = {QualityWarning{result.reason, {}, "observability"}};
     if (!solution.converged && result.status == CalibrationStatus::Ok)
-      addDoubt(Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, "
-                     "or see the residuals",
-                     Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)},
-                     "not_converged"},
-               result);
-    addDoubt(uncertainty.other_sensors, result, "another_sensor");
-    addDoubt(uncertainty.rolling_shutters, result, "rolling_shutter");
-    addDoubt(priors.doubt, result, "prior");
-    addDoubt(boardDoubt(uncertainty, solution.state), result, "board_size");
-    addDoubt(uncertainty.stretch_doubt, result, "board_stretch");
-    addDoubt(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
-    addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
-    addDoubt(clock_doubt_, result, "clock_step");
+      flagDoubtful(
+          QualityWarning{
+              "the optimisation did not converge: raise optimisation.solver.max_iterations, "
+              "or see the residuals",
+              Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)},
+              "not_converged"},
+          result);
+    flagDoubtful(uncertainty.other_sensors, result, "another_sensor");
+    flagDoubtful(uncertainty.rolling_shutters, result, "rolling_shutter");
+    flagDoubtful(priors.doubt, result, "prior");
+    flagDoubtful(boardDoubt(uncertainty, solution.state), result, "board_size");
+    flagDoubtful(uncertainty.stretch_doubt, result, "board_stretch");
+    flagDoubtful(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
+    flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
+    flagDoubtful(clock_doubt_, result, "clock_step");
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful)
-      addDoubt(saturationIn(input_, options), result, "saturation");
+      flagDoubtful(saturationIn(input_, options), result, "saturation");
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -248,13 +250,14 @@ class Calibration {
                     [](const ImuState& imu) { return std::abs(imu.accelerometer_delay_s) > kLate_s; }) ||
         std::any_of(state.cameras.begin(), state.cameras.end(), [](const CameraState& camera) {
           const CameraLens& lens = camera.lens;
-          return lens.solved && projectionDifference(*lens.seen_with, *lens.solved).rms_px > kAnotherLens_px;
+          return lens.solved &&
+                 projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px > kAnotherLens_px;
         });
     return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
   }
 
   // Of what is held. A prior that is far off looks like a turned gyroscope, too.
-  static Doubt heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
+  static QualityWarning heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
     if (!uncertainty.bent_board.empty())
       return {uncertainty.bent_board, kFreeBow, causeName(CauseKind::BentBoard)};
     if (prior_is_off) return {};
@@ -265,11 +268,11 @@ class Calibration {
 
   // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
   // much that is not modelled looks like it, a bent board, too.
-  void judge(const BatchSolution& solution, const Doubt& held, const Doubt& change) {
+  void judge(const BatchSolution& solution, const QualityWarning& held, const QualityWarning& change) {
     const OptimisationOptions& options = *session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
     if (misfit.doubt.empty() && held.text.empty() && change.text.empty()) return;
-    Doubt cause = change;
+    QualityWarning cause = change;
     if (cause.text.empty())
       if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
         cause = {found->text, found->repair, causeName(found->kind), found->explains};
@@ -278,15 +281,15 @@ class Calibration {
                               cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
                               "Check the board, the lens and the streams " + howTo(HowTo::EditSession))
           .repairedBy(cause.repair);
-    if (misfit.doubt.empty() && cause.text.empty()) addDoubt(held, run_.result);
-    addDoubt(misfit.doubt, run_.result, "misfit");
-    addDoubt(cause, run_.result);
+    if (misfit.doubt.empty() && cause.text.empty()) flagDoubtful(held, run_.result);
+    flagDoubtful(misfit.doubt, run_.result, "misfit");
+    flagDoubtful(cause, run_.result);
   }
 
   void compareHalves() {
     validateByHalves(session_, input_, context_, run_.result);
-    const std::string doubt = doubtOfHalves(*run_.result.cross_validation, *session_.options.optimisation);
-    if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result, "halves");
+    const std::string doubt = doubtOfHalves(*run_.result.split_half_check, *session_.options.optimisation);
+    if (run_.result.status == CalibrationStatus::Ok) flagDoubtful(doubt, run_.result, "halves");
   }
 
   void tellRejected() {
@@ -333,7 +336,7 @@ const std::array<Calibration::StageWork, 4> Calibration::kWork = {
     {{CalibrationStage::Detect, &Calibration::detect},
      {CalibrationStage::Initialise, &Calibration::initialiseState},
      {CalibrationStage::Optimise, &Calibration::optimise},
-     {CalibrationStage::CrossValidate, &Calibration::compareHalves}}};
+     {CalibrationStage::CompareHalves, &Calibration::compareHalves}}};
 
 }  // namespace
 
@@ -347,13 +350,14 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
   return Calibration(session, context).fromRecording();
 }
 
-CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+CalibrationOutcome runCalibration(const Session& session, DetectionResult pass, const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics));
 }
 
-CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
-                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult pass,
+                                             const RunContext& context,
+                                             std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   return Calibration(session, context).toInitialState(std::move(pass), std::move(intrinsics));
 }
 
@@ -361,7 +365,7 @@ CalibrationRun calibrate(const Session& session, const RunContext& context) {
   return runCalibration(session, context).runOrThrow();
 }
 
-CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+CalibrationRun calibrate(const Session& session, DetectionResult pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   return runCalibration(session, std::move(pass), context, std::move(intrinsics)).runOrThrow();
 }

@@ -18,7 +18,7 @@ namespace evical {
 
 struct CalibrationRun {
   CalibrationResult result;
-  RecordingPass pass;
+  DetectionResult pass;
   // By camera: how the lens was calibrated first, where the session gave none. Empty: it gave all. The lens
   // in use is in the result's state.
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
@@ -34,7 +34,7 @@ struct CalibrationOutcome {
   RunStatus status = RunStatus::Done;
   std::optional<CalibrationError> error;  // why it failed
   std::optional<CalibrationRun> run;      // exactly where it is done
-  RecordingPass pass;  // where it is not: what was read and detected until then; empty before that
+  DetectionResult pass;  // where it is not: what was read and detected until then; empty before that
 
   CalibrationRun runOrThrow() &&;  // the run; else throws the error, or Cancelled
 };
@@ -47,23 +47,24 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
 // The same from what the front end and the IMUs gave: `pass` as readAndDetect, restoreDetections or a simulation
 // makes it, with the lenses that it was seen with. `intrinsics`: how a run before found those of them that were not
 // given, as CalibrationRun has them.
-CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+CalibrationOutcome runCalibration(const Session& session, DetectionResult pass, const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // Both for who wants nothing but the result. Throw CalibrationError, and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context);
-CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+CalibrationRun calibrate(const Session& session, DetectionResult pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // What a calibration has before its batch.
-struct CalibrationStart {
+struct InitialisedCalibration {
   CalibrationInput input;
   Initialisation initial;
 };
 
 // Goes that far and no further, with all that is checked on the way. Throws CalibrationError, and Cancelled when asked
 // to stop.
-CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
-                                  std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
+InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult pass,
+                                             const RunContext& context,
+                                             std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 }  // namespace evical

@@ -39,7 +39,7 @@ FoundLenses findLenses(const Session& session, const RunContext& context) {
   for (std::size_t k = 0; k < lenses.size(); ++k) {
     if (lenses[k].given || session.sensorOf(k) != k) continue;
     found.intrinsics[k] = calibrateIntrinsics(session, k, context.unobserved()).result;
-    lenses[k].seen_with = found.intrinsics[k]->intrinsics;
+    lenses[k].detection_intrinsics = found.intrinsics[k]->intrinsics;
   }
   for (std::size_t k = 0; k < lenses.size(); ++k) lenses[k] = lenses[session.sensorOf(k)];
   return found;

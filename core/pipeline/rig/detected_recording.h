@@ -13,7 +13,7 @@
 namespace evical {
 
 struct DetectedRecording {
-  RecordingPass pass;
+  DetectionResult pass;
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // as CalibrationRun has them
 };
 

@@ -86,9 +86,9 @@ class Assessor {
   bool isRig() const { return session_.imus.size() + session_.cameras.size() >= 2; }
 
   void assessRig() {
-    std::optional<CalibrationStart> start;
+    std::optional<InitialisedCalibration> start;
     try {
-      start = startCalibration(session_, pass_, context_.unobserved(), detected_.intrinsics);
+      start = initialiseCalibration(session_, pass_, context_.unobserved(), detected_.intrinsics);
     } catch (const CalibrationError& error) {
       assessAxes(nullptr);
       addObstacle(error);
@@ -198,7 +198,7 @@ class Assessor {
   }
 
   // The estimator's own covariance, at a state that is near the solution's.
-  void expectSigmas(const CalibrationStart& start) {
+  void expectSigmas(const InitialisedCalibration& start) {
     const OptimisationOptions& options = *session_.options.optimisation;
     const RunContext unobserved = context_.unobserved();
     const BatchSolution near =
@@ -251,7 +251,7 @@ class Assessor {
   }
 
   const Session& session_;
-  const RecordingPass& pass_;
+  const DetectionResult& pass_;
   const DetectedRecording& detected_;
   const RunContext& context_;
   const CalibrationError* no_lens_;

@@ -34,7 +34,8 @@ std::vector<SeenBoard> seenBoards(const Session& session) {
 
 }  // namespace
 
-std::vector<FileContent> reportOf(const Session& session, const NamedResult& named, const RecordingPass& pass,
+std::vector<FileContent> reportOf(const Session& session, const NamedResult& named,
+                                  const DetectionResult& pass,
                                   std::span<const std::optional<IntrinsicsResult>> intrinsics,
                                   const CalibrationCheck* check) {
   const OptimisationOptions& options = *session.options.optimisation;
@@ -58,7 +59,7 @@ std::vector<FileContent> reportOf(const Session& session, const NamedResult& nam
 
 namespace {
 
-void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
+void addReport(const Session& session, const NamedResult& named, const DetectionResult& pass,
                std::vector<FileContent>& files,
                std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
   for (FileContent& file : reportOf(session, named, pass, intrinsics)) files.push_back(std::move(file));
@@ -90,7 +91,7 @@ NamedResult namedResult(const Session& session, std::shared_ptr<const Calibratio
     named.imus.back().accelerometer_stream = imu.accelerometer_stream;
   }
   named.boards = {session.board_name};
-  for (const FurtherBoard& further : session.further_boards) named.boards.push_back(further.name);
+  for (const AdditionalBoard& further : session.further_boards) named.boards.push_back(further.name);
   named.version = version;
   named.options = differingOptions(session.options);
   named.result = std::move(result);
@@ -157,15 +158,15 @@ std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
 }
 
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
-                         const RecordingPass& pass, const std::string& log) {
+                         const DetectionResult& pass, const std::string& log) {
   std::vector<FileContent> files = {{"log.txt", log}};
   for (FileContent& file : detectionFiles(session, pass, {})) files.push_back(std::move(file));
   for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }
 
-void writeFailure(const std::filesystem::path& folder, const Session& session, const Doubt& cause,
-                  const std::string& version, const std::string& log, const RecordingPass& pass) {
+void writeFailure(const std::filesystem::path& folder, const Session& session, const QualityWarning& cause,
+                  const std::string& version, const std::string& log, const DetectionResult& pass) {
   const auto failed = std::make_shared<CalibrationResult>();
   failed->status = CalibrationStatus::Failed;
   failed->reason = cause.text;

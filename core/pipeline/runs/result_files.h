@@ -28,7 +28,8 @@ NamedResult namedRun(const Session& session, const std::shared_ptr<const Calibra
 std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run);
 
 // report.html with its plots/*.csv. `check`: of an older result by this recording.
-std::vector<FileContent> reportOf(const Session& session, const NamedResult& named, const RecordingPass& pass,
+std::vector<FileContent> reportOf(const Session& session, const NamedResult& named,
+                                  const DetectionResult& pass,
                                   std::span<const std::optional<IntrinsicsResult>> intrinsics,
                                   const CalibrationCheck* check = nullptr);
 
@@ -52,11 +53,11 @@ std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
 
 // The files of saved_detections.h, and log.txt.
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
-                         const RecordingPass& pass, const std::string& log);
+                         const DetectionResult& pass, const std::string& log);
 
 // result.yaml with status failed and the reason, a report of what there is in `pass`, and log.txt; only where
 // the folder is there already.
-void writeFailure(const std::filesystem::path& folder, const Session& session, const Doubt& cause,
-                  const std::string& version, const std::string& log, const RecordingPass& pass = {});
+void writeFailure(const std::filesystem::path& folder, const Session& session, const QualityWarning& cause,
+                  const std::string& version, const std::string& log, const DetectionResult& pass = {});
 
 }  // namespace evical

@@ -26,7 +26,7 @@ EVICAL_FIELDS(VectorSpline, start_s, knot_spacing_s, control_points);
 EVICAL_FIELDS(Resolution, width_px, height_px);
 EVICAL_FIELDS(CameraIntrinsics, model, resolution_px, focal_length_px, principal_point_px, distortion);
 EVICAL_FIELDS(LensUncertainty, std, correlation);
-EVICAL_FIELDS(CameraLens, given, seen_with, solved, given_with);
+EVICAL_FIELDS(CameraLens, given, detection_intrinsics, solved, given_with);
 EVICAL_FIELDS(CameraState, reference_from_camera, time_offset_s, edge_lead_px, slow_edge_lead_px, lens,
               time_offset_drift_ppm, time_offset_at_s, line_delay_us, exposure_share);
 EVICAL_FIELDS(BiasDrift, start_s, knot_spacing_s, gyroscope_rad_s, accelerometer_m_s2);
@@ -58,12 +58,12 @@ EVICAL_FIELDS(IterationRecord, stage, iteration, cost, gradient, step, cameras, 
 EVICAL_FIELDS(CircleResidual, camera, view, circle, time_s, centre_px, residual_px, sigma_px, used);
 EVICAL_FIELDS(RejectedWindow, camera, time_s);
 EVICAL_FIELDS(QuantityDifference, name, unit, difference, sigma);
-EVICAL_FIELDS(CrossValidation, block_s, windows, quantities, rms_sigmas, failure);
+EVICAL_FIELDS(SplitHalfCheck, block_s, windows, quantities, rms_sigmas, failure);
 EVICAL_FIELDS(Repair, key, value);
-EVICAL_FIELDS(Doubt, text, repair, name, explains);
-EVICAL_FIELDS(Timing, read_s, detect_s, initialise_s, optimise_s, cross_validate_s, total_s);
+EVICAL_FIELDS(QualityWarning, text, repair, name, explains);
+EVICAL_FIELDS(Timing, read_s, detect_s, initialise_s, optimise_s, split_half_check_s, total_s);
 EVICAL_FIELDS(CalibrationResult, status, reason, repair, causes, start_ns, state, uncertainty, latencies,
-              cameras, imus, iterations, circle_residuals, rejected_windows, cross_validation, notes, timing,
+              cameras, imus, iterations, circle_residuals, rejected_windows, split_half_check, notes, timing,
               memory_peak_mb);
 EVICAL_FIELDS(ImageCell, middle_px, circles, sigma_px);
 EVICAL_FIELDS(ImageMap, columns, rows, cells, rms_px, max_px);
@@ -83,7 +83,7 @@ EVICAL_FIELDS(ImuNoise, gyroscope_density, accelerometer_density, gyroscope_rand
 EVICAL_FIELDS(ImuSample, time_ns, angular_rate_rad_s, specific_force_m_s2, measured_by);
 EVICAL_FIELDS(ImuData, name, noise, samples, prior);
 EVICAL_FIELDS(RecordingFault, stream, kind, at_s, text);
-EVICAL_FIELDS(RecordingPass, start_ns, cameras, lenses, imus, resolutions_px, faults, read_s, detect_s,
+EVICAL_FIELDS(DetectionResult, start_ns, cameras, lenses, imus, resolutions_px, faults, read_s, detect_s,
               rejected_views);
 
 template <>
@@ -225,7 +225,7 @@ bool isWhole(const BoardObservations& camera) {
   return isWhole(camera.views) && std::is_sorted(camera.windows.begin(), camera.windows.end(), earlier);
 }
 
-bool isWhole(const RecordingPass& pass) {
+bool isWhole(const DetectionResult& pass) {
   const auto whole = [](const auto& each) { return isWhole(each); };
   return isTime(pass.start_ns) && pass.lenses.size() == pass.cameras.size() &&
          pass.resolutions_px.size() == pass.cameras.size() &&
@@ -236,7 +236,7 @@ bool isWhole(const RecordingPass& pass) {
 }
 
 // Residuals are of views and circles.
-bool fits(const CalibrationResult& result, const RecordingPass& pass) {
+bool fits(const CalibrationResult& result, const DetectionResult& pass) {
   return result.state.cameras.size() == pass.cameras.size() && result.state.imus.size() == pass.imus.size() &&
          std::all_of(result.circle_residuals.begin(), result.circle_residuals.end(),
                      [&](const CircleResidual& r) {

@@ -8,10 +8,11 @@
 namespace evical {
 namespace {
 
-std::optional<Doubt> causeToTell(const CalibrationOutcome& outcome, bool folder_was_there) {
+std::optional<QualityWarning> causeToTell(const CalibrationOutcome& outcome, bool folder_was_there) {
   if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
-    return Doubt{outcome.error->what(), outcome.error->repair(), "failure"};
-  if (outcome.status == RunStatus::Cancelled && folder_was_there) return Doubt{"cancelled", {}, "cancelled"};
+    return QualityWarning{outcome.error->what(), outcome.error->repair(), "failure"};
+  if (outcome.status == RunStatus::Cancelled && folder_was_there)
+    return QualityWarning{"cancelled", {}, "cancelled"};
   return std::nullopt;
 }
 
@@ -20,7 +21,7 @@ std::optional<Doubt> causeToTell(const CalibrationOutcome& outcome, bool folder_
 void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_there, const Session& session,
                         const CalibrationOutcome& outcome, const std::string& version,
                         const std::string& log) {
-  const std::optional<Doubt> cause = causeToTell(outcome, folder_was_there);
+  const std::optional<QualityWarning> cause = causeToTell(outcome, folder_was_there);
   std::error_code ignored;
   if (!cause || !std::filesystem::is_directory(folder, ignored)) return;
   // A failed run keeps an earlier result of the same folder: it is still true of its own recording.

@@ -175,7 +175,7 @@ std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) 
                         kAngularRateUnits.at(static_cast<std::size_t>(*imu.angular_rate_unit)));
   }
   const auto addAxes = [&](const char* key, const AxesReading& axes) {
-    if (axes != kAxesAsTheyAre) text += fmt::format("    {}: {}\n", key, axesText(axes));
+    if (axes != kIdentityAxes) text += fmt::format("    {}: {}\n", key, axesText(axes));
   };
   addAxes("gyroscope_axes", imu.gyroscope_axes);
   addAxes("accelerometer_axes", imu.accelerometer_axes);

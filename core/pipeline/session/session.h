@@ -39,7 +39,7 @@ struct SessionImu {
   ImuNoise noise;
   std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
   std::optional<AngularRateUnit> angular_rate_unit;
-  AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
+  AxesReading gyroscope_axes = kIdentityAxes, accelerometer_axes = kIdentityAxes;
   std::filesystem::path recording;  // its own; empty: the session's
   double clock_offset_s = 0.0;      // known: to be added to the stream's times
   double clock_scale = 1.0;         // seconds per second of its clock, counted from its first stamp
@@ -51,7 +51,7 @@ struct SessionImu {
 };
 
 // With what tells its spacing and spacing_std, where it was measured so.
-struct SessionBoard : FurtherBoard {
+struct SessionBoard : AdditionalBoard {
   std::optional<MeasuredLength> measured = {};
 };
 

@@ -155,7 +155,7 @@ std::string freeName(const std::string& like, const Session& session) {
 
 std::vector<std::string> boardNames(const Session& session) {
   std::vector<std::string> names = {session.board_name};
-  for (const FurtherBoard& further : session.further_boards) names.push_back(further.name);
+  for (const AdditionalBoard& further : session.further_boards) names.push_back(further.name);
   return names;
 }
 
@@ -215,7 +215,7 @@ void addBoard(std::size_t like, Session& session) {
 void removeBoard(std::size_t index, Session& session) {
   const std::string name = boardNames(session).at(index);
   if (index == 0) makeWorlds(1, session);
-  std::erase_if(session.further_boards, [&](const FurtherBoard& further) { return further.name == name; });
+  std::erase_if(session.further_boards, [&](const AdditionalBoard& further) { return further.name == name; });
   for (SessionCamera& camera : session.cameras)
     if (camera.board == name) camera.board = session.board_name;
   settleBoards(session);
@@ -251,7 +251,7 @@ void settleBoards(Session& session) {
 std::size_t Session::boardIndexOf(std::size_t camera) const {
   const std::string& name = cameras[camera].board;
   const auto found = std::find_if(further_boards.begin(), further_boards.end(),
-                                  [&](const FurtherBoard& each) { return each.name == name; });
+                                  [&](const AdditionalBoard& each) { return each.name == name; });
   return found == further_boards.end() ? 0 : static_cast<std::size_t>(found - further_boards.begin()) + 1;
 }
 

@@ -192,7 +192,7 @@ void adviseFaults(const ReportData& data, std::vector<Advice>& all) {
 
 void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
   constexpr double kFar = 2.0, kVeryFar = 4.0;
-  const auto& validation = data.named.result->cross_validation;
+  const auto& validation = data.named.result->split_half_check;
   if (!validation || !validation->failure.empty()) return;
   const QuantityDifference* worst = nullptr;
   for (const QuantityDifference& each : validation->quantities)

@@ -4,7 +4,7 @@
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 
 #include <fmt/format.h>
 
@@ -194,10 +194,10 @@ void writeUncertainty(const ReportData& data, ReportPage& page) {
   page.endSection();
 }
 
-void writeCrossValidation(const ReportData& data, ReportPage& page) {
-  const auto& validation = data.named.result->cross_validation;
+void writeSplitHalfCheck(const ReportData& data, ReportPage& page) {
+  const auto& validation = data.named.result->split_half_check;
   if (!validation) return;
-  page.beginSection("cross-validation", "Two halves of the recording");
+  page.beginSection("split-half-check", "Two halves of the recording");
   if (!validation->failure.empty()) {
     page.text(paragraph("", "The halves could not be compared: " + escaped(validation->failure)));
     page.endSection();
@@ -213,7 +213,7 @@ void writeCrossValidation(const ReportData& data, ReportPage& page) {
                                       number(validation->block_s, 2), validation->windows[0],
                                       validation->windows[1], number(validation->rms_sigmas, 2))));
   page.text(paragraph("", largestDifference(validation->quantities)));
-  PlotTable table("plots/cross_validation.csv", {"difference", "sigma", "sigmas"});
+  PlotTable table("plots/split_half_check.csv", {"difference", "sigma", "sigmas"});
   table.label_column = "quantity";
   PlotFrame frame;
   frame.title = "difference of the halves in sigmas";
@@ -271,10 +271,10 @@ void writeRun(const ReportData& data, ReportPage& page) {
   page.heading("Time and memory");
   const Timing& t = result.timing;
   page.text(
-      table({"read [s]", "detect [s]", "initialise [s]", "optimise [s]", "cross-validate [s]", "total [s]",
+      table({"read [s]", "detect [s]", "initialise [s]", "optimise [s]", "two halves [s]", "total [s]",
              "memory [MB]"},
             {{number(t.read_s, 2), number(t.detect_s, 2), number(t.initialise_s, 2), number(t.optimise_s, 2),
-              number(t.cross_validate_s, 2), number(t.total_s, 2), number(result.memory_peak_mb, 0)}}));
+              number(t.split_half_check_s, 2), number(t.total_s, 2), number(result.memory_peak_mb, 0)}}));
   page.text(paragraph("small", "Reading and detecting overlap. evical " + escaped(data.named.version)));
   page.endSection();
 }

@@ -39,7 +39,7 @@ std::vector<ReportFile> reportFiles(const ReportData& data) {
   html::writeBiases(data, page);
   html::writeConvergence(data, page);
   html::writeUncertainty(data, page);
-  html::writeCrossValidation(data, page);
+  html::writeSplitHalfCheck(data, page);
   html::writeRun(data, page);
   return html::filesOf({titleOf(data), data.named.version, startText(data.named)}, verdict, page);
 }

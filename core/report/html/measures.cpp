@@ -96,7 +96,7 @@ void addResiduals(const ReportData& data, std::size_t index,
 CameraMeasures measureCamera(const ReportData& data, std::size_t index) {
   CameraMeasures camera;
   const std::optional<CameraIntrinsics> intrinsics =
-      index < data.lenses.size() ? data.lenses[index].seen_with : std::nullopt;
+      index < data.lenses.size() ? data.lenses[index].detection_intrinsics : std::nullopt;
   if (index < data.resolutions_px.size()) camera.resolution_px = data.resolutions_px[index];
   if (!camera.resolution_px.known() && intrinsics) camera.resolution_px = intrinsics->resolution_px;
   camera.cells = makeCells(camera.resolution_px);

@@ -60,7 +60,7 @@ void writeInertial(const ReportData& data, const Measures& measures, ReportPage&
 void writeBiases(const ReportData& data, ReportPage& page);
 void writeConvergence(const ReportData& data, ReportPage& page);
 void writeUncertainty(const ReportData& data, ReportPage& page);
-void writeCrossValidation(const ReportData& data, ReportPage& page);
+void writeSplitHalfCheck(const ReportData& data, ReportPage& page);
 void writeRun(const ReportData& data, ReportPage& page);
 
 }  // namespace evical::html

@@ -264,7 +264,7 @@ class TestExportCameras : public QObject {
     RigKind kind;
     kind.fisheye = true;
     NamedResult result = rig(kind);
-    test::ownResult(result).state.cameras[0].lens.seen_with->focal_length_px = {110.0, 110.0};
+    test::ownResult(result).state.cameras[0].lens.detection_intrinsics->focal_length_px = {110.0, 110.0};
     try {
       exportTo(result, "metavision");
       QFAIL("taken");

@@ -285,7 +285,7 @@ class TestExportDataSets : public QObject {
     RigKind wide;
     wide.fisheye = true;
     NamedResult strong = rig(wide);
-    ownResult(strong).state.cameras[0].lens.seen_with->focal_length_px = {110.0, 110.0};
+    ownResult(strong).state.cameras[0].lens.detection_intrinsics->focal_length_px = {110.0, 110.0};
     QVERIFY(refusal(strong, "dsec").find("DSEC has no place for equidistant distortion") !=
             std::string::npos);
     RigKind third;

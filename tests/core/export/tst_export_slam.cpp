@@ -300,7 +300,7 @@ class TestExportSlam : public QObject {
     RigKind kind;
     kind.cameras = 1;
     NamedResult result = rig(kind);
-    CameraIntrinsics& own = *ownResult(result).state.cameras[0].lens.seen_with;
+    CameraIntrinsics& own = *ownResult(result).state.cameras[0].lens.detection_intrinsics;
     own.distortion = {-0.4, 0.05, 0.0, 0.0, 0.0};
     const DsoCamera camera = dsoCamera(contentOf(exportTo(result, "dm-vio"), "dm-vio/camera.txt"));
     const Eigen::Vector2d beyond = camera.lens({1.9, 0.0, 1.0});

@@ -3,7 +3,7 @@
 
 #include "core/export/rig.h"
 #include "core/numerics/angles.h"
-#include "core/report/quantity_words.h"
+#include "core/report/quantity_labels.h"
 #include "core/report/result_table.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/own_result.h"

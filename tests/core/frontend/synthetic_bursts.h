@@ -4,7 +4,7 @@
 
 #include "core/frontend/board_motion.h"
 #include "core/frontend/burst_window.h"
-#include "core/frontend/edge_bursts.h"
+#include "core/frontend/edge_crossings.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -21,7 +21,7 @@ namespace evical::test {
 inline constexpr Resolution kDavis_px = {346, 260};
 inline constexpr std::uint16_t kBurstEvents = 6;
 
-inline EdgeBurst burstAt(int x_px, int y_px, double time_s, bool brighter) {
+inline EdgeCrossing burstAt(int x_px, int y_px, double time_s, bool brighter) {
   return {static_cast<std::int64_t>(std::llround(time_s * 1e9)),
           1'000'000,
           static_cast<std::uint16_t>(x_px),
@@ -38,7 +38,7 @@ struct SyntheticCircle {
 
 // Bursts within half_window_s of time 0. `noise_px` is that of an edge's place, along its normal.
 inline void addBursts(const SyntheticCircle& circle, double half_window_s, CircleShade shade, double noise_px,
-                      std::mt19937& random, std::vector<EdgeBurst>& bursts) {
+                      std::mt19937& random, std::vector<EdgeCrossing>& bursts) {
   std::normal_distribution<double> normal;
   const double speed2 = circle.velocity_px_s.squaredNorm();
   const double reach = circle.radius_px + std::sqrt(speed2) * half_window_s + 1.0;
@@ -66,7 +66,7 @@ inline void addBursts(const SyntheticCircle& circle, double half_window_s, Circl
 }
 
 inline void addRandomBursts(int count, double half_window_s, std::mt19937& random,
-                            std::vector<EdgeBurst>& bursts) {
+                            std::vector<EdgeCrossing>& bursts) {
   std::uniform_int_distribution<int> x(0, kDavis_px.width_px - 1), y(0, kDavis_px.height_px - 1), bit(0, 1);
   std::uniform_real_distribution<double> time(-half_window_s, half_window_s);
   for (int i = 0; i < count; ++i) bursts.push_back(burstAt(x(random), y(random), time(random), bit(random)));
@@ -76,7 +76,7 @@ inline void addRandomBursts(int count, double half_window_s, std::mt19937& rando
 struct SyntheticWindow {
   BurstWindow window;
 
-  explicit SyntheticWindow(const std::vector<EdgeBurst>& bursts, CircleShade shade = CircleShade::Dark)
+  explicit SyntheticWindow(const std::vector<EdgeCrossing>& bursts, CircleShade shade = CircleShade::Dark)
       : window(BoardScene({.circles = shade, .given_m = {}}, kDavis_px, std::nullopt)) {
     window.assign(bursts, 0);
   }
@@ -135,11 +135,11 @@ struct MovingBoard {
 };
 
 // All bursts of the board's circles within half_window_s of time 0, from the true motion: no flow model.
-inline std::vector<EdgeBurst> burstsOf(const MovingBoard& moving, double half_window_s, double noise_px,
-                                       std::mt19937& random) {
+inline std::vector<EdgeCrossing> burstsOf(const MovingBoard& moving, double half_window_s, double noise_px,
+                                          std::mt19937& random) {
   constexpr int kSteps = 60;
   std::normal_distribution<double> normal;
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (int i = 0; i < moving.board.pointCount(); ++i) {
     std::vector<CircleImage> images;
     for (int k = 0; k <= kSteps; ++k)

@@ -26,7 +26,7 @@ void TestActiveEventSurface::pixel_keepsItsLastEdge() {
 
 // Darker edges lead at dark circles, brighter ones at bright circles.
 void TestActiveEventSurface::polarities_areSurfacesOfTheirOwn() {
-  const std::vector<EdgeBurst> bursts = {burstAt(20, 30, 0.001, false), burstAt(20, 30, 0.002, true)};
+  const std::vector<EdgeCrossing> bursts = {burstAt(20, 30, 0.001, false), burstAt(20, 30, 0.002, true)};
   const SyntheticWindow dark(bursts, CircleShade::Dark), bright(bursts, CircleShade::Bright);
   const ActiveEventSurface of_dark(dark.window, 1), of_bright(bright.window, 1);
   QCOMPARE(*of_dark.at(true, 20, 30), 0.001f);

@@ -18,7 +18,7 @@ struct Claim {
 
 BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0) {
   std::mt19937 random(7);
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kBoardExtentHalfWindow_s, 0.1, random);
+  std::vector<EdgeCrossing> bursts = burstsOf(moving, kBoardExtentHalfWindow_s, 0.1, random);
   addRandomBursts(random_bursts, kBoardExtentHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, moving.board.circles);
   Board claimed = moving.board;

@@ -28,7 +28,7 @@ class TestBurstWindow : public QObject {
 
 void TestBurstWindow::visitBox_findsAllInside() {
   std::mt19937 random(3);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addRandomBursts(5000, 0.02, random, bursts);
   const SyntheticWindow synthetic(bursts);
   const BurstWindow& window = synthetic.window;
@@ -51,7 +51,7 @@ void TestBurstWindow::visitBox_findsAllInside() {
 
 void TestBurstWindow::visitBox_outsideTheImage_visitsNothing() {
   std::mt19937 random(4);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addRandomBursts(2000, 0.02, random, bursts);
   const SyntheticWindow synthetic(bursts);
   const auto fail = [](std::uint32_t) { QFAIL("visited"); };
@@ -60,7 +60,7 @@ void TestBurstWindow::visitBox_outsideTheImage_visitsNothing() {
 }
 
 void TestBurstWindow::lead_followsShade() {
-  const std::vector<EdgeBurst> bursts = {burstAt(10, 20, 0.003, false)};
+  const std::vector<EdgeCrossing> bursts = {burstAt(10, 20, 0.003, false)};
   QCOMPARE(SyntheticWindow(bursts, CircleShade::Dark).window.bursts()[0].lead, 1.0f);
   QCOMPARE(SyntheticWindow(bursts, CircleShade::Bright).window.bursts()[0].lead, -1.0f);
   QCOMPARE(SyntheticWindow(bursts).window.bursts()[0].time_s, 0.003f);
@@ -87,14 +87,14 @@ void TestBurstWindow::idealPixels_comeFromTable() {
 
 void TestBurstWindow::history_gathersWhatLiesInTime() {
   std::mt19937 random(5);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addRandomBursts(3000, 0.5, random, bursts);  // negative times too
   BurstHistory history;
   history.add(bursts);
   const std::int64_t begin_ns = -123'456'789, end_ns = 87'654'321;
-  std::vector<EdgeBurst> found;
+  std::vector<EdgeCrossing> found;
   history.gather(begin_ns, end_ns, found);
-  const auto inside = [&](const EdgeBurst& b) { return b.time_ns >= begin_ns && b.time_ns < end_ns; };
+  const auto inside = [&](const EdgeCrossing& b) { return b.time_ns >= begin_ns && b.time_ns < end_ns; };
   QCOMPARE(static_cast<std::ptrdiff_t>(found.size()), std::count_if(bursts.begin(), bursts.end(), inside));
   QVERIFY(std::all_of(found.begin(), found.end(), inside));
   QVERIFY(history.count(begin_ns, end_ns) >= found.size());
@@ -104,7 +104,7 @@ void TestBurstWindow::history_takesBurstsInAnyOrder() {
   BurstHistory history;
   history.add({burstAt(1, 1, 0.5, true)});
   history.add({burstAt(2, 2, -0.5, true), burstAt(3, 3, 0.1, true)});
-  std::vector<EdgeBurst> found;
+  std::vector<EdgeCrossing> found;
   history.gather(-1'000'000'000, 1'000'000'000, found);
   QCOMPARE(found.size(), 3u);
 }
@@ -113,7 +113,7 @@ void TestBurstWindow::history_dropsOld() {
   BurstHistory history;
   for (int k = 0; k < 100; ++k) history.add({burstAt(1, 1, 0.01 * k, true)});
   history.dropBefore(500'000'000);
-  std::vector<EdgeBurst> found;
+  std::vector<EdgeCrossing> found;
   history.gather(0, 2'000'000'000, found);
   QVERIFY(found.size() >= 50 && found.size() <= 51);
   history.dropBefore(5'000'000'000);
@@ -126,10 +126,10 @@ void TestBurstWindow::history_needsNoRoomForEmptyTime() {
   BurstHistory history;
   history.add({{kYear_ns, 0, 1, 1, 3, true}, {0, 0, 2, 2, 3, true}, {-kYear_ns, 0, 3, 3, 3, true}});
   history.add({{kYear_ns + 1, 0, 4, 4, 3, true}, {1, 0, 5, 5, 3, true}});
-  std::vector<EdgeBurst> found;
+  std::vector<EdgeCrossing> found;
   history.gather(-2 * kYear_ns, 2 * kYear_ns, found);
   QCOMPARE(found.size(), std::size_t{5});
-  const auto earlier = [](const EdgeBurst& a, const EdgeBurst& b) { return a.time_ns < b.time_ns; };
+  const auto earlier = [](const EdgeCrossing& a, const EdgeCrossing& b) { return a.time_ns < b.time_ns; };
   QVERIFY(std::is_sorted(found.begin(), found.end(), earlier));
   QCOMPARE(history.count(0, 2), std::size_t{2});
   QVERIFY(*history.nextAfter(10'000'000) >= kYear_ns - 5'000'000);

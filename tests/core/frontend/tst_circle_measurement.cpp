@@ -12,7 +12,7 @@ using namespace evical::test;
 
 constexpr double kCircleMeasurementHalfWindow_s = 0.02;
 
-std::vector<CircleObservation> measure(const MovingBoard& moving, const std::vector<EdgeBurst>& bursts,
+std::vector<CircleObservation> measure(const MovingBoard& moving, const std::vector<EdgeCrossing>& bursts,
                                        double half_slot_s) {
   const SyntheticWindow synthetic(bursts);
   const TrackingOptions options;
@@ -73,7 +73,7 @@ void TestCircleMeasurement::errors_matchCovariance() {
 void TestCircleMeasurement::burstsOutsideTheSlot_doNotCount() {
   std::mt19937 random(31);
   const MovingBoard moving;
-  const std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
+  const std::vector<EdgeCrossing> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
   const auto sum = [](const std::vector<CircleObservation>& circles) {
     int events = 0;
     for (const CircleObservation& circle : circles) events += circle.events;
@@ -87,9 +87,9 @@ void TestCircleMeasurement::burstsOutsideTheSlot_doNotCount() {
 void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
   std::mt19937 random(32);
   const MovingBoard moving;
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
+  std::vector<EdgeCrossing> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
   const std::set<int> hidden = {0, 17, 43};
-  std::erase_if(bursts, [&](const EdgeBurst& burst) {
+  std::erase_if(bursts, [&](const EdgeCrossing& burst) {
     return std::any_of(hidden.begin(), hidden.end(), [&](int i) {
       const CircleImage image = moving.imageAt(i, 0.0);
       return (Eigen::Vector2d(burst.x_px, burst.y_px) - image.centre_px).norm() <
@@ -106,8 +106,8 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
 void TestCircleMeasurement::time_isThatOfTheBursts() {
   std::mt19937 random(33);
   const MovingBoard moving;
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
-  std::erase_if(bursts, [](const EdgeBurst& burst) { return burst.time_ns < -5'000'000; });
+  std::vector<EdgeCrossing> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
+  std::erase_if(bursts, [](const EdgeCrossing& burst) { return burst.time_ns < -5'000'000; });
   const std::vector<CircleObservation> circles = measure(moving, bursts, kCircleMeasurementHalfWindow_s);
   QVERIFY(circles.size() > 30);
   for (const CircleObservation& circle : circles) QVERIFY(circle.time_s > 0.002 && circle.time_s < 0.015);

@@ -80,7 +80,7 @@ void TestCirclePairs::circles_areFound() {
   for (int k = 0; k < 3; ++k)
     circles.push_back(
         {{60.3 + 110.0 * k, 90.7 + 30.0 * k}, speed_px_s * Eigen::Vector2d(0.8, -0.6), radius_px});
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (const SyntheticCircle& circle : circles) addBursts(circle, half_window_s, shade, 0.1, random, bursts);
   addRandomBursts(300, half_window_s, random, bursts);
   const SyntheticWindow synthetic(bursts, shade);
@@ -155,7 +155,7 @@ void TestCirclePairs::clearKinds_comeFirst() {
 
 void TestCirclePairs::noise_givesFewCandidates() {
   std::mt19937 random(71);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addRandomBursts(20000, 0.02, random, bursts);  // 20 % of the pixels
   const SyntheticWindow synthetic(bursts);
   QVERIFY(pairArcs(synthetic.window, FrontEndOptions{}).size() < 10u);

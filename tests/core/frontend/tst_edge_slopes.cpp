@@ -15,8 +15,9 @@ constexpr Resolution kSize{40, 30};
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 // A straight edge that crosses the whole image; its normal at `angle`.
-std::vector<EdgeBurst> edge(double angle_rad, double speed_px_s, bool brighter = true, double begin_s = 0.2) {
-  std::vector<EdgeBurst> bursts;
+std::vector<EdgeCrossing> edge(double angle_rad, double speed_px_s, bool brighter = true,
+                               double begin_s = 0.2) {
+  std::vector<EdgeCrossing> bursts;
   for (std::uint16_t y = 0; y < kSize.height_px; ++y)
     for (std::uint16_t x = 0; x < kSize.width_px; ++x) {
       const double way_px = std::cos(angle_rad) * x + std::sin(angle_rad) * y;
@@ -26,7 +27,7 @@ std::vector<EdgeBurst> edge(double angle_rad, double speed_px_s, bool brighter =
   return bursts;
 }
 
-std::vector<EdgeSlope> slopesOf(const std::vector<EdgeBurst>& bursts) {
+std::vector<EdgeSlope> slopesOf(const std::vector<EdgeCrossing>& bursts) {
   std::vector<EdgeSlope> all;
   EdgeSlopeFinder finder(kSize, {}, 0.04, [&](std::int64_t begin_ns, std::span<const EdgeSlope> slopes) {
     for (const EdgeSlope& slope : slopes) {
@@ -67,8 +68,8 @@ class TestEdgeSlopes : public QObject {
 
   // The second edge is another one, though its bursts are of the same pixels.
   void twoEdges_doNotMix() {
-    std::vector<EdgeBurst> bursts = edge(0.3, 200.0);
-    const std::vector<EdgeBurst> second = edge(0.3 + 1.5, 200.0, true, 0.26);
+    std::vector<EdgeCrossing> bursts = edge(0.3, 200.0);
+    const std::vector<EdgeCrossing> second = edge(0.3 + 1.5, 200.0, true, 0.26);
     bursts.insert(bursts.end(), second.begin(), second.end());
     for (const EdgeSlope& slope : slopesOf(bursts))
       QVERIFY(std::abs(200.0 * static_cast<double>(slope.slope_s_px.norm()) - 1.0) < 0.05);

@@ -51,7 +51,7 @@ void TestMovingCircle::fit_recoversCentreVelocityRadius() {
   QFETCH(double, assumed_px_s);
   std::mt19937 random(9);
   const SyntheticCircle circle = {{150.4, 99.7}, Eigen::Vector2d(0.8, -0.6) * speed_px_s, radius_px};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addBursts(circle, halfWindow_s(circle), CircleShade::Dark, 0.2, random, bursts);
   addRandomBursts(600, halfWindow_s(circle), random, bursts);
   const SyntheticWindow synthetic(bursts);
@@ -68,7 +68,7 @@ void TestMovingCircle::fit_recoversCentreVelocityRadius() {
 void TestMovingCircle::fit_withoutNoise_isExact() {
   std::mt19937 random(10);
   const SyntheticCircle circle = {{150.4, 99.7}, {60.0, 35.0}, 9.0};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addBursts(circle, halfWindow_s(circle), CircleShade::Dark, 0.0, random, bursts);
   const SyntheticWindow synthetic(bursts);
   const auto fit = fitMovingCircle(synthetic.window, near(circle), 70.0, MovingCircleOptions{});
@@ -84,7 +84,7 @@ void TestMovingCircle::fit_onNoise_givesNothing() {
   std::mt19937 random(11);
   int found = 0;
   for (int k = 0; k < 50; ++k) {
-    std::vector<EdgeBurst> bursts;
+    std::vector<EdgeCrossing> bursts;
     addRandomBursts(1500, 0.02, random, bursts);
     const SyntheticWindow synthetic(bursts);
     found += fitMovingCircle(synthetic.window, near({{150.0, 100.0}, {60.0, 0.0}, 8.0}), 60.0,
@@ -97,9 +97,9 @@ void TestMovingCircle::fit_onNoise_givesNothing() {
 void TestMovingCircle::fit_onOneEdgeOnly_givesNothing() {
   std::mt19937 random(12);
   const SyntheticCircle circle = {{150.4, 99.7}, {60.0, 35.0}, 9.0};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addBursts(circle, halfWindow_s(circle), CircleShade::Dark, 0.1, random, bursts);
-  std::erase_if(bursts, [](const EdgeBurst& burst) { return burst.brighter; });
+  std::erase_if(bursts, [](const EdgeCrossing& burst) { return burst.brighter; });
   const SyntheticWindow synthetic(bursts);
   QVERIFY(!fitMovingCircle(synthetic.window, near(circle), 70.0, MovingCircleOptions{}));
 }
@@ -107,7 +107,7 @@ void TestMovingCircle::fit_onOneEdgeOnly_givesNothing() {
 void TestMovingCircle::overlappingFits_leaveOne() {
   std::mt19937 random(13);
   const SyntheticCircle a = {{100.0, 100.0}, {70.0, 10.0}, 8.0}, b = {{130.0, 100.0}, {70.0, 10.0}, 8.0};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (const SyntheticCircle& circle : {a, b})
     addBursts(circle, halfWindow_s(a), CircleShade::Dark, 0.1, random, bursts);
   const SyntheticWindow synthetic(bursts);
@@ -126,7 +126,7 @@ void TestMovingCircle::typicalSpeed_isThatOfEdges_data() {
 void TestMovingCircle::typicalSpeed_isThatOfEdges() {
   QFETCH(double, speed_px_s);
   std::mt19937 random(14);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (int k = 0; k < 12; ++k)
     addBursts({{40.0 + 25.0 * k, 60.0 + 10.0 * k}, {speed_px_s, 0.0}, 9.0}, 0.04, CircleShade::Dark, 0.1,
               random, bursts);

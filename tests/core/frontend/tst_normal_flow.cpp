@@ -11,10 +11,10 @@ using namespace evical::test;
 constexpr double kNormalFlowHalfWindow_s = 0.2;
 
 // A straight edge that moves along `normal` at `speed_px_s` through a patch of the image.
-std::vector<EdgeBurst> straightEdge(const Eigen::Vector2d& normal, double speed_px_s, double noise_s,
-                                    std::mt19937& random) {
+std::vector<EdgeCrossing> straightEdge(const Eigen::Vector2d& normal, double speed_px_s, double noise_s,
+                                       std::mt19937& random) {
   std::normal_distribution<double> gauss;
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   for (int y = 80; y < 120; ++y) {
     for (int x = 80; x < 120; ++x) {
       const double time_s =
@@ -25,7 +25,7 @@ std::vector<EdgeBurst> straightEdge(const Eigen::Vector2d& normal, double speed_
   return bursts;
 }
 
-NormalFlowField flowOf(const std::vector<EdgeBurst>& bursts, const NormalFlowOptions& options = {}) {
+NormalFlowField flowOf(const std::vector<EdgeCrossing>& bursts, const NormalFlowOptions& options = {}) {
   const SyntheticWindow synthetic(bursts);
   return estimateNormalFlow(ActiveEventSurface(synthetic.window, options.plane_radius_px), options);
 }
@@ -106,8 +106,8 @@ void TestNormalFlow::jitter_isAveraged() {
 void TestNormalFlow::outlier_isDropped() {
   std::mt19937 random(52);
   const Eigen::Vector2d normal(1.0, 0.0);
-  std::vector<EdgeBurst> bursts = straightEdge(normal, 100.0, 0.0, random);
-  for (EdgeBurst& burst : bursts) {
+  std::vector<EdgeCrossing> bursts = straightEdge(normal, 100.0, 0.0, random);
+  for (EdgeCrossing& burst : bursts) {
     if (burst.x_px == 101 && burst.y_px == 101) burst.time_ns += 25'000'000;  // 2.5 px late
   }
   const NormalFlowField field = flowOf(bursts);
@@ -123,7 +123,7 @@ void TestNormalFlow::outlier_isDropped() {
 void TestNormalFlow::lonelyPixels_giveNothing() {
   QVERIFY(
       flowOf({burstAt(10, 10, 0.0, true), burstAt(11, 10, 0.01, true), burstAt(12, 10, 0.02, true)}).empty());
-  std::vector<EdgeBurst> line;
+  std::vector<EdgeCrossing> line;
   for (int x = 10; x < 40; ++x) line.push_back(burstAt(x, 10, 0.001 * x, true));
   NormalFlowOptions options;
   options.least_plane_inliers = 0.3;
@@ -140,8 +140,8 @@ void TestNormalFlow::speedLimit_isKept() {
 
 void TestNormalFlow::polarities_doNotMix() {
   std::mt19937 random(54);
-  std::vector<EdgeBurst> bursts = straightEdge({1.0, 0.0}, 100.0, 0.0, random);
-  for (EdgeBurst& burst : bursts) burst.brighter = (burst.x_px + burst.y_px) % 2;
+  std::vector<EdgeCrossing> bursts = straightEdge({1.0, 0.0}, 100.0, 0.0, random);
+  for (EdgeCrossing& burst : bursts) burst.brighter = (burst.x_px + burst.y_px) % 2;
   // Each keeps 5 or 4 of 9 neighbours: too few with 6.
   NormalFlowOptions options;
   options.least_plane_inliers = 0.6;

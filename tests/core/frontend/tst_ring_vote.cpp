@@ -35,7 +35,7 @@ void TestRingVote::circle_isFoundAtItsPlace() {
   const CircleShade shade = dark ? CircleShade::Dark : CircleShade::Bright;
   std::mt19937 random(6);
   const SyntheticCircle circle = {{160.3, 121.8}, {70.0, -45.0}, radius_px};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addBursts(circle, kRingVoteHalfWindow_s, shade, 0.15, random, bursts);
   addRandomBursts(100, kRingVoteHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, shade);
@@ -53,7 +53,7 @@ void TestRingVote::circle_isFoundAtItsPlace() {
 void TestRingVote::wrongShade_pointsBackwards() {
   std::mt19937 random(7);
   const SyntheticCircle circle = {{160.0, 120.0}, {80.0, 0.0}, 10.0};
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addBursts(circle, kRingVoteHalfWindow_s, CircleShade::Bright, 0.1, random, bursts);
   const SyntheticWindow synthetic(bursts, CircleShade::Dark);
   const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, FrontEndOptions{});
@@ -63,7 +63,7 @@ void TestRingVote::wrongShade_pointsBackwards() {
 
 void TestRingVote::noise_givesFewCandidates() {
   std::mt19937 random(8);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   addRandomBursts(2000, kRingVoteHalfWindow_s, random, bursts);  // 2 % of the pixels
   keepSupported(kDavis_px, RingVoteOptions{}.least_support, bursts);
   const SyntheticWindow synthetic(bursts);
@@ -71,13 +71,13 @@ void TestRingVote::noise_givesFewCandidates() {
 }
 
 void TestRingVote::unsupportedBursts_areDropped() {
-  std::vector<EdgeBurst> bursts = {
+  std::vector<EdgeCrossing> bursts = {
       burstAt(0, 0, 0.0, true),     burstAt(1, 0, 0.0, true),
       burstAt(0, 1, 0.0, true),     burstAt(1, 1, 0.0, false),  // of the other polarity
       burstAt(345, 259, 0.0, true), burstAt(344, 258, 0.0, true)};
   keepSupported(kDavis_px, 3, bursts);
   QCOMPARE(bursts.size(), 3u);
-  for (const EdgeBurst& burst : bursts) QVERIFY(burst.brighter && burst.x_px < 2);
+  for (const EdgeCrossing& burst : bursts) QVERIFY(burst.brighter && burst.x_px < 2);
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ struct TrackedBoard {
   template <class Keep>
   explicit TrackedBoard(Keep&& keep) {
     std::mt19937 random(3);
-    std::vector<EdgeBurst> bursts = burstsOf(moving, 0.04, 0.1, random);
-    std::erase_if(bursts, [&](const EdgeBurst& burst) {
+    std::vector<EdgeCrossing> bursts = burstsOf(moving, 0.04, 0.1, random);
+    std::erase_if(bursts, [&](const EdgeCrossing& burst) {
       const Eigen::Vector2d pixel(burst.x_px, burst.y_px);
       int nearest = 0;
       double nearest_px = 1e9;
@@ -117,7 +117,7 @@ void TestWindowTrace::trace_saysWhatTheTrackerDid() {
   Recorder recorder;
   tracker.observeWith(&recorder);
   BurstExtractor extractor(kDavis_px, options.bursts);
-  std::vector<EdgeBurst> bursts;
+  std::vector<EdgeCrossing> bursts;
   simulateEvents(scenario, 0, [&](EventSpan span) {
     tracker.add(span);
     extractor.add(span, bursts);

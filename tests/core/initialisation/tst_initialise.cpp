@@ -272,7 +272,7 @@ class TestInitialise : public QObject {
     row(
         "wrong focal length and board",
         [](auto& input) {
-          input.cameras[0].lens.seen_with->distortion[0] = 0.0;
+          input.cameras[0].lens.detection_intrinsics->distortion[0] = 0.0;
           for (BoardView& view : input.cameras[0].observations.views)
             for (CircleObservation& circle : view.circles) circle.circle = 43 - circle.circle * 7 % 44;
         },

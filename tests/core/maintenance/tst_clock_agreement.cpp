@@ -10,8 +10,8 @@ using namespace evical;
 namespace {
 
 // A shake whose norm says when it is, at 200 Hz.
-RateNorms shaken(double from_s, double to_s, double later_s) {
-  RateNorms norms;
+AngularSpeedSeries shaken(double from_s, double to_s, double later_s) {
+  AngularSpeedSeries norms;
   const auto first = static_cast<int>(std::lround(from_s / 0.005)),
              last = static_cast<int>(std::lround(to_s / 0.005));
   for (int i = first; i < last; ++i) {
@@ -31,7 +31,7 @@ class TestClockAgreement : public QObject {
   void offset_isFoundBetweenBins() {
     for (const double later_s : {0.0, 0.0234, -0.3167}) {
       const ClockAgreement found =
-          clockAgreement(shaken(0.0, 20.0, 0.0), shaken(0.0, 20.0, -later_s), MaintenanceOptions());
+          crossCorrelateClocks(shaken(0.0, 20.0, 0.0), shaken(0.0, 20.0, -later_s), MaintenanceOptions());
       QVERIFY(found.moved && found.correlation > 0.98);
       QVERIFY2(std::abs(found.later_s - later_s) < 0.002, qPrintable(QString::number(found.later_s)));
     }
@@ -40,8 +40,8 @@ class TestClockAgreement : public QObject {
   // Lags at which too little overlaps have no correlation, and bend no parabola.
   void shortOverlap_movesNothing() {
     for (const double overlap_s : {3.02, 3.1, 3.3}) {
-      const ClockAgreement found =
-          clockAgreement(shaken(0.0, 20.0, 0.0), shaken(20.0 - overlap_s, 40.0, 0.0), MaintenanceOptions());
+      const ClockAgreement found = crossCorrelateClocks(
+          shaken(0.0, 20.0, 0.0), shaken(20.0 - overlap_s, 40.0, 0.0), MaintenanceOptions());
       QVERIFY(found.moved);
       QVERIFY2(std::abs(found.later_s) < 0.003,
                qPrintable(QString("%1: %2").arg(overlap_s).arg(found.later_s)));

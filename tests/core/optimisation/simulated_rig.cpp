@@ -148,9 +148,9 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
     const RigidTransform world_from_camera =
         motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
     const RigidTransform camera_from_world = inverse(world_from_camera);
-    const auto projected =
-        projectCircle(*data.lens.seen_with, camera_from_world * true_board.place_m(board.point_m(circle)),
-                      camera_from_world.rotation * true_board.normal(), board.radius_m);
+    const auto projected = projectCircle(*data.lens.detection_intrinsics,
+                                         camera_from_world * true_board.place_m(board.point_m(circle)),
+                                         camera_from_world.rotation * true_board.normal(), board.radius_m);
     return projected ? std::optional(projected->centre_px) : std::nullopt;
   };
   // Which row sees the point when it is that row's turn.

@@ -76,7 +76,7 @@ class TestBiasDrift : public QObject {
     start.imus[0].bias_drift = {0.0, 4.0, std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Ones()),
                                 std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Ones())};
     CalibrationProblem problem(rig.input, {}, start);
-    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     QVERIFY(problem.driftBlocks().empty());
     QCOMPARE(problem.state().imus[0].bias_drift.knots(), std::size_t{0});
   }
@@ -110,7 +110,7 @@ class TestBiasDrift : public QObject {
     OptimisationOptions optimisation = linear();
     optimisation.bias_knot_spacing_s = 0.25;
     CalibrationProblem problem(rig.input, optimisation, rig.truth);
-    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     const ProjectedInformation information = projectInformation(problem, 0.1);
 
     ceres::Problem::EvaluateOptions evaluate;

@@ -62,7 +62,7 @@ class TestCalibrationProblem : public QObject {
     const test::SimulatedRig rig = shortRig();
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
-    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     const CalibrationState before = problem.state();
     *blockOf(problem, QuantityOwner::Camera, "time_offset") = 0.001;
     blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping")[2] = 0.25;  // m02
@@ -77,10 +77,10 @@ class TestCalibrationProblem : public QObject {
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
     Weights weights = givenWeights(rig.input);
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     QVERIFY(countOf(problem, SensorKind::Circles) > 0);
     for (auto& circles : weights.used_circles[0]) std::fill(circles.begin(), circles.end(), std::uint8_t{0});
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     QCOMPARE(countOf(problem, SensorKind::Circles), std::ptrdiff_t{0});
     QVERIFY(countOf(problem, SensorKind::Gyroscope) > 0);
   }
@@ -90,12 +90,12 @@ class TestCalibrationProblem : public QObject {
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
     Weights weights = givenWeights(rig.input);
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     const double gyroscopes = costOf(problem, SensorKind::Gyroscope),
                  accelerometers = costOf(problem, SensorKind::Accelerometer);
     QVERIFY(gyroscopes > 0.0);
     weights.scales.gyroscopes[0] = 2.0;
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     QVERIFY(std::abs(4.0 * costOf(problem, SensorKind::Gyroscope) / gyroscopes - 1.0) < 1e-12);
     QCOMPARE(costOf(problem, SensorKind::Accelerometer), accelerometers);
   }
@@ -108,7 +108,7 @@ class TestCalibrationProblem : public QObject {
     const test::SimulatedRig rig = test::simulateRig(late);
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
-    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     const double samples = static_cast<double>(rig.input.imus[0].samples.size());
     for (const SensorKind kind : {SensorKind::Gyroscope, SensorKind::Accelerometer}) {
       const double each = costOf(problem, kind) / samples;  // half the square of three residuals
@@ -125,11 +125,11 @@ class TestCalibrationProblem : public QObject {
     options.gyroscope_rotation = true;
     CalibrationProblem problem(rig.input, options, rig.truth);
     Weights weights = givenWeights(rig.input);
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_rotation") != nullptr);
     const std::ptrdiff_t priors = countOf(problem, SensorKind::Prior);
     weights.held_axes[0].gyroscope = {Eigen::Vector3d::UnitZ()};
-    problem.build(ReleaseStages::Mappings, weights);
+    problem.build(ParameterStages::Mappings, weights);
     QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_rotation") == nullptr);
     QCOMPARE(countOf(problem, SensorKind::Prior), priors);  // one for the axis, none for the turn
   }
@@ -138,7 +138,7 @@ class TestCalibrationProblem : public QObject {
     const test::SimulatedRig rig = shortRig();
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
-    problem.build(ReleaseStages::Extrinsics, givenWeights(rig.input));
+    problem.build(ParameterStages::Extrinsics, givenWeights(rig.input));
     QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping") == nullptr);
     QVERIFY(blockOf(problem, QuantityOwner::Camera, "rotation") != nullptr);
   }

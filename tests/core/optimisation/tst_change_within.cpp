@@ -48,7 +48,7 @@ class TestChangeWithin : public QObject {
  private slots:
   void whatStays_isNoChange() {
     for (unsigned seed = 1; seed <= 5; ++seed) {
-      const Doubt change = estimateOfChangeWithin(rigOfChangeWithin(seed, true)).change;
+      const QualityWarning change = estimateOfChangeWithin(rigOfChangeWithin(seed, true)).change;
       QVERIFY2(change.text.empty(), change.text.c_str());
     }
   }
@@ -56,7 +56,7 @@ class TestChangeWithin : public QObject {
   // With the part before it as what to calibrate.
   void clockThatSteps_isToldWithItsMoment() {
     const test::SimulatedRig rig = rigWithSteppingClock();
-    const Doubt change = estimateOfChangeWithin(rig).change;
+    const QualityWarning change = estimateOfChangeWithin(rig).change;
     QVERIFY2(change.text.find("left: its clock and that of imu seem to step by") == 0, change.text.c_str());
     QVERIFY2(std::abs(millisecondsIn(change.text) - 2.0) < 0.4, change.text.c_str());
     expectKeptBefore(change);
@@ -72,7 +72,7 @@ class TestChangeWithin : public QObject {
       sample.angular_rate_rad_s = turn * sample.angular_rate_rad_s;
       sample.specific_force_m_s2 = turn * sample.specific_force_m_s2;
     }
-    const Doubt change = estimateOfChangeWithin(rig).change;
+    const QualityWarning change = estimateOfChangeWithin(rig).change;
     QVERIFY2(change.text.find(imu.name + ": it seems to have moved against imu about") == 0,
              change.text.c_str());
     expectKeptBefore(change);
@@ -85,7 +85,7 @@ class TestChangeWithin : public QObject {
       if (secondsSince(rig.input.start_ns, sample.time_ns) > kAt_s)
         sample.angular_rate_rad_s += Eigen::Vector3d(5e-3, 0.0, 0.0);
     OptimisationOptions options;
-    const Doubt change = estimateOfChangeWithin(rig, options).change;
+    const QualityWarning change = estimateOfChangeWithin(rig, options).change;
     QVERIFY2(change.text.find("imu: its biases change within the recording, by 0.00") == 0,
              change.text.c_str());
     QVERIFY((change.repair == Repair{"optimisation.model.bias_model", "linear"}));
@@ -108,7 +108,7 @@ class TestChangeWithin : public QObject {
     const std::size_t by = text.find("by ");
     return by == std::string::npos ? 0.0 : std::atof(text.c_str() + by + 3);
   }
-  static void expectKeptBefore(const Doubt& change) {
+  static void expectKeptBefore(const QualityWarning& change) {
     QVERIFY(change.repair.has_value());
     QCOMPARE(change.repair->key, std::string("time_range_s"));
     double begin_s = -1.0, end_s = -1.0;

@@ -106,7 +106,7 @@ class TestCovariance : public QObject {
     const test::SimulatedRig rig = test::simulateRig(options);
     const OptimisationOptions optimisation;
     CalibrationProblem problem(rig.input, optimisation, rig.truth);
-    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     const ProjectedInformation information = projectInformation(problem, 0.1);
 
     ceres::Problem::EvaluateOptions evaluate;

@@ -108,7 +108,7 @@ class TestFreeIntrinsics : public QObject {
     options.imu_noise = 0.0;
     const test::SimulatedRig rig = rigOfFreeIntrinsics(static_cast<CameraModel>(model), options);
     const CameraIntrinsics& truth = *rig.truth.cameras[0].lens.solved;
-    QVERIFY(projectionDifference(truth, *rig.input.cameras[0].lens.seen_with).rms_px > 0.1);
+    QVERIFY(projectionDifference(truth, *rig.input.cameras[0].lens.detection_intrinsics).rms_px > 0.1);
     const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     QVERIFY(solution.converged);
     const CameraState &camera = solution.state.cameras[0], &true_camera = rig.truth.cameras[0];
@@ -203,9 +203,9 @@ class TestFreeIntrinsics : public QObject {
 
   void givenIntrinsics_areSolvedFor_withinTheirPrior() {
     test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
-    rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
+    rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.detection_intrinsics;
     OptimisationOptions options;
-    const CameraIntrinsics &given = *rig.input.cameras[0].lens.seen_with,
+    const CameraIntrinsics &given = *rig.input.cameras[0].lens.detection_intrinsics,
                            &truth = *rig.truth.cameras[0].lens.solved;
     const double before_px = projectionDifference(truth, given).rms_px;
     const double after_px =
@@ -288,19 +288,19 @@ class TestFreeIntrinsics : public QObject {
     const CameraIntrinsics given = *rig.input.cameras[0].lens.given;
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    const auto doubtOf = [&](const CameraIntrinsics& lens) {
+    const auto qualityWarningOf = [&](const CameraIntrinsics& lens) {
       rig.input.cameras[0].lens = givenLens(lens);
       return estimateUncertainty(rig.input, solveForFreeIntrinsics(rig, 1, options), options, RunContext{})
           .wrong_lenses;
     };
-    QCOMPARE(doubtOf(given), std::string());
+    QCOMPARE(qualityWarningOf(given), std::string());
     CameraIntrinsics longer = given, aside = given;
     longer.focal_length_px *= 1.01;
     aside.principal_point_px.x() += 2.0;
-    const QString by_length = QString::fromStdString(doubtOf(longer));
+    const QString by_length = QString::fromStdString(qualityWarningOf(longer));
     QVERIFY2(by_length.contains("left: the lens is not as the session says: focal lengths seem -"),
              qPrintable(by_length));
-    const QString by_centre = QString::fromStdString(doubtOf(aside));
+    const QString by_centre = QString::fromStdString(qualityWarningOf(aside));
     QVERIFY2(by_centre.contains("principal point (-"), qPrintable(by_centre));
     QVERIFY(by_centre.contains("optimisation.model.camera_intrinsics: free"));
   }
@@ -323,7 +323,7 @@ class TestFreeIntrinsics : public QObject {
 
   void lastStage_releasesThem_whicheverItIs() {
     const test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
-    const CameraIntrinsics& seen = *rig.input.cameras[0].lens.seen_with;
+    const CameraIntrinsics& seen = *rig.input.cameras[0].lens.detection_intrinsics;
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
     const BatchSolution without = solveForFreeIntrinsics(rig, 1, options);

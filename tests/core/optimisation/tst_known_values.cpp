@@ -1,6 +1,6 @@
 // What is held, weighed and estimated, and which axes of an IMU never moved.
 #include "core/optimisation/known_values.h"
-#include "core/optimisation/still_axes.h"
+#include "core/optimisation/unexcited_axes.h"
 #include "core/optimisation/weights.h"
 
 #include "tests/core/optimisation/simulated_rig.h"
@@ -101,7 +101,7 @@ class TestKnownValues : public QObject {
 
   void stillAxes_ofRichMotion_areNone() {
     const test::SimulatedRig rig = test::simulateRig(test::shortRecording());
-    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
+    const UnexcitedAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
     QVERIFY(still.gyroscope.empty());
     QVERIFY(still.accelerometer.empty());
   }
@@ -110,7 +110,7 @@ class TestKnownValues : public QObject {
     test::RigOptions options = test::shortRecording();
     options.motion = test::Motion::OneAxisRotation;
     const test::SimulatedRig rig = test::simulateRig(options);
-    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
+    const UnexcitedAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
     QCOMPARE(still.gyroscope.size(), std::size_t{2});
     // The axis that moved, by the samples themselves.
     Vector3d axis = Vector3d::Zero();
@@ -120,17 +120,17 @@ class TestKnownValues : public QObject {
     }
     axis.normalize();
     for (const Vector3d& across : still.gyroscope) QVERIFY(std::abs(across.dot(axis)) < 0.02);
-    const std::vector<Vector3d> leverless = still.leverless();
-    QCOMPARE(leverless.size(), std::size_t{1});
-    QVERIFY(std::abs(leverless[0].dot(axis)) > 0.999);
+    const std::vector<Vector3d> axesWithoutRotation = still.axesWithoutRotation();
+    QCOMPARE(axesWithoutRotation.size(), std::size_t{1});
+    QVERIFY(std::abs(axesWithoutRotation[0].dot(axis)) > 0.999);
   }
 
   void leverless_areAllWithoutRotation_andNoneWithTwoAxes() {
-    StillAxes still;
+    UnexcitedAxes still;
     still.gyroscope = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
-    QCOMPARE(still.leverless().size(), std::size_t{3});
+    QCOMPARE(still.axesWithoutRotation().size(), std::size_t{3});
     still.gyroscope = {Vector3d::UnitX()};
-    QVERIFY(still.leverless().empty());
+    QVERIFY(still.axesWithoutRotation().empty());
   }
 };
 

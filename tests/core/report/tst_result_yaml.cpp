@@ -33,9 +33,9 @@ NamedResult sampleForResultYaml() {
   CalibrationResult& result = test::ownResult(named);
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
-  result.causes = {
-      Doubt{"the lens: \"z\" is off", Repair{"optimisation.model.camera_intrinsics", "free"}, "lens", 0.875},
-      Doubt{"planar motion", {}, "observability"}};
+  result.causes = {QualityWarning{"the lens: \"z\" is off",
+                                  Repair{"optimisation.model.camera_intrinsics", "free"}, "lens", 0.875},
+                   QualityWarning{"planar motion", {}, "observability"}};
   result.start_ns = 1'700'000'000'123'456'789;
   result.notes = {"IMU gap of 0.2 s"};
   result.memory_peak_mb = 310.0;
@@ -86,13 +86,13 @@ NamedResult sampleForResultYaml() {
   result.uncertainty.columns = {{QuantityOwner::Camera, 1, QuantityId::Rotation, 1},
                                 {QuantityOwner::Imu, 0, QuantityId::AccelerometerDelay}};
   result.uncertainty.standard_deviations = Eigen::Vector2d(1e-4, 2e-4);
-  CrossValidation validation;
+  SplitHalfCheck validation;
   validation.block_s = 2.5;
   validation.windows = {12, 13};
   validation.rms_sigmas = 1.25;
   validation.quantities = {{"left.rotation.x", "deg", -0.01, 0.02},
                            {"1 odd: name.time_offset", "", 3.0, 0.0}};
-  result.cross_validation = validation;
+  result.split_half_check = validation;
   result.uncertainty.correlation = (Eigen::Matrix2d() << 1.0, 0.25, 0.25, 1.0).finished();
   return named;
 }
@@ -155,11 +155,11 @@ class TestResultYaml : public QObject {
     QVERIFY(std::isnan(read.result->uncertainty.cameras[0].edge_lead_std_px));
     QVERIFY(read.result->uncertainty.correlation(0, 1) == 0.25);
     QCOMPARE(read.result->cameras[0].windows_complete, 1320);
-    QVERIFY(read.result->cross_validation.has_value());
-    QCOMPARE(read.result->cross_validation->windows[1], 13);
-    QCOMPARE(read.result->cross_validation->quantities.size(), std::size_t{2});
-    QCOMPARE(read.result->cross_validation->quantities[0].normalised(), -0.5);
-    QCOMPARE(read.result->cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
+    QVERIFY(read.result->split_half_check.has_value());
+    QCOMPARE(read.result->split_half_check->windows[1], 13);
+    QCOMPARE(read.result->split_half_check->quantities.size(), std::size_t{2});
+    QCOMPARE(read.result->split_half_check->quantities[0].normalised(), -0.5);
+    QCOMPARE(read.result->split_half_check->quantities[1].name, std::string("1 odd: name.time_offset"));
   }
 
   void columns_sayWhoseNumberTheyAre_andWhich() {
@@ -187,7 +187,7 @@ class TestResultYaml : public QObject {
   void causes_areListedWithWhatMendsThem() {
     const std::string text = resultYaml(sampleForResultYaml());
     const NamedResult read = readBack(text);
-    const std::vector<Doubt>& causes = read.result->causes;
+    const std::vector<QualityWarning>& causes = read.result->causes;
     QCOMPARE(causes.size(), std::size_t{2});
     QVERIFY(causes[0].name == "lens" && causes[0].explains == 0.875 && causes[0].repair->value == "free");
     QVERIFY(causes[1].name == "observability" && !causes[1].repair && causes[1].explains == 0.0);

@@ -5,7 +5,7 @@
 #include "ui/screens/assessment/empty_hint.h"
 #include "ui/screens/assessment/verdict_line.h"
 #include "ui/screens/assessment/work_bar.h"
-#include "ui/screens/check_words.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/report/assessment_report.h"
 #include "core/report/html/html_text.h"
-#include "ui/screens/number_words.h"
+#include "ui/screens/format_number.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>

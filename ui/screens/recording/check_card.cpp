@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording/check_card.h"
 
-#include "ui/screens/check_words.h"
 #include "ui/screens/recording/light_mark.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 

@@ -2,7 +2,7 @@
 #include "ui/screens/recording/stream_table.h"
 
 #include "core/base/time.h"
-#include "ui/screens/number_words.h"
+#include "ui/screens/format_number.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>

@@ -3,13 +3,13 @@
 
 #include "core/base/error.h"
 #include "ui/forms/repair_button.h"
-#include "ui/screens/check_words.h"
 #include "ui/screens/result/correlation_view.h"
 #include "ui/screens/result/observability_view.h"
 #include "ui/screens/result/pose_panel.h"
 #include "ui/screens/result/quantity_table.h"
 #include "ui/screens/result/result_parameters.h"
 #include "ui/screens/verdict_icon.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 

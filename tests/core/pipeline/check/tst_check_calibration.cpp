@@ -46,7 +46,7 @@ class TestCheckCalibration : public QObject {
 
   // What has become of the camera since.
   CheckRun check(double duration_s, const std::function<void(SimulatedCamera&)>& change = {},
-                 const std::function<void(RecordingPass&)>& spoil = {}, std::uint64_t seed = 11) const {
+                 const std::function<void(DetectionResult&)>& spoil = {}, std::uint64_t seed = 11) const {
     Scenario scenario = briskForCheckCalibration(seed);
     if (change) change(scenario.cameras.front());
     SimulatedPass now = simulatePass(duration_s, scenario);
@@ -75,7 +75,7 @@ class TestCheckCalibration : public QObject {
   void initTestCase() {
     SimulatedPass first = simulatePass(20.0, briskForCheckCalibration(3));
     session_ = first.session;
-    session_.options.report.edit().cross_validation = false;
+    session_.options.report.edit().split_half_check = false;
     const CalibrationRun run = calibrate(session_, first.pass, {});
     QVERIFY(run.result.status == CalibrationStatus::Ok);
     before_ = namedResult(session_, std::make_shared<const CalibrationResult>(run.result), "test");
@@ -135,7 +135,7 @@ class TestCheckCalibration : public QObject {
     const CheckRun short_one = check(3.2);
     QVERIFY2(short_one.check.verdict == Verdict::CannotTell, short_one.check.reason.c_str());
     QVERIFY(!short_one.check.advice.empty());
-    const CheckRun unseen = check(6.0, {}, [](RecordingPass& pass) {
+    const CheckRun unseen = check(6.0, {}, [](DetectionResult& pass) {
       for (BoardView& view : pass.cameras.front().views) view.circles.clear();
       pass.cameras.front().views.clear();
     });
@@ -144,7 +144,7 @@ class TestCheckCalibration : public QObject {
 
   // The camera's clock steps within the recording: its time offset is another one, but not the rig.
   void spoiltRecording_isNoChange() {
-    const CheckRun checked = check(8.0, {}, [](RecordingPass& pass) {
+    const CheckRun checked = check(8.0, {}, [](DetectionResult& pass) {
       for (BoardView& view : pass.cameras.front().views) {
         if (view.time_s < 4.0) continue;
         view.time_s += 0.02;

@@ -144,7 +144,7 @@ class TestBlinkingBoard : public QObject {
       Session one = all;
       one.recording = recording;
       one.more_recordings.clear();
-      const RecordingPass pass = readAndDetect(one, {CameraLens{}}, RunContext{});
+      const DetectionResult pass = readAndDetect(one, {CameraLens{}}, RunContext{});
       found += !pass.cameras.front().views.empty();
     }
     QVERIFY2(found >= 8, QByteArray::number(found));

@@ -106,7 +106,7 @@ class TestJointIntrinsics : public QObject {
   }
 
   void halves_solveForThemToo() {
-    const CrossValidation& validation = run_.result.cross_validation.value();
+    const SplitHalfCheck& validation = run_.result.split_half_check.value();
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     const auto difference =
         std::find_if(validation.quantities.begin(), validation.quantities.end(),
@@ -137,7 +137,7 @@ class TestJointIntrinsics : public QObject {
   void fixed_keepsWhatWasFoundFirst() {
     Session session = simulated_.session;
     session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    session.options.report.edit().cross_validation = false;
+    session.options.report.edit().split_half_check = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {}, {foundFirst()});
     QVERIFY(!run.result.state.cameras[0].lens.solved);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
@@ -150,9 +150,9 @@ class TestJointIntrinsics : public QObject {
   void givenIntrinsics_stayAsTheyAreWhereAsked() {
     Session session = simulated_.session;
     session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    session.options.report.edit().cross_validation = false;
+    session.options.report.edit().split_half_check = false;
     session.cameras[0].intrinsics = found_;
-    RecordingPass pass = simulated_.pass;
+    DetectionResult pass = simulated_.pass;
     pass.lenses = givenLenses(session);
     const CalibrationRun run = calibrate(session, pass, {});
     QVERIFY(run.result.state.cameras[0].lens.given == found_);

@@ -63,7 +63,7 @@ class TestSimulatedFrames : public QObject {
     const QTemporaryDir folder;
     const SimulationSummary made = simulate(scenario, folder.path().toStdString(), RunContext{});
     const Session charuco = readSession(made.session);
-    const RecordingPass pass = readAndDetect(charuco, givenLenses(charuco), RunContext{});
+    const DetectionResult pass = readAndDetect(charuco, givenLenses(charuco), RunContext{});
     const BoardObservations& seen = pass.cameras.front();
     QVERIFY2(seen.views.size() >= 18, QByteArray::number(static_cast<double>(seen.views.size())));
     const SinusoidMotion motion(scenario);

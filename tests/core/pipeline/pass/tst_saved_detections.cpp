@@ -89,7 +89,7 @@ class TestSavedDetections : public QObject {
     simulate(eventsAndFrames(), path(), RunContext{});
     session_ = readSession(path() / "session.yaml");
     session_.cameras[1].intrinsics.reset();
-    session_.options.report.edit().cross_validation = false;
+    session_.options.report.edit().split_half_check = false;
     run_ = calibrate(session_, RunContext{});
     QVERIFY(run_.intrinsics[1].has_value());
     writeResultFiles(result(), session_, std::make_shared<const CalibrationRun>(run_), "test", "");
@@ -98,7 +98,7 @@ class TestSavedDetections : public QObject {
   void restored_givesTheSameResult_withoutTheFrames() {
     std::filesystem::rename(path() / "frames", path() / "moved");
     RestoredDetections restored = restoreDetections(result(), session_, RunContext{});
-    const RecordingPass pass = restored.pass;
+    const DetectionResult pass = restored.pass;
     const CalibrationRun again =
         calibrate(session_, std::move(restored.pass), RunContext{}, std::move(restored.intrinsics));
     std::filesystem::rename(path() / "moved", path() / "frames");
@@ -118,7 +118,7 @@ class TestSavedDetections : public QObject {
   void shorterTimeRange_isAPartOfThem() {
     Session shorter = session_;
     shorter.time_range_s = {1.0, 4.0};
-    const RecordingPass pass = restoreDetections(result(), shorter, RunContext{}).pass;
+    const DetectionResult pass = restoreDetections(result(), shorter, RunContext{}).pass;
     for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
       const std::vector<BoardView>& views = pass.cameras[k].views;
       QVERIFY(views.size() > 10 && views.size() < run_.pass.cameras[k].views.size());
@@ -142,7 +142,7 @@ class TestSavedDetections : public QObject {
     scenario.duration_s = 3.0;
     simulate(scenario, path, RunContext{});
     const Session session = readSession(path / "session.yaml");
-    const RecordingPass pass = readAndDetect(session, RunContext{});
+    const DetectionResult pass = readAndDetect(session, RunContext{});
     for (const FileContent& file : detectionFiles(session, pass, {}))
       writeFileWhole(path / file.path, contentOf(file));
     const RestoredDetections restored = restoreDetections(path, session, RunContext{});
@@ -231,7 +231,7 @@ class TestSavedDetections : public QObject {
     QTest::newRow("something else") << QByteArray("evical_detections") << QByteArray("evical_session")
                                     << "holds no detections";
     QTest::newRow("without intrinsics")
-        << QByteArray("seen_with") << QByteArray("lens") << "without intrinsics";
+        << QByteArray("detection_intrinsics") << QByteArray("lens") << "without intrinsics";
     QTest::newRow("kind") << QByteArray("kind: frames") << QByteArray("kind: film") << "film";
   }
 

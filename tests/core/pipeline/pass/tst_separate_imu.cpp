@@ -80,7 +80,7 @@ class TestSeparateImu : public QObject {
 
   QTemporaryDir folder_;
   Scenario scenario_;
-  RecordingPass pass_;
+  DetectionResult pass_;
 
   std::filesystem::path path(const std::string& name) const {
     return folder_.filePath(name.c_str()).toStdString();
@@ -289,7 +289,7 @@ class TestSeparateImu : public QObject {
       pass_ = test::perfectPass(scenario_, 0.05, 0.015);
       writeTwoTopics();
       Session session = test::sessionFor(scenario_);
-      session.options.report.edit().cross_validation = false;
+      session.options.report.edit().split_half_check = false;
       session.imus[0].stream = kGyroscope;
       session.imus[0].accelerometer_stream = kAccelerometer;
       pass_.imus.front().samples = readTwoTopics();

@@ -31,9 +31,9 @@ class TestTimeRange : public QObject {
     const SimulationSummary made = simulate(scenario, folder.path().toStdString(), {});
     Session session = readSession(made.session);
     session.time_range_s = {0.5, 1.5};
-    const RecordingPass whole = readAndDetect(session, {});
+    const DetectionResult whole = readAndDetect(session, {});
     std::filesystem::resize_file(made.recording, std::filesystem::file_size(made.recording) * 8 / 10);
-    const RecordingPass part = readAndDetect(session, {});
+    const DetectionResult part = readAndDetect(session, {});
 
     QVERIFY(whole.cameras[0].views.size() > 20);
     QCOMPARE(part.cameras[0].views.size(), whole.cameras[0].views.size());
@@ -48,7 +48,7 @@ class TestTimeRange : public QObject {
 
     // It is where the range goes so far.
     session.time_range_s = {0.5, 5.0};
-    const RecordingPass to_the_end = readAndDetect(session, {});
+    const DetectionResult to_the_end = readAndDetect(session, {});
     QVERIFY(std::ranges::any_of(to_the_end.faults, [](const RecordingFault& fault) {
       return fault.text.find("nothing behind it is read") != std::string::npos;
     }));
@@ -126,7 +126,7 @@ class TestTimeRange : public QObject {
     session.time_range_s = {3.0, 8.0};
     const std::int64_t start_ns = SessionRecording(session).start_ns();
     QCOMPARE(qint64(start_ns), qint64(100'000'000'000));
-    const RecordingPass pass = readImus(session, start_ns, {});
+    const DetectionResult pass = readImus(session, start_ns, {});
     QCOMPARE(qint64(pass.imus[0].samples.front().time_ns), qint64(103'000'000'000));
     QCOMPARE(qint64(pass.imus[0].samples.back().time_ns), qint64(108'000'000'000));
   }

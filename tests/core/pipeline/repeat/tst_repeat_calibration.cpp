@@ -37,13 +37,13 @@ Scenario briskForRepeatCalibration(std::uint64_t seed, const std::string& name =
 // What becomes of the recordings before they are calibrated.
 struct Spoil {
   std::function<void(std::size_t, Scenario&)> rig = {};
-  std::function<void(std::size_t, RecordingPass&)> pass = {};
+  std::function<void(std::size_t, DetectionResult&)> pass = {};
 };
 
 RepeatRun repeatOf(std::size_t count, const Spoil& spoil = {}, const std::string& name = "davis346",
                    const RunContext& context = {}) {
   std::vector<Session> sessions;
-  std::vector<RecordingPass> passes;
+  std::vector<DetectionResult> passes;
   for (std::size_t k = 0; k < count; ++k) {
     Scenario scenario = briskForRepeatCalibration(k + 1, name);
     Session session = simulatePass(2.0, scenario).session;  // what people say of the rig
@@ -215,7 +215,7 @@ class TestRepeatCalibration : public QObject {
   }
 
   void failedRecording_isListedAndTheOthersGoOn() {
-    const RepeatRun run = repeatOf(3, {{}, [](std::size_t k, RecordingPass& pass) {
+    const RepeatRun run = repeatOf(3, {{}, [](std::size_t k, DetectionResult& pass) {
                                          if (k == 0) pass.cameras.front().views.clear();
                                        }});
     const Repeatability& repeat = run.repeatability;
@@ -226,7 +226,7 @@ class TestRepeatCalibration : public QObject {
   }
 
   void fewerThanTwo_isNoRepeat() {
-    const RepeatRun run = repeatOf(2, {{}, [](std::size_t k, RecordingPass& pass) {
+    const RepeatRun run = repeatOf(2, {{}, [](std::size_t k, DetectionResult& pass) {
                                          if (k == 0) pass.cameras.front().views.clear();
                                        }});
     QVERIFY(run.repeatability.verdict == Verdict::CannotTell && !run.joint);

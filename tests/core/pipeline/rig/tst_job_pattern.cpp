@@ -167,7 +167,7 @@ void runToTheEnd(const Session& session) {
   const Mailbox::Contents seen = box.look();
   check(ending.outcome.status == RunStatus::Done && ending.outcome.run, "a calibration runs to its end");
   if (!ending.outcome.run) std::printf("      %s\n", ending.problem.c_str());
-  check(seen.stage == "cross_validate" && seen.fraction >= 1.0, "its progress ends with the last stage");
+  check(seen.stage == "split_half_check" && seen.fraction >= 1.0, "its progress ends with the last stage");
   check(seen.detections && seen.input && seen.state && !seen.steps.empty(), "everything was seen on the way");
   check(seen.tracked > 0, "so were the windows");
 }

@@ -20,7 +20,7 @@ class Liar {
  public:
   explicit Liar(unsigned seed) : random_(seed) {}
 
-  QStringList spoil(RecordingPass& pass) {
+  QStringList spoil(DetectionResult& pass) {
     QStringList told;
     const int lies = 1 + whole(3);
     for (int k = 0; k < lies; ++k) {
@@ -109,10 +109,10 @@ void TestLyingRecordings::everything_endsInAResultOrInWords() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 5.0;
   Session session = test::sessionFor(scenario);
-  const RecordingPass good = test::perfectPass(scenario, 0.05, 0.03);
+  const DetectionResult good = test::perfectPass(scenario, 0.05, 0.03);
   int results = 0;
   for (unsigned seed = 1; seed <= kRecordings; ++seed) {
-    RecordingPass pass = good;
+    DetectionResult pass = good;
     const QString told = Liar(seed).spoil(pass).join(", ");
     QElapsedTimer timer;
     timer.start();

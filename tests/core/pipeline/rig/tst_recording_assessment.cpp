@@ -96,7 +96,7 @@ class TestRecordingAssessment : public QObject {
     const Scenario truth = scenario(name, duration_s);
     const SimulatedPass perfect = events ? SimulatedPass{} : simulatePass(duration_s, truth);
     const Session session = sessionFor(truth);
-    const RecordingPass pass = events ? detectedPass(truth, session) : perfect.pass;
+    const DetectionResult pass = events ? detectedPass(truth, session) : perfect.pass;
     const RecordingAssessment assessment = assessRecording(session, {pass, {}}, {});
     const CalibrationRun run = calibrate(session, pass, {});
     QCOMPARE(assessment.sigmas.size(), truth.cameras.size());

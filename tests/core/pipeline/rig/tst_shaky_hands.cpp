@@ -35,7 +35,7 @@ class TestShakyHands : public QObject {
     scenario.seed = static_cast<std::uint64_t>(seed);
     scenario.imus.front().rate_hz = rate_hz;
     Session session = test::sessionFor(scenario);
-    session.options.report.edit().cross_validation = false;
+    session.options.report.edit().split_half_check = false;
     const CalibrationRun run = calibrate(session, test::perfectPass(scenario, 0.05, 0.015), RunContext{});
     const ImuData& imu = run.pass.imus.front();
     const double sigma_m_s2 = imu.noise.accelerometer_density * std::sqrt(imu.rate_hz());

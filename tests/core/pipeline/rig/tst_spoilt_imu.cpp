@@ -91,8 +91,8 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 10.0;
   Session session = test::sessionFor(scenario);
-  session.options.report.edit().cross_validation = false;
-  RecordingPass pass = test::perfectPass(scenario, 0.05, 0.015);
+  session.options.report.edit().split_half_check = false;
+  DetectionResult pass = test::perfectPass(scenario, 0.05, 0.015);
   spoil(pass.imus.front().samples);
   const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
   QString notes;

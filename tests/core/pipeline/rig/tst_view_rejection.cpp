@@ -20,7 +20,7 @@ class TestViewRejection : public QObject {
   void views_areGoneAndTheOthersStayInOrder() {
     const std::vector<BoardView>& before = simulated_.pass.cameras[0].views;
     const int last = static_cast<int>(before.size()) - 1;
-    const RecordingPass kept = withoutViews(simulated_.pass, 0, std::vector{last, 0, 3, 3});
+    const DetectionResult kept = withoutViews(simulated_.pass, 0, std::vector{last, 0, 3, 3});
     const std::vector<BoardView>& after = kept.cameras[0].views;
     QCOMPARE(after.size(), before.size() - 3);
     QCOMPARE(after[0].time_s, before[1].time_s);
@@ -32,24 +32,24 @@ class TestViewRejection : public QObject {
   }
 
   void noViews_leaveThePassAsItWas() {
-    const RecordingPass kept = withoutViews(simulated_.pass, 0, {});
+    const DetectionResult kept = withoutViews(simulated_.pass, 0, {});
     QCOMPARE(kept.cameras[0].views.size(), simulated_.pass.cameras[0].views.size());
   }
 
   void rejectedViews_comeBackAsTheyWere() {
     const std::vector<BoardView>& before = simulated_.pass.cameras[0].views;
-    const RecordingPass without = withoutViews(simulated_.pass, 0, std::vector{5, 2, 9});
+    const DetectionResult without = withoutViews(simulated_.pass, 0, std::vector{5, 2, 9});
     QCOMPARE(rejectedTimes_s(without)[0],
              (std::vector{before[2].time_s, before[5].time_s, before[9].time_s}));
     // One of them back, and another one left out.
-    const RecordingPass changed =
+    const DetectionResult changed =
         withRejected(without, {{before[2].time_s, before[3].time_s, before[9].time_s}});
     QCOMPARE(rejectedTimes_s(changed)[0],
              (std::vector{before[2].time_s, before[3].time_s, before[9].time_s}));
     QCOMPARE(changed.cameras[0].views.size(), before.size() - 3);
     QCOMPARE(changed.cameras[0].views[3].time_s, before[5].time_s);
     QCOMPARE(changed.cameras[0].views[3].circles.size(), before[5].circles.size());
-    const RecordingPass all = withRejected(changed, {{}});
+    const DetectionResult all = withRejected(changed, {{}});
     QCOMPARE(all.cameras[0].views.size(), before.size());
     for (std::size_t k = 0; k < all.cameras[0].windows.size(); ++k)
       QCOMPARE(all.cameras[0].windows[k].outcome, simulated_.pass.cameras[0].windows[k].outcome);
@@ -58,7 +58,7 @@ class TestViewRejection : public QObject {
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
     // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier
     // test to drop the window.
-    RecordingPass spoilt = simulated_.pass;
+    DetectionResult spoilt = simulated_.pass;
     std::vector<int> bad;
     for (int view = 20; view < 60; view += 2) {
       bad.push_back(view);

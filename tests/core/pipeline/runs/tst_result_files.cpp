@@ -79,7 +79,7 @@ class TestResultFiles : public QObject {
   void sections_areAllThere() {
     for (const char* id :
          {"advice", "results", "sensors", "detections", "coverage", "excitation", "reprojection", "inertial",
-          "convergence", "uncertainty", "cross-validation", "run"}) {
+          "convergence", "uncertainty", "split-half-check", "run"}) {
       const QString anchor = QString("<section id=\"%1\">").arg(id);
       QVERIFY2(page_.contains(anchor), id);
       QVERIFY2(page_.contains(QString("href=\"#%1\"").arg(id)), id);
@@ -103,8 +103,8 @@ class TestResultFiles : public QObject {
     const QString ms = shown(1e3 * camera.time_offset_s, 1e3 * sigma.time_offset_std_s);
     QVERIFY2(text_.contains(ms), qPrintable(ms));
     QVERIFY(text_.contains(QString("of %1 windows").arg(read.result->cameras[0].windows_total)));
-    QVERIFY(read.result->cross_validation.has_value());
-    QVERIFY2(text_.contains(QString::number(read.result->cross_validation->rms_sigmas, 'f', 2)),
+    QVERIFY(read.result->split_half_check.has_value());
+    QVERIFY2(text_.contains(QString::number(read.result->split_half_check->rms_sigmas, 'f', 2)),
              "rms of the halves");
   }
 
@@ -213,7 +213,7 @@ class TestResultFiles : public QObject {
     run.result.circle_residuals[0].residual_px.setConstant(nan);
     run.result.iterations[0].cost = nan;
     run.result.cameras[0].normalised_rms = inf;
-    run.result.cross_validation->quantities[0].difference = nan;
+    run.result.split_half_check->quantities[0].difference = nan;
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
@@ -274,11 +274,11 @@ class TestResultFiles : public QObject {
 
   void failedCalibration_hasItsReasonAndItsDetections() {
     QTemporaryDir folder;
-    RecordingPass pass = simulated_.pass;
+    DetectionResult pass = simulated_.pass;
     pass.cameras[0].views.clear();
     for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
-    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"the board was <never> found"},
-                 "test", "log", pass);
+    writeFailure(folder.path().toStdString(), simulated_.session,
+                 QualityWarning{"the board was <never> found"}, "test", "log", pass);
     const QString page = readFileForResultFiles(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
@@ -290,7 +290,8 @@ class TestResultFiles : public QObject {
 
   void failureBeforeAnythingWasRead_isAReportToo() {
     QTemporaryDir folder;
-    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"nothing there"}, "test", "log");
+    writeFailure(folder.path().toStdString(), simulated_.session, QualityWarning{"nothing there"}, "test",
+                 "log");
     const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
     QVERIFY2(text.contains("nothing there"), qPrintable(text.left(300)));
     QVERIFY(QFile::exists(folder.filePath("result.yaml")) && QFile::exists(folder.filePath("log.txt")));

@@ -63,7 +63,7 @@ class TestSavedRun : public QObject {
     writeForSavedRun(scratch() / "recording.bag", "a recording");
     simulated_.session.recording = scratch() / "recording.bag";
     simulated_.session.options.optimisation.edit().max_iterations += 1;
-    const RecordingPass pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
+    const DetectionResult pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, pass, {}));
     std::filesystem::create_directories(result());
     writeResultFiles(result(), simulated_.session, run_, "test", "the log\n");
@@ -142,8 +142,9 @@ class TestSavedRun : public QObject {
     const std::string content = runData(*run_);
     std::set<std::string> parts;
     for (int k = 0; k < 8; ++k)
-      parts.insert(runData({k & 1 ? run_->result : CalibrationResult{}, k & 2 ? run_->pass : RecordingPass{},
-                            k & 4 ? run_->intrinsics : decltype(run_->intrinsics){}}));
+      parts.insert(
+          runData({k & 1 ? run_->result : CalibrationResult{}, k & 2 ? run_->pass : DetectionResult{},
+                   k & 4 ? run_->intrinsics : decltype(run_->intrinsics){}}));
     const std::size_t observations = content.find("observations ");
     QVERIFY(observations < content.size());
     for (int k = 0; k < 60; ++k) {
@@ -203,7 +204,7 @@ class TestSavedRun : public QObject {
   }
 
   void durations_areOfThisRun() {
-    RecordingPass before = simulated_.pass;
+    DetectionResult before = simulated_.pass;
     before.read_s = before.detect_s = 1000.0;
     const Timing timing =
         calibrate(simulated_.session, withoutViews(before, 0, std::vector{1}), {}).result.timing;

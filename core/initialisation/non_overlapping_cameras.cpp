@@ -1,0 +1,129 @@
+#include "core/initialisation/non_overlapping_cameras.h"
+
+#include "core/geometry/so3.h"
+#include "core/initialisation/camera_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// Wide, so that speeds at a stretch's end are those of several views.
+constexpr double kKnotSpacing_s = 0.08;
+// Largest difference of two gaps that agree: extrapolated over some tenths of a second, hands deviate by a
+// degree or two.
+constexpr PoseSpread kSpread{0.04, 0.03};
+
+// A view with the motion around it.
+struct MovingPose {
+  double time_s = 0.0;
+  RigidTransform world_from_camera;
+  Eigen::Vector3d angular_velocity_rad_s, velocity_m_s;  // in the camera's frame, in the world's
+
+  RigidTransform after(double duration_s) const {
+    return {(world_from_camera.rotation * quaternionExp(duration_s * angular_velocity_rad_s)).normalized(),
+            world_from_camera.translation_m + duration_s * velocity_m_s};
+  }
+};
+
+std::vector<MovingPose> movingPoses(const std::vector<CameraPose>& poses) {
+  const CameraTrajectory trajectory =
+      trajectoryThrough(poses, poses.front().time_s, poses.back().time_s, kKnotSpacing_s);
+  std::vector<MovingPose> moving;
+  for (const CameraPose& pose : poses) {
+    const RotationSample rotation =
+        evaluate(trajectory.world_from_camera_rotation, pose.time_s, RotationOrder::Velocity);
+    const VectorSample position = evaluate(trajectory.camera_in_world_m, pose.time_s);
+    moving.push_back({pose.time_s,
+                      {Eigen::Quaterniond(rotation.rotation), position.value},
+                      rotation.angular_velocity_rad_s,
+                      position.velocity});
+  }
+  return moving;
+}
+
+struct Bridges {
+  std::vector<RigidTransform> reference_from_camera;  // by each gap
+  int to_camera = 0, to_reference = 0;                // how many: who sees more of the board after the gap
+
+  // One way only, a time offset looks like a turn.
+  bool bothWays(int least) const { return 2 * std::min(to_camera, to_reference) >= least; }
+};
+
+std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s, double end_s) {
+  const auto earlier = [](const MovingPose& pose, double time_s) { return pose.time_s < time_s; };
+  return std::lower_bound(poses.begin(), poses.end(), end_s, earlier) -
+         std::lower_bound(poses.begin(), poses.end(), begin_s, earlier);
+}
+
+Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<MovingPose>& camera,
+                double time_offset_s, double longest_s) {
+  constexpr std::size_t kMost = 400;  // of cameras that overlap after all: the first are enough
+  Bridges found;
+  const auto add = [&](const MovingPose& one, const MovingPose& other) {
+    const double half_s = 0.5 * (other.time_s + time_offset_s - one.time_s);
+    if (2.0 * std::abs(half_s) > longest_s || found.reference_from_camera.size() >= kMost) return;
+    found.reference_from_camera.push_back(inverse(one.after(half_s)) * other.after(-half_s));
+    const double middle_s = one.time_s + half_s, theirs_s = middle_s - time_offset_s;
+    const auto before = viewsBetween(reference, middle_s - longest_s, middle_s) -
+                        viewsBetween(camera, theirs_s - longest_s, theirs_s),
+               after = viewsBetween(reference, middle_s, middle_s + longest_s) -
+                       viewsBetween(camera, theirs_s, theirs_s + longest_s);
+    found.to_camera += before > 0 && after < 0;
+    found.to_reference += before < 0 && after > 0;
+  };
+  for (std::size_t i = 0, k = 0; i < reference.size(); ++i) {
+    const std::size_t before = k;
+    while (k < camera.size() && camera[k].time_s + time_offset_s < reference[i].time_s) ++k;
+    if (k == before) continue;
+    if (i > 0) add(reference[i - 1], camera[before]);
+    add(reference[i], camera[k - 1]);
+  }
+  return found;
+}
+
+// From the gap that most of the others are near to.
+MeanPose agreement(const std::vector<RigidTransform>& each) {
+  constexpr int kRounds = 10;
+  const auto misfit = [&](const RigidTransform& mean) {
+    double sum = 0.0;
+    for (const RigidTransform& pose : each) sum += std::min(1.0, kSpread.between2(pose, mean));
+    return sum;
+  };
+  const RigidTransform start = *std::min_element(
+      each.begin(), each.end(),
+      [&](const RigidTransform& a, const RigidTransform& b) { return misfit(a) < misfit(b); });
+  return meanPose(each, start, kSpread, kRounds);
+}
+
+double misfitOf(const MeanPose& found) {
+  return kSpread.squared(found.rotation_rms_rad, found.position_rms_m) / std::max(found.agreeing, 1e-3);
+}
+
+}  // namespace
+
+std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
+                                           const std::vector<CameraPose>& camera,
+                                           const std::optional<KnownNumber>& time_offset,
+                                           const InitialisationOptions& options, const RunContext& context) {
+  constexpr double kStep_s = 0.01;
+  if (reference.size() < 2 || camera.size() < 2) return std::nullopt;
+  const std::vector<MovingPose> one = movingPoses(reference), other = movingPoses(camera);
+  std::optional<BridgedCamera> best;
+  const double centre_s = time_offset ? time_offset->value : 0.0;
+  const int steps = isGiven(time_offset) ? 0 : static_cast<int>(options.time_offset_search_s / kStep_s);
+  for (int step = -steps; step <= steps; ++step) {
+    context.throwIfStopped();
+    const double offset_s = centre_s + step * kStep_s;
+    const Bridges each = bridges(one, other, offset_s, options.longest_bridge_s);
+    if (!each.bothWays(options.least_bridges)) continue;
+    const MeanPose found = agreement(each.reference_from_camera);
+    if (found.agreeing < options.least_bridge_agreement) continue;
+    if (!best || misfitOf(found) < misfitOf(best->reference_from_camera))
+      best = {found, offset_s, static_cast<int>(each.reference_from_camera.size())};
+  }
+  return best;
+}
+
+}  // namespace evical

@@ -1,0 +1,101 @@
+// An accelerometer against a trajectory: positions' second differences are what specific force says of them, so that
+// velocities never appear. Pieces of half a minute or so, one by one. docs/maths.md, 15.5. The idea of a fixed lag in
+// which velocities are eliminated is that of Nemiroff et al. (2023).
+#pragma once
+
+#include "core/data/calibration_state.h"
+#include "core/data/imu_sample.h"
+#include "core/maintenance/maintenance_options.h"
+#include "core/maintenance/stop_calibration.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct TimedPose {
+  double time_s = 0.0;  // on the IMU's clock
+  Eigen::Vector3d position_m;
+  Eigen::Quaterniond world_from_imu;
+};
+
+// What one piece says.
+struct LagEstimate {
+  double from_s = 0.0, to_s = 0.0;
+  AccelerometerVector now;
+  AccelerometerMatrix covariance;   // of `now`, from this piece alone
+  AccelerometerMatrix information;  // at the old numbers
+  AccelerometerVector score;
+  Eigen::Vector3d gravity_m_s2, lever_m, lever_sigma_m;  // the lever: from the poses' origin to the IMU
+  double position_noise_m = 0.0;
+};
+
+struct LagRows;  // of one piece
+
+class TrajectorySegment {
+ public:
+  // Poses in order of time.
+  TrajectorySegment(std::vector<TimedPose> poses, const ImuState& before, double gravity_m_s2,
+                    double accelerometer_density, const MaintenanceOptions& options);
+
+  void add(double time_s, const ImuSample& sample);
+  void finish();
+
+  const std::vector<LagEstimate>& lags() const { return lags_; }
+
+ private:
+  // Between two poses: integrals of the turned forces by the numbers that they are linear in.
+  struct Interval {
+    double from_s = 0.0, length_s = 0.0;
+    Eigen::Matrix<double, 3, kAccelerometerNumbers> velocity, position;
+    Eigen::Vector3d from_m, to_m;
+    Eigen::Matrix3d from_rotation, to_rotation;
+  };
+
+  struct Node {
+    double time_s;
+    Eigen::Vector3d rate_rad_s, force_m_s2;
+    Eigen::Quaterniond rotation;
+  };
+
+  std::size_t nextPose(std::size_t from) const;
+  void close();
+  bool isWhole() const;
+  std::vector<Node> nodes() const;
+  Interval integrated() const;
+  LagRows rows() const;
+  void endLag();
+
+  std::vector<TimedPose> poses_;
+  ImuState before_;
+  double gravity_m_s2_, density_;
+  MaintenanceOptions options_;
+  std::size_t from_ = 0, to_ = 0;
+  std::vector<ImuSample> samples_;
+  std::vector<double> times_s_;
+  std::vector<Interval> intervals_;
+  std::vector<LagEstimate> lags_;
+};
+
+// All pieces together, at the old numbers; wider where pieces differ by more than their sigmas let them.
+struct LagSum {
+  AccelerometerMatrix information = AccelerometerMatrix::Zero(), covariance = AccelerometerMatrix::Zero();
+  AccelerometerVector score = AccelerometerVector::Zero(), now = AccelerometerVector::Zero();
+  double inflation = 1.0;  // of variances
+};
+LagSum sumOfLags(const std::vector<LagEstimate>& lags, const AccelerometerVector& before);
+
+// How poses turn against a gyroscope.
+struct TurnAgreement {
+  Eigen::Quaterniond imu_from_body = Eigen::Quaterniond::Identity();  // that explains it best
+  double correlation = 0.0;                                           // of rates, so explained; 1: fully
+};
+// Rates by pairs, of the trajectory's body and of the gyroscope.
+TurnAgreement turnAgreement(const std::vector<Eigen::Vector3d>& of_body,
+                            const std::vector<Eigen::Vector3d>& of_imu);
+
+}  // namespace evical

@@ -1,0 +1,198 @@
+#include "core/pipeline/lens/intrinsics_bootstrap.h"
+
+#include "core/base/time.h"
+#include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_options.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_options.h"
+#include "core/pipeline/pass/session_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kSearched = 0.4;               // of a slice: from there on there are bursts on both sides
+constexpr int kSolveEvery = 3;                  // slices, once there is a camera
+constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
+
+// Equidistant lenses of one parameter stand for all: wide, which shows most
+// boards well enough; none; fisheye; and where a wide model is asked for, one wider still.
+std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px, bool wide_model) {
+  const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
+  CameraIntrinsics lens;
+  lens.resolution_px = resolution_px;
+  lens.principal_point_px = 0.5 * Eigen::Vector2d(resolution_px.width_px - 1, resolution_px.height_px - 1);
+  std::vector<CameraIntrinsics> lenses(3, lens);
+  lenses[0].focal_length_px.setConstant(0.75 * width_px);
+  lenses[1].focal_length_px.setConstant(width_px);
+  lenses[2].focal_length_px.setConstant(0.45 * width_px);
+  lenses[0].model = lenses[2].model = CameraModel::PinholeEquidistant;
+  if (!wide_model) return lenses;
+  lenses.push_back(lenses[2]);
+  lenses.back().focal_length_px.setConstant(0.3 * width_px);
+  return lenses;
+}
+
+bool isPlane(const CameraIntrinsics& lens) {
+  return lens.model == CameraModel::PinholeRadtan && lens.distortion == CameraIntrinsics{}.distortion;
+}
+
+// What a lens showed of a slice.
+struct Look {
+  std::vector<SensorView> views;
+  std::size_t circles() const {
+    std::size_t count = 0;
+    for (const SensorView& view : views) count += view.circles.size();
+    return count;
+  }
+};
+
+class Pilot {
+ public:
+  Pilot(const Session& session, const RunContext& context)
+      : session_(session),
+        context_(context),
+        options_(*session.options.intrinsics),
+        length_ns_(nanosecondsFrom(options_.first_look_length_s)),
+        period_ns_(nanosecondsFrom(options_.first_look_period_s)),
+        recording_(session),
+        resolution_px_(recording_.resolution_px(0)),
+        lenses_(plainLenses(resolution_px_, options_.model >= IntrinsicsModel::DoubleSphere)) {
+    const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
+    slice_begin_ns_ = recording_.start_ns() + nanosecondsFrom(begin_s);
+    if (session.time_range_s) end_ns_ = recording_.start_ns() + nanosecondsFrom(session.time_range_s->back());
+  }
+
+  std::optional<CameraIntrinsics> run() {
+    SensorPacket packet;
+    while (!enough() && recording_.read(packet)) {
+      context_.throwIfStopped();
+      if (packet.events.front().time_ns > end_ns_) break;
+      context_.progress.stageProgress(
+          std::max(recording_.fractionRead(), static_cast<double>(slices_) / options_.first_look_slices));
+      for (const Event& event : packet.events) {
+        if (event.time_ns > end_ns_) break;
+        take(event);
+      }
+    }
+    lookAtSlice();
+    solve();
+    return result();
+  }
+
+ private:
+  bool enough() const {
+    return slices_ >= options_.first_look_slices ||
+           (rough_ && rough_->sigma_px < options_.first_look_projection_px);
+  }
+
+  void take(const Event& event) {
+    if (event.time_ns >= slice_begin_ns_ + length_ns_) {
+      lookAtSlice();
+      while (slice_begin_ns_ + length_ns_ <= event.time_ns) slice_begin_ns_ += period_ns_;
+    }
+    const bool outside = event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
+    const bool late = !slice_.empty() && event.time_ns < slice_.back().time_ns;
+    if (event.time_ns < slice_begin_ns_ || outside || late || slice_.size() >= kMostEvents) return;
+    slice_.push_back(event);
+  }
+
+  void lookAtSlice() {
+    if (slice_.empty() || enough()) return;
+    std::vector<EdgeCrossing> bursts;
+    BurstExtractor extractor(resolution_px_, session_.options.front_end->bursts);
+    extractor.add(slice_, bursts);
+    extractor.finish(bursts);
+    slice_.clear();
+    Look look;
+    if (rough_) look = through(rough_->intrinsics, bursts);
+    if (look.views.empty()) {
+      look = throughPlainLenses(bursts);
+      if (look.views.empty()) return;
+      rough_.reset();  // it misses what they show
+    }
+    ++slices_;
+    views_.insert(views_.end(), look.views.begin(), look.views.end());
+    if (!rough_ || slices_ % kSolveEvery == 0) solve();
+  }
+
+  // The lens that showed most the last time alone, if it shows nearly all of the board:
+  // looks that fail take longest.
+  Look throughPlainLenses(const std::vector<EdgeCrossing>& bursts) {
+    constexpr double kNearlyAll = 0.75;
+    Look best = through(lenses_.front(), bursts);
+    const double all = static_cast<double>(best.views.size()) * session_.board.pointCount();
+    if (!best.views.empty() && static_cast<double>(best.circles()) >= kNearlyAll * all) return best;
+    std::vector<std::future<Look>> looks;
+    for (std::size_t k = 1; k < lenses_.size(); ++k)
+      looks.push_back(std::async(std::launch::async, [&, k] { return through(lenses_[k], bursts); }));
+    std::size_t of_best = 0;
+    for (std::size_t k = 1; k < lenses_.size(); ++k) {
+      Look look = looks[k - 1].get();
+      if (look.circles() <= best.circles()) continue;
+      best = std::move(look);
+      of_best = k;
+    }
+    std::swap(lenses_.front(), lenses_[of_best]);
+    return best;
+  }
+
+  Look through(const CameraIntrinsics& lens, const std::vector<EdgeCrossing>& bursts) const {
+    context_.throwIfStopped();
+    const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
+    FrontEndOptions options = *session_.options.front_end;
+    options.detection.search_interval_s = options_.first_look_length_s;  // once
+    BoardTracker tracker(session_.board, resolution_px_, camera, options, recording_.start_ns());
+    tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched * options_.first_look_length_s),
+                      slice_begin_ns_ + length_ns_);
+    return {sensorViews(tracker.finish(), session_.board, camera, options_)};
+  }
+
+  void solve() {
+    constexpr int kLeastSlices = 3;  // views of one slice are all alike
+    if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
+    solved_views_ = views_.size();
+    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(), options_,
+                             context_);
+    if (rough) rough_ = std::move(rough);
+  }
+
+  // A lens that shows the board, if only in parts; none where none did.
+  std::optional<CameraIntrinsics> result() const {
+    context_.progress.log(
+        LogLevel::Debug, fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
+                                     rough_ ? fmt::format(", projection known to {:.2f} px", rough_->sigma_px)
+                                            : std::string(", which make no camera")));
+    if (rough_) return rough_->intrinsics;
+    return isPlane(lenses_.front()) ? std::nullopt : std::optional(lenses_.front());
+  }
+
+  const Session& session_;
+  const RunContext& context_;
+  const IntrinsicsOptions& options_;
+  std::int64_t length_ns_, period_ns_;  // of the slices
+  SessionRecording recording_;
+  Resolution resolution_px_;
+  std::vector<CameraIntrinsics> lenses_;  // plain ones, first that which showed most the last time
+  std::optional<RoughCamera> rough_;
+  std::vector<SensorView> views_;
+  std::size_t solved_views_ = 0;
+  std::vector<Event> slice_;
+  std::int64_t slice_begin_ns_ = 0, end_ns_ = std::numeric_limits<std::int64_t>::max();
+  int slices_ = 0;  // with the board in view
+};
+
+}  // namespace
+
+std::optional<CameraIntrinsics> lookThroughPlainLenses(const Session& session, const RunContext& context) {
+  return Pilot(session, context).run();
+}
+
+}  // namespace evical

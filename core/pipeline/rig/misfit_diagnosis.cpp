@@ -1,0 +1,136 @@
+#include "core/pipeline/rig/misfit_diagnosis.h"
+
+#include "core/base/error.h"
+#include "core/data/board_bow.h"
+#include "core/geometry/camera_model.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/rig/residual_consistency.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+
+const Repair kFreeLenses{"optimisation.model.camera_intrinsics", "free"};
+const Repair kFreeTurn{"optimisation.model.gyroscope_rotation", "true"};
+const Repair kFreeBow{"optimisation.model.board_bow", "true"};
+
+namespace {
+
+struct Trial {
+  CauseKind kind;
+  bool (*isHeld)(const BatchSolution& solution, const OptimisationOptions& options);
+  void (*release)(OptimisationOptions& options);
+  std::string (*words)(const CalibrationInput& input, const BatchSolution& freed);
+  const char* advice;
+  const Repair& repair;
+};
+
+bool turnIsHeld(const BatchSolution& solution, const OptimisationOptions& options) {
+  return !solution.state.imus.empty() && !options.gyroscope_rotation;
+}
+void releaseTurn(OptimisationOptions& options) {
+  options.gyroscope_rotation = true;
+}
+std::string turnWords(const CalibrationInput& input, const BatchSolution& freed) {
+  std::size_t most = 0;
+  const auto turn_deg = [&](std::size_t k) {
+    return kDegPerRad * Eigen::AngleAxisd(freed.state.imus[k].gyroscope_from_accelerometer).angle();
+  };
+  for (std::size_t k = 1; k < input.imus.size(); ++k)
+    if (turn_deg(k) > turn_deg(most)) most = k;
+  return fmt::format(
+      "{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
+      "rotations may be off by as much",
+      input.imus[most].name, turn_deg(most));
+}
+
+bool aLensIsHeld(const BatchSolution& solution, const OptimisationOptions&) {
+  return std::any_of(solution.state.cameras.begin(), solution.state.cameras.end(),
+                     [](const CameraState& camera) { return !camera.lens.solved; });
+}
+void releaseLenses(OptimisationOptions& options) {
+  options.camera_intrinsics = CameraIntrinsicsChoice::Free;
+}
+// A board that is stretched or bent looks much like another lens.
+std::string lensWords(const CalibrationInput& input, const BatchSolution& freed) {
+  std::string text;
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) {
+    const std::optional<CameraIntrinsics>& solved = freed.state.cameras[k].lens.solved;
+    if (!solved) continue;
+    const CameraIntrinsics& given = *input.cameras[k].lens.detection_intrinsics;
+    const Eigen::Array2d focal =
+        idealFocalLength_px(*solved).array() / idealFocalLength_px(given).array() - 1.0;
+    const Eigen::Vector2d centre_px = solved->principal_point_px - given.principal_point_px;
+    text += fmt::format(
+        "{}{}: the lens, or the board's shape, is not as the session says: focal lengths seem {:+.2f} and "
+        "{:+.2f} %, the principal point ({:+.1f}, {:+.1f}) px off",
+        text.empty() ? "" : ", ", input.cameras[k].name, 100.0 * focal.x(), 100.0 * focal.y(), centre_px.x(),
+        centre_px.y());
+  }
+  return text;
+}
+
+bool flatnessIsHeld(const BatchSolution&, const OptimisationOptions& options) {
+  return !options.board_bow;
+}
+void releaseBow(OptimisationOptions& options) {
+  options.board_bow = true;
+}
+std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& freed) {
+  std::size_t most = 0;
+  const auto bow_mm = [&](std::size_t i) { return largestBow_mm(freed.state.boardAt(i), input.boardAt(i)); };
+  for (std::size_t i = 1; i < input.boardCount(); ++i)
+    if (bow_mm(i) > bow_mm(most)) most = i;
+  return bowWords(freed.state.boardAt(most), input.boardAt(most), input.boardWords(most));
+}
+
+const std::array<Trial, 3> kTrials = {
+    {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
+      "lay it on glass, or calibrate with optimisation.model.board_bow: true", kFreeBow},
+     {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
+      "calibrate with optimisation.model.camera_intrinsics: free, and measure the board", kFreeLenses},
+     {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
+      "calibrate with optimisation.model.gyroscope_rotation: true", kFreeTurn}}};
+
+}  // namespace
+
+const char* causeName(CauseKind kind) {
+  constexpr std::array kNames = {"gyroscope_turned", "lens", "board_bow"};  // in the enumeration's order
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
+                               const OptimisationOptions& options, const RunContext& context) {
+  constexpr double kExplains = 0.7;         // at most this share of the misfit's logarithm may be left
+  constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times what was given
+  const double before = totalMisfit(solution);
+  if (before < kWorthExplaining) return std::nullopt;
+  double least = kExplains * before;
+  std::optional<Cause> best;
+  const RunContext quiet{silentProgress(), context.stop};
+  for (const Trial& trial : kTrials) {
+    if (!trial.isHeld(solution, options)) continue;
+    OptimisationOptions freed = options;
+    trial.release(freed);
+    try {
+      const BatchSolution refit = refineBatch(input, solution.state, freed, quiet);
+      const double after = totalMisfit(refit);
+      if (after >= least) continue;
+      least = after;
+      best = Cause{trial.kind,
+                   fmt::format("{} (residuals fall from {:.2g} to {:.2g} times what was given); {}",
+                               trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
+                   trial.repair, 1.0 - after / before};
+    } catch (const CalibrationError&) {
+      continue;  // what cannot be solved explains nothing
+    }
+  }
+  return best;
+}
+
+}  // namespace evical

@@ -1,0 +1,128 @@
+#include "core/pipeline/rig/residual_consistency.h"
+
+#include "core/data/unfit_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// One thing that can be too large.
+struct Measure {
+  double size, doubtful, failed;
+  std::string words;
+};
+
+std::vector<Measure> measuresOf(const CalibrationInput& input, const BatchSolution& solution,
+                                const VerdictOptions& options) {
+  std::vector<Measure> all;
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) {
+    const std::string& name = input.cameras[k].name;
+    const double spread = solution.scales.circles[k];
+    all.push_back(
+        {spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
+         fmt::format(
+             "{}: circles lie {:.2g} times as far from where they should as their own sigmas say: the board "
+             "is not flat, or the lens not of the model that the session says",
+             name, spread)});
+    const CameraFit& fit = solution.cameras[k];
+    const double outliers =
+        static_cast<double>(fit.circles_rejected) / std::max(1, fit.circles_rejected + fit.circles_used);
+    all.push_back({outliers, options.doubtful_outliers, options.failed_outliers,
+                   fmt::format("{}: {:.0f} % of the circles contradict the others and were left out", name,
+                               100.0 * outliers)});
+  }
+  for (std::size_t k = 0; k < input.imus.size(); ++k) {
+    const auto add = [&](double times, const char* what) {
+      all.push_back({times, options.doubtful_imu_misfit, options.failed_imu_misfit,
+                     fmt::format("{}: {} are {:.2g} times as far off as their noise density says",
+                                 input.imus[k].name, what, times)});
+    };
+    add(solution.scales.gyroscopes[k], "angular rates");
+    add(solution.scales.accelerometers[k], "accelerations");
+  }
+  return all;
+}
+
+// The words of those beyond their bound, the worst first.
+std::string wordsBeyond(const std::vector<Measure>& measures, double Measure::*bound) {
+  std::vector<const Measure*> beyond;
+  for (const Measure& each : measures)
+    if (each.size > each.*bound) beyond.push_back(&each);
+  std::sort(beyond.begin(), beyond.end(), [&](const Measure* a, const Measure* b) {
+    return a->size / (a->*bound) > b->size / (b->*bound);
+  });
+  std::string words;
+  for (const Measure* each : beyond) words += (words.empty() ? "" : "; ") + each->words;
+  return words;
+}
+
+}  // namespace
+
+MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& solution,
+                          const VerdictOptions& options) {
+  const std::vector<Measure> measures = measuresOf(input, solution, options);
+  return {wordsBeyond(measures, &Measure::failed), wordsBeyond(measures, &Measure::doubtful)};
+}
+
+std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options) {
+  if (!validation.failure.empty() || validation.rms_sigmas <= options.doubtful_halves_sigmas) return {};
+  const QuantityDifference* worst = nullptr;
+  for (const QuantityDifference& each : validation.quantities)
+    if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
+  return fmt::format(
+      "the two halves of the recording differ by {:.1f} sigmas (RMS), the most in {}: "
+      "something moved, or is not as the session says",
+      validation.rms_sigmas, worst->name);
+}
+
+std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options) {
+  constexpr double kCertain_sigmas = 5.0;
+  std::vector<std::string> notes;
+  for (const CameraData& camera : input.cameras) {
+    const auto& delay = camera.observations.polarity_delay;
+    if (!delay) continue;
+    const double later_ms = 1e3 * delay->later_s;
+    if (!(std::abs(later_ms) > options.slow_pixels_ms + kCertain_sigmas * 1e3 * delay->std_s)) continue;
+    notes.push_back(fmt::format(
+        "{}: edges that {} the image are seen {:.1f} ms later than those that {} it: pixels are slow. The "
+        "time offset holds their delay at this light: record where it is brighter, or with "
+        "faster biases",
+        camera.name, later_ms > 0.0 ? "brighten" : "darken", std::abs(later_ms),
+        later_ms > 0.0 ? "darken" : "brighten"));
+  }
+  return notes;
+}
+
+std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
+  std::string words;
+  for (const ImuData& imu : input.imus) {
+    const UnfitSamples unfit = findUnfitSamples(imu.samples);
+    for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+      const std::size_t others = (kImuAxes[axis].rate ? unfit.without_rate : unfit.without_force).size();
+      const double share = static_cast<double>(unfit.saturated[axis].size()) /
+                           std::max(1.0, static_cast<double>(imu.samples.size() - others));
+      if (share <= options.saturated_share) continue;
+      words += fmt::format("{}{}: {} is at its limit for {:.0f} % of the samples", words.empty() ? "" : ", ",
+                           imu.name, kImuAxes[axis].name, 100.0 * share);
+    }
+  }
+  return words.empty() ? words : words + ", which were left out: move less fast, or widen the IMU's range";
+}
+
+double totalMisfit(const BatchSolution& solution) {
+  double sum = 0.0;
+  const auto add = [&](const std::vector<double>& scales) {
+    for (const double scale : scales) sum += std::log(std::max(scale, 1.0));
+  };
+  add(solution.scales.circles);
+  add(solution.scales.gyroscopes);
+  add(solution.scales.accelerometers);
+  return sum;
+}
+
+}  // namespace evical

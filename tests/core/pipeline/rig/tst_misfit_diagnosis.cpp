@@ -1,0 +1,274 @@
+// One thing at a time that is not as the session says: the result is not wrong and called ok, and the first reason
+// names what was spoilt. Circles are those of a perfect front end, so that a case takes a second or two.
+#include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/rig/residual_consistency.h"
+#include "core/pipeline/runs/result_files.h"
+#include "core/report/report_options.h"
+#include "core/report/truth_comparison.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/support/perturbations.h"
+#include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
+#include "tests/support/test_program.h"
+
+namespace {
+
+using namespace evical;
+
+class TestCauses : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void initTestCase() {
+    base_.scenario = readScenario(test::scenarioPath("davis346_10s"));
+    base_.session = test::sessionFor(base_.scenario);
+    base_.session.options.report.edit().split_half_check = false;  // half of the time, and no part of this
+    base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);
+  }
+
+  void firstReason_namesTheCause_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    QTest::addColumn<bool>("fails");  // else it is doubtful
+    const auto row = [](const char* name, double size, bool fails) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size << fails;
+    };
+    row("both mirrored", 1, true);
+    row("both swapped", 1, true);
+    row("gyroscope swapped", 1, true);
+    row("gyroscope mirrored", 0, true);
+    row("gyroscope permuted", 1, true);
+    row("forces negated", 1, true);
+    row("rates negated", 1, true);
+    row("gyroscope dead", 0, true);
+    row("accelerometer dead", 2, true);
+    row("another IMU", 1, true);
+    row("clock step", 50, false);
+    row("board spacing", 2, false);
+    row("board stretch", 1, false);
+    row("forces clipped", 9, false);
+    row("board spacing", -2.5, false);
+    row("gyroscope turned", 1, false);
+    row("gyroscope turned", 0.3, false);
+    row("batches", 5, true);
+    row("batches", 50, true);
+    row("prior of rotation", 20, false);
+    row("prior of time offset", 10, false);
+    row("camera moved", 0.2, false);
+    row("camera moved", 5, false);
+    row("wandering noise", 0.01, false);
+    row("walking biases", 1e-3, false);
+  }
+  void firstReason_namesTheCause() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    QFETCH(bool, fails);
+    const test::Perturbation& perturbation = test::perturbation(name.toStdString());
+    test::Recorded recorded = base_;
+    perturbation.apply(recorded, size);
+    std::string reason;
+    try {
+      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      QVERIFY(!fails);
+      QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
+      reason = run.result.reason;
+    } catch (const CalibrationError& error) {
+      QVERIFY2(fails, error.what());
+      reason = error.what();
+    }
+    QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
+  }
+
+  // Seed 3 turns more about one axis than about the others, and a mirrored gyroscope leaves a third unexplained.
+  void leftHandedAxes_areNamedWhereOneAxisOutweighs() {
+    test::Recorded other = base_;
+    other.scenario.seed = 3;
+    other.pass = test::perfectPass(other.scenario, 0.05, 0.02);
+    for (const char* name : {"both mirrored", "gyroscope swapped", "rates negated"}) {
+      test::Recorded recorded = other;
+      const test::Perturbation& perturbation = test::perturbation(name);
+      perturbation.apply(recorded, 1.0);
+      try {
+        calibrate(recorded.session, recorded.pass, RunContext{});
+        QFAIL(name);
+      } catch (const CalibrationError& error) {
+        QVERIFY2(perturbation.isNamedIn(test::firstReason(error.what())), error.what());
+      }
+    }
+  }
+
+  // The first look at the board takes accelerations for those of their stamps: in seed 5 it seems 3 % smaller.
+  void lateAccelerometer_isNoWrongBoard() {
+    test::Recorded recorded = base_;
+    recorded.scenario.seed = 5;
+    recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.02);
+    test::perturbation("accelerometer late").apply(recorded, 5.0);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
+  }
+
+  // What is an unknown with a sigma is found instead of complained about.
+  void whatIsAnUnknown_isRepaired_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    const auto row = [](const char* name, double size) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size;
+    };
+    row("board spacing", 0.5);
+    row("board spacing", -0.5);
+    row("board stretch", 0.25);
+    row("board stretch", 0.5);
+    row("board bow", 0.5);
+    row("board bow", 2);
+    row("gravity", 9.78);
+    row("focal length", 0.3);
+    row("focal length", 1);
+    row("focal length x", 1);
+    row("centre", 2);
+    row("distortion", 0.9);
+    row("clock drift", 50);
+  }
+  void whatIsAnUnknown_isRepaired() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    test::Recorded recorded = base_;
+    test::perturbation(name.toStdString()).apply(recorded, size);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
+  }
+
+  // What comes with a reason as data is set, and is right.
+  void repair_mendsIt_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    QTest::addColumn<QString>("repair");
+    const auto row = [](const char* name, double size, const char* repair) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size << QString(repair);
+    };
+    row("forces in g", 1, "imus.left_imu.acceleration_unit=g");
+    row("rates in deg/s", 1, "imus.left_imu.angular_rate_unit=deg/s");
+    row("forces negated", 1, "imus.left_imu.accelerometer_axes=-x,-y,-z");
+    row("rates negated", 1, "imus.left_imu.gyroscope_axes=-x,-y,-z");
+    row("gyroscope swapped", 1, "imus.left_imu.gyroscope_axes=y,x,z");
+    row("gyroscope mirrored", 2, "imus.left_imu.gyroscope_axes=x,y,-z");
+    row("gyroscope permuted", 1, "imus.left_imu.gyroscope_axes=z,x,y");
+    row("gyroscope turned", 1, "optimisation.model.gyroscope_rotation=true");
+  }
+  void repair_mendsIt() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    test::Recorded recorded = base_;
+    test::perturbation(name.toStdString()).apply(recorded, size);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    QTEST(QString::fromStdString(repair->text()), "repair");
+    setInSession(recorded.session, repair->key, repair->value);
+    const SessionImu& imu = recorded.session.imus[0];
+    for (ImuSample& sample : recorded.pass.imus[0].samples) {  // which were read as the session had it before
+      sample.angular_rate_rad_s =
+          readAs(imu.gyroscope_axes, sample.angular_rate_rad_s) *
+          radiansPerSecond(imu.angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond));
+      sample.specific_force_m_s2 =
+          readAs(imu.accelerometer_axes, sample.specific_force_m_s2) *
+          metresPerSecond2(imu.acceleration_unit.value_or(AccelerationUnit::MetresPerSecond2));
+    }
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY(!run.result.repair);
+    expectRight(recorded, run);
+  }
+
+  // Clocks that are seconds apart are found, and all the rest is as ever.
+  void timeOffsetBeyondTheSearch_isFound() {
+    test::Recorded recorded = base_;
+    test::perturbation("time offset").apply(recorded, 5.0);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
+  }
+
+  // The part that the repair keeps is ok or too short to be, and right.
+  void cameraThatMoved_isRightInTheLargerPart() {
+    test::Recorded recorded = base_;
+    test::perturbation("camera moved").apply(recorded, 1.0);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    setInSession(recorded.session, repair->key, repair->value);
+    const std::array<double, 2> range_s = recorded.session.time_range_s.value();
+    constexpr double kMoved_s = 6.0;
+    QVERIFY2(range_s[0] < 0.5 && range_s[1] > kMoved_s - 1.5 && range_s[1] < kMoved_s,
+             repair->text().c_str());
+    test::cutTo(range_s, recorded);
+    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+  }
+
+  // A hundred times as fast as what they are taken for: what is left is told by the sigmas.
+  void walkingBiases_areRepaired() {
+    test::Recorded recorded = base_;
+    test::perturbation("walking biases").apply(recorded, 1e-3);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    QCOMPARE(repair->text(), std::string("optimisation.model.bias_model=linear"));
+    setInSession(recorded.session, repair->key, repair->value);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY(!run.result.repair);
+    const double sigmas = comparisonOf(recorded, run).normalisedRms();
+    QVERIFY2(sigmas < 2.5, qPrintable(QString::number(sigmas)));
+  }
+
+  // Of a clock that steps the larger part is used, and is right.
+  void clockThatSteps_isRightInTheLargerPart() {
+    test::Recorded recorded = base_;
+    test::perturbation("clock step").apply(recorded, 50.0);
+    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+  }
+
+  // Of a board that is taken for flat, by the score test and, of the larger misfit, by a trial.
+  void bentBoardTakenForFlat_isTheFirstReason() {
+    for (const double height_mm : {0.5, 2.0}) {
+      test::Recorded recorded = base_;
+      const test::Perturbation& bow = test::perturbation("board bow");
+      bow.apply(recorded, height_mm);
+      recorded.session.options.optimisation.edit().board_bow = false;
+      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
+      QVERIFY2(bow.isNamedIn(test::firstReason(run.result.reason)), run.result.reason.c_str());
+    }
+  }
+
+  void nothingSpoilt_isOk() {
+    const CalibrationRun run = calibrate(base_.session, base_.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(base_, run);
+  }
+
+ private:
+  static std::optional<Repair> repairOf(const test::Recorded& recorded) {
+    try {
+      return calibrate(recorded.session, recorded.pass, RunContext{}).result.repair;
+    } catch (const CalibrationError& error) {
+      return error.repair();
+    }
+  }
+  static TruthComparison comparisonOf(const test::Recorded& recorded, const CalibrationRun& run) {
+    return compareWithTruth(
+        namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),
+        test::truthOf(recorded.scenario));
+  }
+  void expectRight(const test::Recorded& recorded, const CalibrationRun& run) const {
+    const TruthComparison comparison = comparisonOf(recorded, run);
+    const CameraError& error = comparison.cameras.front();
+    QVERIFY2(error.rotation_deg < 0.1, qPrintable(QString::number(error.rotation_deg)));
+    QVERIFY2(error.translation_mm < 3.0, qPrintable(QString::number(error.translation_mm)));
+    QVERIFY2(error.time_offset_ms < 1.0, qPrintable(QString::number(error.time_offset_ms)));
+  }
+
+  test::Recorded base_;
+};
+
+}  // namespace
+
+EVICAL_TEST(TestCauses)
+#include "tst_misfit_diagnosis.moc"

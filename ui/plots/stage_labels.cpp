@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/plots/stage_labels.h"
+
+#include <QCoreApplication>
+
+#include <array>
+
+namespace evical::ui {
+namespace {
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("stages", text);
+}
+
+// What belongs to one sensor is said together: "camera: rotation vector, translation".
+QString grouped(const std::vector<std::string>& released) {
+  const std::array<QString, 3> owners = {"camera", "IMU", "board"};
+  std::array<QStringList, 3> of_owner;
+  QStringList rest;
+  for (const std::string& each : released) {
+    const QString words = QString::fromStdString(each);
+    bool owned = false;
+    for (std::size_t k = 0; k < owners.size() && !owned; ++k) {
+      owned = words.startsWith(owners[k] + ' ');
+      if (owned) of_owner[k] << words.mid(owners[k].size() + 1);
+    }
+    if (!owned) rest << words;
+  }
+  QStringList groups;
+  for (std::size_t k = 0; k < owners.size(); ++k)
+    if (!of_owner[k].isEmpty()) groups << owners[k] + ' ' + of_owner[k].join(", ");
+  if (!rest.isEmpty()) groups << rest.join(", ");
+  return groups.join("; ");
+}
+
+}  // namespace
+
+QStringList stageLines(const std::vector<IterationRecord>& iterations) {
+  QStringList lines;
+  int stage = 0;
+  for (const IterationRecord& record : iterations) {
+    if (record.stage == stage) continue;
+    const bool first = stage == 0;
+    stage = record.stage;
+    const QString freed = grouped(record.released);
+    if (first)
+      lines << tr("Stage %1: trajectory; %2").arg(stage).arg(freed);
+    else if (!freed.isEmpty())
+      lines << tr("Stage %1: + %2").arg(stage).arg(freed);
+    else
+      lines << tr("Stage %1: the same, weighted by the noise that was found, to the end").arg(stage);
+  }
+  return lines;
+}
+
+QString stagesHelp() {
+  return tr(
+      "The optimiser frees parameters stage by stage. Before each stage it weighs the sensors anew by the\n"
+      "noise that it has found, and drops outliers: the cost then counts something else, and jumps.\n"
+      "Within a stage it must go down.");
+}
+
+QString neededHelp() {
+  return tr(
+      "Shaded: the final value, plus and minus one sigma. Dash-dotted: within these lines the verdict asks "
+      "it\n"
+      "to be known (Parameters, needed accuracy); they may lie beyond what is shown.");
+}
+
+}  // namespace evical::ui
