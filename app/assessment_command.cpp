@@ -6,13 +6,13 @@ namespace evical {
 
 Argument addAssessmentArguments(Command& command, AssessmentArguments& arguments, const std::string& folder,
                                 const std::string& groups) {
-  command.option("--set", arguments.settings, "group.option=value, see 'evical options': " + groups)
+  command.option("--set", arguments.settings, "Option as group.option=value, see 'evical options'; " + groups)
       .repeated();
   command.flag("--json", arguments.json, "Print JSON instead of tables, and nothing else");
-  command.flag("--quiet", arguments.quiet, "Only the tables and errors");
+  command.flag("--quiet", arguments.quiet, "Print only the tables and errors");
   command.footer(
-      "Exit codes: 0 unchanged; 3 changed; 4 cannot tell, the last lines say what to do; 1 cancelled; 2 bad "
-      "usage, or files that cannot be used.");
+      "Exit codes: 0 unchanged; 3 changed; 4 cannot tell, the last lines give advice; 1 cancelled; 2 bad "
+      "usage or unusable files.");
   return command.option("-o,--output", arguments.output, folder);
 }
 

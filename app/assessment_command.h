@@ -1,4 +1,4 @@
-// What `evical check`, `evical maintain` and `evical repeat` have in common: arguments, what they print, how they end.
+// Common parts of `evical check`, `evical maintain` and `evical repeat`: arguments, output, exit codes.
 #pragma once
 
 #include "app/command_line.h"
@@ -17,18 +17,18 @@ namespace evical {
 struct AssessmentArguments {
   std::string output;  // empty: no files are written
   std::vector<std::string> settings;
-  int threads = 0;  // 0: as the options say
+  int threads = 0;  // 0: from the options
   bool json = false, quiet = false;
 };
 
-// -o, --set, --json and --quiet; the first of them may be made required. `groups`: what --set says of its groups.
+// -o, --set, --json and --quiet; returns -o, which may be required. `groups`: the groups that --set accepts.
 Argument addAssessmentArguments(Command& command, AssessmentArguments& arguments, const std::string& folder,
                                 const std::string& groups);
 void addThreads(Command& command, AssessmentArguments& arguments);
 
 int exitCodeOf(Verdict verdict);
 
-// `assess` gives the assessment and writes its files, where there is a folder for them.
+// `assess` returns the assessment and writes its files if a folder is given.
 template <class Assess>
 int runAssessment(const AssessmentArguments& arguments, const Assess& assess) {
   Console console(arguments.quiet || arguments.json);

@@ -11,14 +11,14 @@
 namespace evical {
 namespace {
 
-// Where nothing of it fits, bash completes names of files: what most options and arguments take.
+// Without a match, bash completes file names, which most options and arguments take.
 constexpr std::string_view kBegin = R"(# Completion of evical in bash, made from its help.
 _evical() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command= word options= words=
   for word in "${COMP_WORDS[@]:1:COMP_CWORD - 1}"; do
     [[ $word == -* ]] || { command=$word; break; }
   done
-  # bash takes "--option=value" for three words.
+  # bash splits "--option=value" into three words.
   [[ $current != = ]] || current=
   if [[ $before == = && $COMP_CWORD -gt 1 ]]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
   case $command in

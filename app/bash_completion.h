@@ -1,4 +1,4 @@
-// Completion of commands, options and their words in bash, made from the commands themselves.
+// Bash completion of commands, options and choices, generated from the command definitions.
 #pragma once
 
 #include <string>

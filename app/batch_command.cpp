@@ -22,7 +22,7 @@ namespace {
 
 struct BatchArguments {
   std::string jobs, output, job, slurm_options;
-  int at_once = 0, memory_limit_mb = 0;  // 0: as the file says
+  int at_once = 0, memory_limit_mb = 0;  // 0: from the file
   bool slurm = false, collect = false, quiet = false;
 };
 
@@ -52,7 +52,7 @@ int tellTable(const BatchArguments& arguments, const Batch& batch, std::vector<J
   return allDone(rows) ? kDone : kFailed;
 }
 
-// One of an array's tasks: the table is for who collects.
+// One task of an array job. It prints no table: --collect does.
 int runOne(const Batch& batch, const BatchPlace& place, BatchWatcher& watcher) {
   const JobOutcome outcome = runBatch(batch, place, watcher, stopOnSignals()).front();
   if (outcome.end == JobEnd::Done) return kDone;
@@ -67,7 +67,7 @@ int run(const BatchArguments& arguments) {
       std::filesystem::absolute(arguments.output, ignored).lexically_normal();
   if (arguments.collect) {
     if (!std::filesystem::is_directory(folder / "jobs", ignored))
-      throw badInput(arguments.output, "holds no batch", "Name the folder that 'evical batch -o' was given");
+      throw badInput(arguments.output, "does not contain a batch", "Give the folder of 'evical batch -o'");
     std::vector<JobOutcome> outcomes = collectBatch(batch, folder);
     addQueueStates(batch, folder, outcomes);
     return tellTable(arguments, batch, std::move(outcomes));
@@ -89,17 +89,16 @@ int run(const BatchArguments& arguments) {
 
 void addPlaces(Command& command, BatchArguments& arguments) {
   command.option("JOBS", arguments.jobs, "File that lists the jobs (docs/clusters.md)").required();
-  command.option("-o,--output", arguments.output, "Folder for the results, one in it for each job")
+  command.option("-o,--output", arguments.output, "Folder for the results, with one folder per job")
       .required();
   command
-      .option("--jobs,--at-once", arguments.at_once,
-              "Jobs that run at the same time; default: at_once of JOBS")
+      .option("--jobs,--at-once", arguments.at_once, "Number of simultaneous jobs; default: at_once of JOBS")
       .between(1, 1024);
   command
       .option("--memory-limit", arguments.memory_limit_mb,
-              "MB that a job may use; default: memory_limit_mb of JOBS")
+              "Memory limit of a job in MB; default: memory_limit_mb of JOBS")
       .between(1, 1 << 24);
-  command.flag("--quiet", arguments.quiet, "Only the table and errors");
+  command.flag("--quiet", arguments.quiet, "Print only the table and errors");
 }
 
 }  // namespace
@@ -107,23 +106,24 @@ void addPlaces(Command& command, BatchArguments& arguments) {
 void addBatchCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<BatchArguments>();
   Command command = app.command(
-      "batch", "Many recordings, each calibrated alone, over the cores of one machine or a cluster");
+      "batch", "Calibrate many recordings independently, on the cores of one machine or a cluster");
   addPlaces(command, *arguments);
   Argument job =
-      command.option("--job", arguments->job, "Only the job of this name, as an array's task does");
-  Argument slurm =
-      command.flag("--slurm", arguments->slurm, "Write FOLDER/slurm.sh and submit it: a task for each job");
+      command.option("--job", arguments->job, "Run only the job of this name, like a task of an array job");
+  Argument slurm = command.flag("--slurm", arguments->slurm,
+                                "Write FOLDER/slurm.sh and submit it as an array job with one task per job");
   command
       .option("--slurm-options", arguments->slurm_options,
-              "More options of sbatch, in one string: \"--partition=short --time=30\"")
+              "Additional options of sbatch, in one string: \"--partition=short --time=30\"")
       .needs(slurm);
-  Argument collect = command.flag("--collect", arguments->collect, "Only the table of what has ended so far");
+  Argument collect =
+      command.flag("--collect", arguments->collect, "Only print the table of the jobs that have ended");
   slurm.excludes(job).excludes(collect);
   collect.excludes(job);
   command.footer(
-      "Run again, it goes on where it was stopped. Exit codes: 0 all have a result; 1 some have not, the "
-      "table "
-      "says why, or cancelled; 2 bad usage or file of jobs.");
+      "A second run continues an interrupted batch. Exit codes: 0 all jobs have a result; 1 some have none, "
+      "the table "
+      "gives the reason, or cancelled; 2 bad usage or an invalid file of jobs.");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

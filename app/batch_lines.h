@@ -1,5 +1,5 @@
-// What a batch tells while it runs: a line for each job at work, rewritten on a terminal; otherwise a line when one begins
-// and one when it ends.
+// Progress of a batch: one line per running job, rewritten on a terminal; otherwise a line at the start and
+// the end of each job.
 #pragma once
 
 #include "core/base/stopwatch.h"
@@ -24,7 +24,7 @@ class BatchLines final : public BatchWatcher {
 
   std::size_t jobs_, ended_ = 0, ended_here_ = 0;
   bool quiet_, on_terminal_;
-  std::size_t shown_ = 0;  // lines that stand below
+  std::size_t shown_ = 0;  // number of lines currently shown
   Stopwatch of_all_, since_shown_;
 };
 

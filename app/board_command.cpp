@@ -31,7 +31,7 @@ struct BoardArguments {
   std::filesystem::path output;
 };
 
-// What is not said is what suits the board: Kalibr's gaps between tags, and markers with some room.
+// Defaults that depend on the type: Kalibr's gaps between tags, and a margin around markers.
 Board completeBoard(const BoardArguments& arguments) {
   Board board = arguments.board;
   board.type = arguments.type;
@@ -43,18 +43,20 @@ Board completeBoard(const BoardArguments& arguments) {
   else if (board.type == BoardType::Charuco)
     board.tag_size_m = arguments.tag_size_m.value_or(kMarkerOfSquare * board.spacing_m);
   else if (arguments.tag_size_m)
-    throw badInput("--tag-size-m", "is of aprilgrid and charuco, and this board has no tags", "Leave it out");
+    throw badInput("--tag-size-m", "applies to aprilgrid and charuco only",
+                   "Remove it for this type of board");
   return board;
 }
 
 void writeBlinkPage(const Board& board, const BoardArguments& arguments) {
   if (arguments.output.extension() != ".html")
-    throw badInput(arguments.output.string(), "is no .html file, as a page that blinks must be",
+    throw badInput(arguments.output.string(), "is not an .html file, which --blink needs",
                    "Name the file board.html");
   writeFileWhole(arguments.output, blinkPage(board, arguments.sheet.margin_m, arguments.print));
   print(
-      "{}: open it in a browser on the screen that is to flash; it asks for a length and says what the "
-      "session needs. "
+      "{}: open it in a browser on the screen that flashes the board, and enter the measured length: it "
+      "shows the "
+      "numbers for the session. "
       "For 'evical intrinsics' of event cameras only.\n",
       arguments.output.string());
 }
@@ -71,15 +73,16 @@ void drawBoard(const BoardArguments& arguments) {
     writeFileWhole(arguments.output,
                    boardPng(board, arguments.resolution_dpi, arguments.sheet, arguments.print));
   else
-    throw badInput(
-        arguments.output.string(), "is neither .pdf, .svg nor .png",
-        extension == ".html"
-            ? "A page that flashes the board is made with --blink; print board.pdf, board.svg or board.png"
-            : "Name the file board.pdf, board.svg or board.png");
-  print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
+    throw badInput(arguments.output.string(), "is not a .pdf, .svg or .png file",
+                   extension == ".html" ? "Add --blink for a page that flashes the board, or name the file "
+                                          "board.pdf, board.svg or board.png"
+                                        : "Name the file board.pdf, board.svg or board.png");
+  print("{}: print it at 100 %, and check that the line below the board is 100 mm long\n",
+        arguments.output.string());
   if (board.hasHalfTurnAmbiguity())
     print(
-        "This board looks the same when turned by 180 degrees: it does for intrinsics only, not with an "
+        "This board looks the same when rotated by 180 degrees: it suits intrinsics only, not calibrations "
+        "with an "
         "IMU.\n");
 }
 
@@ -107,43 +110,50 @@ std::vector<std::string> namesOf(const std::map<std::string, Value>& by_name) {
 
 void addBoardCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<BoardArguments>();
-  Command command = app.command("board", "A printable target, true to scale");
+  Command command = app.command("board", "Draw a calibration target to scale, for a printer or a screen");
   command
       .option("--rows", arguments->board.rows,
-              "Of circles, of a checkerboard's inner corners, of tags, of a ChArUco board's squares")
+              "Number of rows: circles, inner corners of a checkerboard, tags, or squares of a ChArUco board")
       .showDefault();
-  command.option("--cols", arguments->board.cols, "Circles, corners, tags or squares in a row").showDefault();
+  command.option("--cols", arguments->board.cols, "Number of circles, corners, tags or squares in a row")
+      .showDefault();
   command
       .option("--spacing-m", arguments->board.spacing_m,
-              "Between two rows of circles; a square's edge; from one tag to the next. Metres")
+              "Distance of two rows of circles, a square's edge, or distance of two tags, metres")
       .showDefault();
-  command.option("--radius-m", arguments->radius_m, "Of a circle, metres (0.02)");
+  command.option("--radius-m", arguments->radius_m, "Radius of a circle, metres (0.02)");
   command.option("--tag-size-m", arguments->tag_size_m,
-                 "Black edge of a tag, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
-  command.option("--tag-border", arguments->print.border_bits, "Of an AprilGrid's tags, bits: Kalibr's is 2")
+                 "Edge of a tag's black square, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
+  command
+      .option("--tag-border", arguments->print.border_bits,
+              "Width of the black border of an AprilGrid's tags, bits (2 in Kalibr)")
       .between(1, 2)
       .showDefault();
-  command.option("--markers", arguments->print.markers, "ArUco dictionary of a ChArUco board, by its bits")
+  command
+      .option("--markers", arguments->print.markers, "ArUco dictionary of a ChArUco board, by number of bits")
       .oneOf(markerNames())
       .showDefault();
   command
       .option(
           "--type", [arguments](const std::string& name) { arguments->type = typesByName().at(name); },
-          "Pattern")
+          "Pattern of the board")
       .oneOf(namesOf(typesByName()))
       .defaultText(boardTypeName(arguments->type));
-  command.option("--circles", arguments->circles, "Their shade").oneOf({"dark", "bright"}).showDefault();
-  command.option("--margin-m", arguments->sheet.margin_m, "Around the outermost edges, metres").showDefault();
+  command.option("--circles", arguments->circles, "Shade of the circles")
+      .oneOf({"dark", "bright"})
+      .showDefault();
+  command.option("--margin-m", arguments->sheet.margin_m, "White margin around the pattern, metres")
+      .showDefault();
   command
       .option(
           "--paper",
           [arguments](const std::string& name) { arguments->sheet.paper = papersByName().at(name); },
-          "Sheet of this size with the board in its middle; else as large as the board needs")
+          "Paper size, with the board in the middle; by default the sheet has the size of the board")
       .oneOf(namesOf(papersByName()));
-  command.option("--dpi", arguments->resolution_dpi, "Of a .png, pixels an inch").showDefault();
+  command.option("--dpi", arguments->resolution_dpi, "Resolution of a .png, pixels per inch").showDefault();
   command.flag("--blink", arguments->blink,
-               "A page that flashes the board on a screen, for the intrinsics of event cameras: .html");
-  command.option("-o,--output", arguments->output, "The file: .pdf, .svg or .png, or .html with --blink")
+               "Write an .html page that flashes the board on a screen, for the intrinsics of event cameras");
+  command.option("-o,--output", arguments->output, "Output file: .pdf, .svg or .png, or .html with --blink")
       .required();
   command.action([arguments, &exit_code] {
     drawBoard(*arguments);

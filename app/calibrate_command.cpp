@@ -52,9 +52,9 @@ CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& 
   return runCalibration(session, std::move(restored.pass), context, std::move(restored.intrinsics));
 }
 
-// Where its time goes is written however it ends.
+// The profile is written even after a failure.
 CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& session, Console& console) {
-  const std::stop_token stop = stopOnSignals();  // before there are other threads
+  const std::stop_token stop = stopOnSignals();  // before other threads start
   if (arguments.profile.empty()) return calibrated(arguments, session, RunContext{console, stop});
   RunTrace trace(console);
   CalibrationOutcome outcome = calibrated(arguments, session, RunContext{trace, stop});
@@ -81,12 +81,11 @@ void addCalibrateCommand(Command& app, int& exit_code) {
   addSessionArguments(command, *arguments);
   command.option(
       "--detections", arguments->detections,
-      "Result folder of an earlier run of this session: what cameras saw is taken from it, only IMUs "
+      "Result folder of an earlier run of this session: its detections are used, and only IMU data "
       "are read again");
-  command.option(
-      "--profile", arguments->profile,
-      "File for where the run's time goes: stages, threads, processors and memory, as a trace that "
-      "ui.perfetto.dev and chrome://tracing open");
+  command.option("--profile", arguments->profile,
+                 "File for a profile of the run (stages, threads, processors, memory), readable by "
+                 "ui.perfetto.dev and chrome://tracing");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

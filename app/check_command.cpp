@@ -16,7 +16,7 @@ namespace {
 
 struct CheckArguments : AssessmentArguments {
   std::string result, recording, session;
-  std::array<std::string, 4> stabilities;  // as kStabilities
+  std::array<std::string, 4> stabilities;  // in the order of kStabilities
   bool no_board = false;
 };
 
@@ -24,10 +24,10 @@ struct StabilityFlag {
   const char *flag, *option, *help;
 };
 constexpr std::array<StabilityFlag, 4> kStabilities = {{
-    {"--stability-rotation", "check.stability_rotation_deg", "What rotations may change by, deg"},
-    {"--stability-translation", "check.stability_translation_mm", "What translations may change by, mm"},
-    {"--stability-time-offset", "check.stability_time_offset_ms", "What time offsets may change by, ms"},
-    {"--stability-lens", "check.stability_lens_px", "What lenses may change by, px RMS over the image"},
+    {"--stability-rotation", "check.stability_rotation_deg", "Rotation change that is tolerated, deg"},
+    {"--stability-translation", "check.stability_translation_mm", "Translation change that is tolerated, mm"},
+    {"--stability-time-offset", "check.stability_time_offset_ms", "Time offset change that is tolerated, ms"},
+    {"--stability-lens", "check.stability_lens_px", "Lens change that is tolerated, px RMS over the image"},
 }};
 
 CheckInput inputFrom(const CheckArguments& arguments) {
@@ -61,18 +61,18 @@ int run(const CheckArguments& arguments) {
 void addCheckCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<CheckArguments>();
   Command command = app.command(
-      "check",
-      "Is an old calibration still good? A few seconds before the board tell, or a walk without one");
+      "check", "Check an old calibration with a new recording of a few seconds, with or without a board");
   command.option("RESULT", arguments->result, "Folder of the old calibration, or its result.yaml").required();
-  command.option("RECORDING", arguments->recording, "The new recording, or a session of it").required();
-  addAssessmentArguments(command, *arguments, "Folder for check.yaml and report.html", "the group is check");
+  command.option("RECORDING", arguments->recording, "New recording, or a session of it").required();
+  addAssessmentArguments(command, *arguments, "Folder for check.yaml and report.html", "group check");
   command.option("--session", arguments->session,
-                 "Session that says board and sensors; without it the one that is kept beside the result");
+                 "Session that describes board and sensors; by default the one stored with the result");
   for (std::size_t k = 0; k < kStabilities.size(); ++k)
     command.option(kStabilities[k].flag, arguments->stabilities[k], kStabilities[k].help);
   addThreads(command, *arguments);
-  command.flag("--no-board", arguments->no_board,
-               "The recording shows no board: check rotation and time offset by how camera and IMU turn");
+  command.flag(
+      "--no-board", arguments->no_board,
+      "Check a recording without a board: rotation and time offset from the rotation of camera and IMU");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -1,4 +1,4 @@
-// Commands, their arguments and options, without the command line library, whose templates take long to compile.
+// Commands, arguments and options, without the command line library, whose templates are slow to compile.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ class Option;
 
 namespace evical {
 
-// The user has typed a command line that is not valid. what() is one sentence without a full stop.
+// The command line is invalid. what() is one sentence without a full stop.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,10 +31,10 @@ class Argument {
   Argument& between(int least, int most);
   Argument& between(double least, double most);
   Argument& oneOf(const std::vector<std::string>& words);
-  Argument& folder();                              // one that exists
-  Argument& repeated();                            // given several times, with one value each
-  Argument& separatedBy(char delimiter);           // several values in one word
-  Argument& valueOptional(const std::string& as);  // `as`: how help writes the value
+  Argument& folder();                              // must exist
+  Argument& repeated();                            // may be given several times, each with one value
+  Argument& separatedBy(char delimiter);           // several values in one argument
+  Argument& valueOptional(const std::string& as);  // `as`: name of the value in help
   Argument& showDefault();
   Argument& defaultText(const std::string& text);
   Argument& needs(const Argument& other);
@@ -46,14 +46,14 @@ class Argument {
   CLI::Option* option_;
 };
 
-// A command, or the program itself. A handle: copies mean the same command. Variables must outlive the parsing.
+// A command, or the program itself. Copies refer to the same command. Variables must outlive the parsing.
 class Command {
  public:
   explicit Command(CLI::App* app) : app_(app) {}
 
   Command command(const std::string& name, const std::string& description);
-  // `names`: "-o,--output" for an option, "RECORDING" for an argument. Value: std::string, std::filesystem::path, vectors of
-  // both, int, double, std::vector<double>, std::optional<double>.
+  // `names`: "-o,--output" for an option, "RECORDING" for an argument. Value: std::string,
+  // std::filesystem::path, vectors of both, int, double, std::vector<double>, std::optional<double>.
   template <class Value>
   Argument option(const std::string& names, Value& value, const std::string& help);
   Argument option(const std::string& names, const std::function<void(const std::string&)>& take,
@@ -68,7 +68,7 @@ class Command {
   CLI::App* app_;
 };
 
-// The program's whole command line.
+// The program's command line.
 class CommandLine : public Command {
  public:
   explicit CommandLine(const std::string& description, const std::string& name = {});
@@ -78,8 +78,8 @@ class CommandLine : public Command {
 
   void version(const std::string& text);
   void requireCommand();
-  // Sets the variables and runs the chosen command's action. Returns false if it has only printed help or the version.
-  // Throws UsageError.
+  // Sets the variables and runs the chosen command's action. Returns false after printing only help or the
+  // version. Throws UsageError.
   bool parse(int argc, char** argv);
 
  private:

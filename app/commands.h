@@ -1,6 +1,6 @@
-// The commands, one file each. Every function adds its command to the program; when that is chosen,
-// its outcome goes to `exit_code`, which must outlive the parsing. What a command throws, main()
-// turns into an exit code.
+// The commands, one file each. Every function adds its command to the program; the outcome of the chosen
+// command is written to `exit_code`, which must outlive the parsing. main() converts exceptions into exit
+// codes.
 #pragma once
 
 namespace evical {
@@ -10,8 +10,8 @@ class Command;
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;      // failed or cancelled
 inline constexpr int kBadInput = 2;    // usage, session or recording; nothing was written
-inline constexpr int kChanged = 3;     // of a check, a maintenance, a repeat: what was compared differs
-inline constexpr int kCannotTell = 4;  // of these: the data do not say
+inline constexpr int kChanged = 3;     // check, maintain, repeat: a difference was found
+inline constexpr int kCannotTell = 4;  // check, maintain, repeat: the data are insufficient
 
 void addBatchCommand(Command& app, int& exit_code);
 void addBoardCommand(Command& app, int& exit_code);

@@ -16,9 +16,9 @@ void addCompareCommand(Command& app, int& exit_code) {
     std::string result, truth;
   };
   auto arguments = std::make_shared<Arguments>();
-  Command command = app.command("compare", "A result against a simulated recording's truth");
+  Command command = app.command("compare", "Compare a result with the truth of a simulated recording");
   command.option("RESULT", arguments->result, "result.yaml, or the folder of a run").required();
-  command.option("TRUTH", arguments->truth, "truth.yaml, or the folder that has it").required();
+  command.option("TRUTH", arguments->truth, "truth.yaml, or the folder that contains it").required();
   command.action([arguments, &exit_code] {
     print("{}",
           comparisonTable(compareWithTruth(readResultYaml(resultFileOf(arguments->result)),

@@ -65,7 +65,7 @@ void Console::log(LogLevel level, std::string_view text) {
 
 std::stop_token stopOnSignals() {
   stopSource();
-  // stop_source::request_stop is not safe in a signal handler: a thread waits for the signal instead.
+  // stop_source::request_stop is not safe in a signal handler, so a thread waits for the signal.
   static sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);

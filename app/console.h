@@ -1,4 +1,4 @@
-// The terminal side of a run: progress line, log for log.txt, Ctrl-C.
+// Terminal output of a run: progress line, log for log.txt, Ctrl-C.
 #pragma once
 
 #include "core/base/progress.h"
@@ -11,7 +11,7 @@
 
 namespace evical {
 
-// A progress line that is rewritten on a terminal, plain lines otherwise; nothing when quiet. Keeps the log.
+// Rewrites a progress line on a terminal; otherwise prints plain lines, or nothing if quiet. Records the log.
 class Console final : public ProgressSink {
  public:
   explicit Console(bool quiet);
@@ -33,7 +33,7 @@ class Console final : public ProgressSink {
   Stopwatch of_all_, of_stage_, since_shown_;
 };
 
-// SIGINT and SIGTERM ask the returned token to stop; a second one ends the program at once.
+// SIGINT and SIGTERM request a stop of the returned token; a second signal ends the program immediately.
 std::stop_token stopOnSignals();
 
 }  // namespace evical

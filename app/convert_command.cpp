@@ -25,7 +25,7 @@ Resolution resolutionIn(const std::string& text) {
   const bool good = cross != std::string::npos &&
                     isSide(std::string_view(text).substr(0, cross), size_px.width_px) &&
                     isSide(std::string_view(text).substr(cross + 1), size_px.height_px);
-  if (!good) throw badInput(text, "this is no resolution", "Give it as 346x260.");
+  if (!good) throw badInput(text, "is not a resolution", "Write it as 346x260");
   return size_px;
 }
 
@@ -46,17 +46,18 @@ void addConvertCommand(Command& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   ConversionRequest& request = arguments->request;
-  Command command = app.command("convert", "A recording in another format");
-  command.option("recording", request.input, "Any that `evical inspect` can read").required();
+  Command command = app.command("convert", "Convert a recording to another format");
+  command.option("recording", request.input, "Recording in any format that `evical inspect` reads")
+      .required();
   command.option("-o,--output", request.output, "File or folder to write").required();
   std::string formats;
   for (const RecordingFormat& format : recordingFormats())
     formats += fmt::format("{}{} ({})", formats.empty() ? "" : ", ", format.name, format.description);
-  command.option("--to", request.format, "By default what the output's extension says: " + formats);
-  command.option("--stream", request.streams, "Name of a stream to write, of several each; by default all");
+  command.option("--to", request.format, "Output format; by default from the extension: " + formats);
+  command.option("--stream", request.streams, "Name of a stream to write; may be repeated; by default all");
   command.option("--resolution", arguments->resolution,
-                 "Sensor's size, e.g. 346x260, where the recording does not tell it");
-  command.flag("--quiet", arguments->quiet, "No progress");
+                 "Resolution of the sensor, e.g. 346x260, if the recording does not contain it");
+  command.flag("--quiet", arguments->quiet, "Print no progress");
   command.action([arguments, &exit_code] {
     if (!arguments->resolution.empty())
       arguments->request.resolution_px = resolutionIn(arguments->resolution);

@@ -32,7 +32,7 @@ struct DetectArguments : SessionArguments {
   int every_nth = 10;
 };
 
-// Draws windows of every camera, each into a folder of its name.
+// Draws windows of every camera, into one folder per camera.
 class ImageWriters final : public CalibrationObserver {
  public:
   ImageWriters(const DetectArguments& arguments, const Session& session, std::filesystem::path output)
@@ -77,7 +77,7 @@ void detectIn(const Session& session, const std::filesystem::path& output, const
   for (const BoardObservations& camera : pass.cameras) printOutcome(camera);
 }
 
-// Of several recordings each into a folder of its name, numbered where two have the same.
+// Several recordings get one folder each, by name, numbered if names repeat.
 int run(const DetectArguments& arguments) {
   const Session session = sessionFrom(arguments);
   const std::stop_token stop = stopOnSignals();
@@ -104,9 +104,9 @@ int run(const DetectArguments& arguments) {
 
 void addDetectCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<DetectArguments>();
-  Command command = app.command("detect", "Find the board only: detections, no estimate");
+  Command command = app.command("detect", "Detect the board only, without a calibration");
   addSessionArguments(command, *arguments);
-  command.flag("--images", arguments->images, "Draw the stages of windows as PNG");
+  command.flag("--images", arguments->images, "Draw the detection stages of windows as PNG");
   command.option("--every", arguments->every_nth, "Draw every N-th window").between(1, 1000000);
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -1,4 +1,4 @@
-// The command line: parses, runs one command, and says how it went by the exit code.
+// The command line program: parses, runs one command, and returns its outcome as the exit code.
 #include <fmt/format.h>
 #include "app/command_line.h"
 #include "app/commands.h"
@@ -51,11 +51,12 @@ int run(int argc, char** argv) {
   app.requireCommand();
   int exit_code = kDone;
   addCommands(app, exit_code);
-  // Later than the commands, which would inherit it.
+  // After the commands, which would inherit it.
   app.footer(
-      "Exit codes: 0 done; 1 failed or cancelled, the last line says why; 2 bad usage, session or recording, "
+      "Exit codes: 0 done; 1 failed or cancelled, the last line gives the reason; 2 bad usage, session or "
+      "recording, "
       "nothing "
-      "was written. Further ones are told by a command's own help: evical COMMAND --help");
+      "was written. The help of a command lists its other codes: evical COMMAND --help");
   try {
     return app.parse(argc, argv) ? exit_code : kDone;
   } catch (const UsageError& error) {
@@ -87,9 +88,9 @@ int main(int argc, char** argv) {
   using namespace evical;
   beRecordingServer(argc, argv);
   holdStandardStreams();
-  // A file size limit is a full disk like any other: let write() say so.
+  // Exceeding a file size limit is an error of write(), like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  // If our parent ignores it, we would inherit that and could not see how a job ended.
+  // If the parent ignores it, this process would inherit that and miss the exit codes of jobs.
   std::signal(SIGCHLD, SIG_DFL);
   const int exit_code = runOrFail(argc, argv);
   const std::string lost = lostOutput();

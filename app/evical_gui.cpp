@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The desktop program: builds the window, opens what it was given, runs.
+// The desktop program: builds the window and opens the given file.
 #include "app/manual_page.h"
 #include "app/version.h"
 #include "core/recording/recording_server.h"
@@ -29,7 +29,7 @@ using namespace evical::ui;
 
 constexpr int kBadUse = 2;
 
-// Pictures, help and the version need no display, but Qt ends a program that finds none.
+// Pictures, help and the version need no display, but Qt aborts without one.
 bool doWithoutDisplay(int argc, char** argv) {
   for (const char* const name : {"QT_QPA_PLATFORM", "DISPLAY", "WAYLAND_DISPLAY"})
     if (!qEnvironmentVariableIsEmpty(name)) return false;
@@ -51,7 +51,7 @@ struct Arguments {
   Appearance appearance = Appearance::System;
 };
 
-// The page of man for what the parser knows.
+// Manual page from the parser's options.
 std::string manualOf(const QCommandLineParser& parser, const QList<QCommandLineOption>& options) {
   const std::string file = "[SESSION|RECORDING|RESULT]";
   evical::ManualSection section{"Options", "", {}};
@@ -69,22 +69,22 @@ std::string manualOf(const QCommandLineParser& parser, const QList<QCommandLineO
                             evical::kVersion);
 }
 
-// Exits by itself on --help, --version and unknown options.
+// Exits on --help, --version and unknown options.
 Arguments parse(const QApplication& application) {
   QCommandLineParser parser;
   parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a circle grid.");
   const QCommandLineOption help = parser.addHelpOption(), version = parser.addVersionOption();
-  parser.addPositionalArgument("file", "A session file, a recording, or a result's folder to open",
+  parser.addPositionalArgument("file", "Session file, recording, or folder of a result to open",
                                "[SESSION|RECORDING|RESULT]");
   const QCommandLineOption screen("screenshot",
                                   "Calibrate SESSION or open RESULT, save a picture of this screen, and "
-                                  "leave; pages that compare take further recordings behind it, that of "
+                                  "quit; screens of several recordings take more of them as arguments, "
                                   "IMUs over time a log and the old result",
                                   "SCREEN");
-  const QCommandLineOption output("o", "The picture's file", "x.png");
-  const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");
-  const QCommandLineOption appearance("appearance", "system, light or dark", "WORD");
-  // The build asks for it.
+  const QCommandLineOption output("o", "File of the picture", "x.png");
+  const QCommandLineOption size("size", "Size of the window, for pictures", "WIDTHxHEIGHT", "1280x800");
+  const QCommandLineOption appearance("appearance", "Colours of the window: system, light or dark", "WORD");
+  // For the build.
   QCommandLineOption manual("manual");
   manual.setFlags(QCommandLineOption::HiddenFromHelp);
   const QList<QCommandLineOption> shown{help, version, screen, output, size, appearance};
@@ -113,7 +113,7 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
   if (!screens.contains(arguments.screen))
     return complain("There is no screen " + arguments.screen + ". Give one of " + screens.join(", "));
   if (arguments.path.isEmpty() || arguments.picture.isEmpty() || !arguments.size.isValid())
-    return complain("Give a session, and the picture's file: --screenshot SCREEN -o x.png SESSION");
+    return complain("Session or picture file missing. Use --screenshot SCREEN -o x.png SESSION");
   const Photographer photographer(window, arguments.screen, arguments.picture, arguments.further);
   window.resize(arguments.size);
   window.show();
@@ -126,12 +126,12 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
 int main(int argc, char** argv) {
   evical::beRecordingServer(argc, argv);
 #ifdef __GLIBC__
-  mallopt(M_ARENA_MAX, 2);  // else each thread's freed memory stays its own
+  mallopt(M_ARENA_MAX, 2);  // otherwise memory freed by a thread is not reused by others
 #endif
   const bool without_display = doWithoutDisplay(argc, argv);
-  std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: jobs' ends are to be seen
+  std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: the exit codes of jobs are needed
   QApplication application(argc, argv);
-  std::setlocale(LC_NUMERIC, "C");  // files have decimal points, wherever the desktop is
+  std::setlocale(LC_NUMERIC, "C");  // files have decimal points in any locale
   QApplication::setApplicationName("evical");
   QApplication::setOrganizationName("evical");
   QApplication::setApplicationVersion(evical::kVersion);
@@ -139,8 +139,8 @@ int main(int argc, char** argv) {
   const Arguments arguments = parse(application);
   if (without_display && arguments.screen.isEmpty())
     return complain(
-        "There is no display to show a window on (DISPLAY and WAYLAND_DISPLAY are empty). `evical calibrate "
-        "SESSION` calibrates without one; over ssh, `ssh -X` lends yours.");
+        "There is no display for the window (DISPLAY and WAYLAND_DISPLAY are empty). Run `evical calibrate "
+        "SESSION`, which needs none, or connect with `ssh -X`.");
   applyTheme(application, arguments.appearance);
   QApplication::setWindowIcon(icon("calibrate", theme().accent));
   MainWindow window(evical::kVersion);

@@ -28,10 +28,10 @@ struct ExportArguments {
 constexpr const char* kAll = "all";
 
 std::string targetList() {
-  std::string text = "Targets, each written to a folder of its name:\n";
+  std::string text = "Targets, each written to a folder of the same name:\n";
   for (const ExportTarget& target : exportTargets())
     text += fmt::format("  {:<14} {}: {}\n", target.name, target.program, target.files);
-  return text + fmt::format("  {:<14} every one of them that can hold the result\n", kAll);
+  return text + fmt::format("  {:<14} all that can represent the result\n", kAll);
 }
 
 bool wantsAll(const std::vector<std::string>& targets) {
@@ -48,7 +48,7 @@ std::vector<std::string> namedTargets(const std::vector<std::string>& targets) {
   return all;
 }
 
-// The written files as the programs take them; false where one would not, or would take other numbers.
+// Reads the files as the target programs do; false if one would reject them or read other values.
 bool checkAll(const NamedResult& result, const std::vector<std::string>& targets,
               const std::filesystem::path& folder, const std::stop_token& stop) {
   bool same = true;
@@ -64,20 +64,20 @@ bool checkAll(const NamedResult& result, const std::vector<std::string>& targets
   return same;
 }
 
-// Those that somebody has exported before; all that are there, where none are named.
+// Checks the given targets of an earlier export; by default all in the folder.
 int checkEarlier(const ExportArguments& arguments, const NamedResult& result, const std::stop_token& stop) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(arguments.checked, ignored))
-    throw badInput(arguments.checked.string(), "is no folder of exported files",
-                   "Name the folder that 'evical export -o' was given");
+    throw badInput(arguments.checked.string(), "is not a folder of exported files",
+                   "Give the folder of 'evical export -o'");
   std::vector<std::string> targets = namedTargets(arguments.targets);
   if (targets.empty() || wantsAll(arguments.targets))
     for (targets.clear(); const ExportTarget& target : exportTargets())
       if (std::filesystem::is_directory(arguments.checked / target.name, ignored))
         targets.emplace_back(target.name);
   if (targets.empty())
-    throw badInput(arguments.checked.string(), "holds no exported files",
-                   "Each target's files are in a folder of its name; write them with --to and -o");
+    throw badInput(arguments.checked.string(), "does not contain exported files",
+                   "Write them with --to and -o: each target has a folder of its name");
   return checkAll(result, targets, arguments.checked, stop) ? kDone : kFailed;
 }
 
@@ -87,7 +87,7 @@ int writeAndCheck(const ExportArguments& arguments, const NamedResult& result, c
   writeExportedFiles(arguments.output, exported.files);
   for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
   for (const std::string& note : exported.notes) print("{}\n", note);
-  // Of all targets some refuse as a matter of course: those that are for two cameras, or need an IMU.
+  // With `all`, refusals are expected: some targets need two cameras or an IMU.
   const bool expected = wantsAll(arguments.targets);
   for (const std::string& refusal : exported.refused)
     if (expected)
@@ -99,14 +99,14 @@ int writeAndCheck(const ExportArguments& arguments, const NamedResult& result, c
 }
 
 int run(const ExportArguments& arguments) {
-  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
+  const std::stop_token stop = stopOnSignals();  // files are written completely or not at all
   namedTargets(arguments.targets);
   const NamedResult result = readResultYaml(resultFileOf(arguments.result));
   return arguments.checked.empty() ? writeAndCheck(arguments, result, stop)
                                    : checkEarlier(arguments, result, stop);
 }
 
-// What is written needs targets and a folder; what is only checked has its own.
+// Writing needs targets and a folder; a check without writing has its own folder.
 void checkTogether(const ExportArguments& arguments) {
   if (!arguments.checked.empty()) {
     if (!arguments.output.empty()) throw excludedOption("--check FOLDER", "--output");
@@ -120,14 +120,14 @@ void checkTogether(const ExportArguments& arguments) {
 
 void addExportCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<ExportArguments>();
-  Command command = app.command("export", "A result in other programs' formats");
-  command.option("RESULT", arguments->result, "result.yaml, or the folder that has it").required();
+  Command command = app.command("export", "Export a result in formats of other programs");
+  command.option("RESULT", arguments->result, "result.yaml, or the folder that contains it").required();
   command.option("--to", arguments->targets, "Targets, separated by commas, or all").separatedBy(',');
-  command.option("-o,--output", arguments->output, "Folder for the targets' folders");
+  command.option("-o,--output", arguments->output, "Output folder, with one folder per target");
   Argument check =
       command.option("--check", arguments->checked,
-                     "Read the written files back as each target's program does, and tell how far they "
-                     "are from RESULT; with a FOLDER in the place of -o, those written there before");
+                     "Read the written files back as each target's program does, and compare them "
+                     "with RESULT; with a FOLDER instead of -o, check the files written there before");
   check.valueOptional("[FOLDER]");
   command.footer(targetList());
   command.action([arguments, check, &exit_code] {

@@ -22,7 +22,7 @@ struct ImportArguments {
 };
 
 int run(const ImportArguments& arguments) {
-  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
+  const std::stop_token stop = stopOnSignals();  // files are written completely or not at all
   const ImportedFiles imported = importFiles(arguments.request, arguments.output);
   if (stop.stop_requested()) throw Cancelled{};
   writeFilesWhole(imported.files);
@@ -35,20 +35,18 @@ int run(const ImportArguments& arguments) {
 
 void addImportCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<ImportArguments>();
-  Command command = app.command("import", "A session or camera intrinsics from the files of other programs");
+  Command command =
+      app.command("import", "Import a session or camera intrinsics from files of other programs");
   command
-      .option(
-          "FILES", arguments->request.files,
-          "An eKalibr configuration; or Kalibr's target, imu and camchain files in any order; or files with "
-          "camera intrinsics alone, which become Evical's")
+      .option("FILES", arguments->request.files,
+              "eKalibr configuration; Kalibr's target, imu and camchain files in any order; or files with "
+              "camera intrinsics only")
       .required();
-  command.option("-o,--output", arguments->output, "The session, or the intrinsics").required();
-  command.option("--from", arguments->request.from,
-                 "Take the files for this program's: kalibr, ekalibr, ros");
-  command.option("--recording", arguments->request.recording,
-                 "The recording, where the files do not name it");
+  command.option("-o,--output", arguments->output, "File of the session, or of the intrinsics").required();
+  command.option("--from", arguments->request.from, "Program of the files: kalibr, ekalibr or ros");
+  command.option("--recording", arguments->request.recording, "Recording, if the files do not name it");
   command.option("--radius-m", arguments->request.radius_m,
-                 "Of the board's circles, where the files do not say it");
+                 "Radius of the board's circles in metres, if the files do not contain it");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

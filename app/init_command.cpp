@@ -36,9 +36,9 @@ std::vector<InspectedRecording> inspectAll(const InitArguments& arguments, const
 }
 
 int run(const InitArguments& arguments) {
-  // What people have filled in is not to be lost.
+  // Entries of the user must not be lost.
   if (isThere(arguments.output))
-    throw badInput(arguments.output.string(), "exists already", "Give another name, or remove it");
+    throw badInput(arguments.output.string(), "exists already", "Choose another name, or remove the file");
   Console console(arguments.quiet);
   const std::vector<InspectedRecording> recordings = inspectAll(arguments, {console, stopOnSignals()});
   const auto folder =
@@ -56,13 +56,13 @@ int run(const InitArguments& arguments) {
 
 void addInitCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<InitArguments>();
-  Command command = app.command("init", "A session to fill in, from what recordings hold");
+  Command command = app.command("init", "Write a session to fill in, from the streams of recordings");
   command
       .option("RECORDING", arguments->recordings,
-              "Any that `evical inspect` can read; further ones for sensors that have files of their own")
+              "Recordings in any format that `evical inspect` reads; several if sensors have separate files")
       .required();
-  command.option("-o,--output", arguments->output, "The session; never one that is there already").required();
-  command.flag("--quiet", arguments->quiet, "Only the file's name and errors");
+  command.option("-o,--output", arguments->output, "Session file; it must not exist yet").required();
+  command.flag("--quiet", arguments->quiet, "Print only the file's name and errors");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -66,9 +66,9 @@ void printFrames(const StreamSummary& stream) {
   if (stream.longest_exposure_s > 0.0)
     print("    {:<22} {:.3f} .. {:.3f} ms\n", "exposure", 1e3 * stream.shortest_exposure_s,
           1e3 * stream.longest_exposure_s);
-  const char* use = !info.readable ? "nothing here: they are only listed"
-                    : info.timed   ? "pictures of a frame camera, with their times"
-                                   : "a camera's intrinsics only, for want of times";
+  const char* use = !info.readable ? "nothing (only listed)"
+                    : info.timed   ? "calibration of a frame camera"
+                                   : "intrinsics only (no times)";
   print("    {:<22} {}\n", "good for", use);
 }
 
@@ -78,7 +78,7 @@ void printStream(const StreamSummary& stream, bool checksum) {
   const bool frames = info.type == StreamType::Frames;
   if (frames) printFrames(stream);
   if (info.type != StreamType::Events && info.type != StreamType::Imu && !frames) {
-    // Trigger streams are listed where a format has room for them.
+    // Trigger streams are listed if the format can contain them.
     if (stream.count > 0 || info.type == StreamType::Triggers)
       print("    {:<22} {}\n", "messages", stream.count);
     return;
@@ -118,14 +118,13 @@ void inspect(const InspectArguments& arguments) {
 
 void addInspectCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<InspectArguments>();
-  Command command = app.command("inspect", "Show what a recording holds, and what is wrong with it.");
+  Command command = app.command("inspect", "List the streams and faults of a recording");
   command
-      .option(
-          "recording", arguments->recording,
-          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, NumPy, text, pictures.")
+      .option("recording", arguments->recording,
+              "File or folder in any supported format: bag, AEDAT, RAW, HDF5, NumPy, text, pictures")
       .required();
-  command.flag("--json", arguments->json, "Print JSON instead of text.");
-  command.flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");
+  command.flag("--json", arguments->json, "Print JSON instead of text");
+  command.flag("--checksum", arguments->checksum, "Add sums over all events, for comparisons of readers");
   command.action([arguments, &exit_code] {
     inspect(*arguments);
     exit_code = 0;

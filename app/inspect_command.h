@@ -1,11 +1,11 @@
-// `evical inspect RECORDING [--json] [--checksum]`: what a recording holds, and what is wrong with it.
+// `evical inspect RECORDING [--json] [--checksum]`: lists the streams and faults of a recording.
 #pragma once
 
 namespace evical {
 
 class Command;
 
-// As the functions of commands.h: throws what main() turns into an exit code, else sets `exit_code` to 0.
+// Like the functions of commands.h: main() converts exceptions into exit codes; otherwise `exit_code` is 0.
 void addInspectCommand(Command& app, int& exit_code);
 
 }  // namespace evical

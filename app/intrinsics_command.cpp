@@ -26,7 +26,7 @@ struct IntrinsicsArguments : SessionArguments {
   std::string camera;
 };
 
-// The cameras that were asked for: one by name, or all.
+// Indices of the requested cameras: one by name, or all.
 std::vector<std::size_t> chosenCameras(const Session& session, const std::string& name) {
   std::vector<std::size_t> chosen;
   std::string known;
@@ -35,11 +35,11 @@ std::vector<std::size_t> chosenCameras(const Session& session, const std::string
     known += (known.empty() ? "" : ", ") + session.cameras[k].name;
   }
   if (chosen.empty())
-    throw badInput("--camera " + name, "is no camera of the session", "There are: " + known);
+    throw badInput("--camera " + name, "is not a camera of the session", "Choose one of: " + known);
   return chosen;
 }
 
-// A stream that is missing is missed now, not after the other cameras' minutes.
+// Reports a missing stream at once, not after minutes of work on other cameras.
 void checkStreams(Session session) {
   session.imus.clear();
   SessionRecording{session};
@@ -70,7 +70,7 @@ int run(const IntrinsicsArguments& arguments) {
   const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
   Found found;
-  std::optional<CalibrationError> failure;  // of the first camera that could not be calibrated
+  std::optional<CalibrationError> failure;  // of the first camera that failed
   for (const std::size_t camera : cameras) {
     try {
       const IntrinsicsRun one = calibrateIntrinsics(session, camera, context);
@@ -97,7 +97,7 @@ void addIntrinsicsCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<IntrinsicsArguments>();
   Command command = app.command("intrinsics", "Calibrate the intrinsics of a session's cameras");
   addSessionArguments(command, *arguments);
-  command.option("--camera", arguments->camera, "Only this one of the session's cameras");
+  command.option("--camera", arguments->camera, "Name of the only camera to calibrate; by default all");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -33,7 +33,7 @@ template <class Unit, class Words>
 std::optional<Unit> unitFrom(const std::string& text, const Words& words) {
   if (text.empty()) return std::nullopt;
   const auto found = std::find(words.begin(), words.end(), text);
-  return static_cast<Unit>(found - words.begin());  // CLI11 has checked it
+  return static_cast<Unit>(found - words.begin());  // already checked by CLI11
 }
 
 MaintainInput inputFrom(const MaintainArguments& arguments) {
@@ -42,8 +42,8 @@ MaintainInput inputFrom(const MaintainArguments& arguments) {
     const auto [name, value] = splitAtEquals("--set", setting);
     setOption(options, name, value);
     if (!nameInTables(name).starts_with("maintain."))
-      throw badInput("--set " + name, "has no effect here: only options of the group maintain have",
-                     "Remove it; `evical options --all` lists those that it takes");
+      throw badInput("--set " + name, "has no effect: the command uses only options of the group maintain",
+                     "Remove it; `evical options --all` lists the options of the group");
   }
   validate(options);
   const std::vector<std::filesystem::path> logs(arguments.logs.begin(), arguments.logs.end());
@@ -71,11 +71,11 @@ int run(const MaintainArguments& arguments) {
 void addUnits(Command& command, MaintainArguments& arguments) {
   command
       .option("--acceleration-unit", arguments.acceleration_unit,
-              "What specific forces are in, where logs do not say: m/s^2, g or -g")
+              "Unit of specific forces in logs that do not state it: m/s^2, g or -g")
       .oneOf(std::vector<std::string>(kAccelerationUnits.begin(), kAccelerationUnits.end()));
   command
       .option("--angular-rate-unit", arguments.angular_rate_unit,
-              "What angular rates are in, where logs do not say: rad/s or deg/s")
+              "Unit of angular rates in logs that do not state it: rad/s or deg/s")
       .oneOf(std::vector<std::string>(kAngularRateUnits.begin(), kAngularRateUnits.end()));
 }
 
@@ -85,24 +85,23 @@ void addMaintainCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<MaintainArguments>();
   Command command = app.command(
       "maintain",
-      "IMUs over time: have they changed since the calibration, what, and when? No board is needed");
+      "Check IMUs over time from logs without a board: whether, when and by how much they have changed");
   command
       .option("LOG", arguments->logs,
-              "Logs or recordings with IMU samples, in any format: of several IMUs, or following each other")
+              "Logs or recordings with IMU samples, in any format, of several IMUs or successive")
       .required();
   command.option("--result", arguments->result, "Folder of the old calibration, or its result.yaml")
       .required();
-  addAssessmentArguments(command, *arguments, "Folder for maintenance.yaml and report.html",
-                         "the group is maintain")
+  addAssessmentArguments(command, *arguments, "Folder for maintenance.yaml and report.html", "group maintain")
       .required();
   command
       .option("--imu", arguments->imus,
-              "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell; "
-              "with a stream for each sensor NAME='GYROSCOPE + ACCELEROMETER'")
+              "Stream or log of an IMU of the old result as NAME=STREAM, if the names differ; "
+              "for separate streams NAME='GYROSCOPE + ACCELEROMETER'")
       .repeated();
   command.option(
       "--trajectory", arguments->trajectory,
-      "Poses of the reference IMU from elsewhere: trajectory.csv of a calibration, or TUM's format");
+      "Poses of the reference IMU from another system: trajectory.csv of a calibration, or TUM's format");
   addUnits(command, *arguments);
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -1,5 +1,5 @@
-// The manual: a page for the program and one for each command, and the completion of words in bash, all made from
-// what --help says. The build calls it; people have no use for it, so that help does not name it.
+// The manual: pages for the program and each command, and bash completion, generated from the definitions of
+// --help. For the build only, so help does not list it.
 #include "app/bash_completion.h"
 #include "app/command_line.h"
 #include "app/commands.h"
@@ -55,7 +55,7 @@ std::string synopsisOf(const std::string& program, const CLI::App& app) {
   return text + " [OPTIONS]" + arguments;
 }
 
-// The options of a calibration, as `evical options --all` has them.
+// Options of a calibration, in the order of `evical options --all`.
 ManualSection calibrationOptions() {
   ManualSection section{"Options of a calibration", "For --set and for the part options of a session.", {}};
   for (const OptionRow& row : documentedOptions()) {

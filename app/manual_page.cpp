@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-// Characters that roff takes for its own; hyphens are minus signs, so that people can copy options.
+// Escapes the special characters of roff; hyphens become minus signs, so that options can be copied.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char letter : text) {
@@ -37,7 +37,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-// A line of text; one that begins as a request does is none.
+// A line of text; a leading full stop is escaped, as it would begin a request.
 std::string textLine(std::string_view line) {
   return (line.starts_with('.') ? "\\&" : "") + escaped(line) + "\n";
 }
@@ -48,7 +48,7 @@ std::string upperCase(std::string text) {
   return text;
 }
 
-// Lines that begin with a blank are a table, which stays as it is; others are filled.
+// Lines that begin with a blank are a table and are not filled; others are.
 std::string paragraphs(std::string_view text) {
   std::string result;
   bool in_table = false;

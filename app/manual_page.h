@@ -1,4 +1,4 @@
-// Manual pages (man 1): what help says, as roff. Knows neither CLI11 nor Qt, since both programs have a page.
+// Manual pages (man 1): help texts as roff. Independent of CLI11 and Qt, since both programs have a page.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace evical {
 
-// "-o,--output", "FOLDER", what it is for.
+// "-o,--output", "FOLDER", the description.
 struct ManualEntry {
   std::string names, value, text;
 };
 
-// Text, whose lines stay lines, then entries; either may be empty.
+// Text with its line breaks, then entries; either may be empty.
 struct ManualSection {
   std::string title, text;
   std::vector<ManualEntry> entries;
@@ -23,10 +23,10 @@ struct ManualPage {
   std::vector<std::string> see_also;  // other pages' names
 };
 
-// Ended by a full stop, if it is none yet.
+// Adds a full stop if it is missing.
 std::string sentence(std::string text);
 
-// The page without a date: the same program gives the same bytes.
+// Contains no date, so that the same program gives the same bytes.
 std::string manualPage(const ManualPage& page, const std::string& version);
 
 }  // namespace evical

@@ -7,7 +7,7 @@
 
 namespace evical {
 
-// CLI11 tells type and checks in one word: "TEXT:{dark,bright}", "INT:INT in [1 - 256]".
+// CLI11 combines type and checks: "TEXT:{dark,bright}", "INT:INT in [1 - 256]".
 OptionValue valueOf(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   OptionValue value{type.substr(0, type.find(':')), "", {}};

@@ -1,4 +1,4 @@
-// What an option of the command line takes, as people read it.
+// Value of a command line option in readable form.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace evical {
 
 struct OptionValue {
   std::string word;   // "INT", "TEXT", "dark|bright"
-  std::string range;  // "1 to 256"; empty where it has none
+  std::string range;  // "1 to 256"; empty without a range
   std::vector<std::string> choices;
 };
 OptionValue valueOf(const CLI::Option& option);

@@ -15,11 +15,13 @@ void addOptionsCommand(Command& app, int& exit_code) {
     bool all = false, tuning = false, markdown = false, yaml = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  Command command = app.command("options", "Options that people turn: name, default, range, unit, help");
-  command.flag("--all", arguments->all, "Those for who knows the method, too");
-  command.flag("--tuning", arguments->tuning, "Those for tests and developers, too").hide();
-  const Argument markdown = command.flag("--markdown", arguments->markdown, "As docs/options.md has it");
-  command.flag("--yaml", arguments->yaml, "As config/default.yaml has it").excludes(markdown);
+  Command command = app.command("options", "List the common options: name, default, range, unit, help");
+  command.flag("--all", arguments->all, "Include the options for experts");
+  command.flag("--tuning", arguments->tuning, "Include the options for tests and developers").hide();
+  const Argument markdown =
+      command.flag("--markdown", arguments->markdown, "Print Markdown, the content of docs/options.md");
+  command.flag("--yaml", arguments->yaml, "Print YAML, the content of config/default.yaml")
+      .excludes(markdown);
   command.action([arguments, &exit_code] {
     print("{}", arguments->markdown ? optionMarkdown()
                 : arguments->yaml   ? optionYaml()

@@ -30,7 +30,8 @@ void printError(std::string_view text) {
 void holdStandardStreams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
-    // The lowest that is free is this one. Output that nobody receives is lost output: read only.
+    // open() returns the lowest free descriptor, which is this one. Read-only, so that writing to it fails
+    // visibly.
     static_cast<void>(::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));
   }
 }
@@ -40,7 +41,7 @@ std::string lostOutput() {
   if (std::fflush(stdout) != 0 && lostBecause() == 0) lostBecause() = errno;
   if (lostBecause() == 0 && std::cout.good() && std::ferror(stdout) == 0) return {};
   return std::string("standard output cannot be written: ") +
-         (lostBecause() != 0 ? std::strerror(lostBecause()) : "not all of it went out");
+         (lostBecause() != 0 ? std::strerror(lostBecause()) : "some output was lost");
 }
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// What goes to the terminal, or where people send it. Neither a closed nor a full stream ends the program.
+// Output to the terminal or a pipe. A closed or full stream does not end the program.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,21 +9,21 @@
 
 namespace evical {
 
-// Standard output; what cannot be written is remembered (lostOutput).
+// Standard output; write errors are recorded (lostOutput).
 void printText(std::string_view text);
 template <class... Arguments>
 void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   printText(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-// Standard error; what cannot be written there has no other place.
+// Standard error; write errors are ignored.
 void printError(std::string_view text);
 
-// Descriptors that are closed would be given to the next files that are opened, and those be written to by
-// whoever prints. Call first.
+// Opens closed standard descriptors: the next opened files would get them and receive printed text.
+// Call first.
 void holdStandardStreams();
 
-// Brings everything out, and says why not all of it could be; empty if it was.
+// Flushes everything; returns the reason if output was lost, else nothing.
 std::string lostOutput();
 
 }  // namespace evical

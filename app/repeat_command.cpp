@@ -40,13 +40,14 @@ int run(const RepeatArguments& arguments) {
 
 void addRepeatCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<RepeatArguments>();
-  Command command = app.command("repeat", "Several recordings of one rig: each alone, then all together");
+  Command command =
+      app.command("repeat", "Calibrate several recordings of one rig, each alone, then together");
   command
       .option("SESSION", arguments->sessions,
-              "Sessions of the same sensors and board, or one that lists recordings")
+              "Sessions with the same sensors and board, or one that lists several recordings")
       .required();
   addAssessmentArguments(command, *arguments, "Folder for the results",
-                         "the groups are those of calibrate, and check, of all sessions")
+                         "groups of calibrate, and check, for all sessions")
       .required();
   addThreads(command, *arguments);
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });

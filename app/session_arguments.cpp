@@ -14,11 +14,11 @@ void addSessionArguments(Command& command, SessionArguments& arguments) {
   command.option("-o,--output", arguments.output, "Folder for the results").required();
   command
       .option("--set", arguments.settings,
-              "group.option=value, see 'evical options'; imus.NAME.KEY=value of units and axes; or "
+              "group.option=value, see 'evical options'; imus.NAME.KEY=value for units and axes; or "
               "time_range_s=[begin,end]")
       .repeated();
   command.option("--threads", arguments.threads, "Threads of the optimisation").between(1, 256);
-  command.flag("--quiet", arguments.quiet, "Only the result and errors");
+  command.flag("--quiet", arguments.quiet, "Print only the result and errors");
 }
 
 void applySettings(const std::vector<std::string>& settings, Session& session) {

@@ -14,22 +14,21 @@ class Command;
 struct SessionArguments {
   std::string session, output;
   std::vector<std::string> settings;
-  int threads = 0;  // 0: as the options say
+  int threads = 0;  // 0: from the options
   bool quiet = false;
-  std::string
-      detections;       // of calibrate: a folder of an earlier run to start from; empty: from the recording
-  std::string profile;  // of calibrate: a file for where its time goes; empty: none
+  std::string detections;  // for calibrate: folder of an earlier run with detections; empty: detect again
+  std::string profile;     // for calibrate: file of the profile; empty: none
 };
 
 void addSessionArguments(Command& command, SessionArguments& arguments);
 
-// Each group.option=value into the session.
+// Applies each group.option=value to the session.
 void applySettings(const std::vector<std::string>& settings, Session& session);
 
 // The session with the settings applied.
 Session sessionFrom(const SessionArguments& arguments);
 
-// The same command with what mends its result.
+// The same command with the option that repairs its result.
 std::string tryText(const SessionArguments& arguments, const Repair& repair);
 
 }  // namespace evical

@@ -24,15 +24,17 @@ void addSimulateCommand(Command& app, int& exit_code) {
     bool quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  Command command = app.command("simulate", "A recording with known truth, and a session file that fits it");
-  command.option("scenario", arguments->scenario, "What to simulate, e.g. config/scenarios/davis346.yaml")
+  Command command =
+      app.command("simulate", "Simulate a recording with known truth, and write a session for it");
+  command.option("scenario", arguments->scenario, "Scenario file, e.g. config/scenarios/davis346.yaml")
       .required();
   command.option("-o,--output", arguments->folder, "Folder to write").required();
   std::string formats;
   for (const RecordingFormat& format : recordingFormats())
     formats += fmt::format("{}{}", formats.empty() ? "" : ", ", format.name);
-  command.option("--format", arguments->format, "By default the scenario's; one of " + formats);
-  command.flag("--quiet", arguments->quiet, "No progress");
+  command.option("--format", arguments->format,
+                 "Output format, by default the scenario's; one of " + formats);
+  command.flag("--quiet", arguments->quiet, "Print no progress");
   command.action([arguments, &exit_code] {
     const bool drive = isDriveScenario(arguments->scenario);
     const Scenario scenario = drive ? Scenario{} : readScenario(arguments->scenario);

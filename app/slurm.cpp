@@ -26,7 +26,7 @@ std::filesystem::path submittedOf(const std::filesystem::path& folder) {
   return folder / "jobs" / "slurm.yaml";
 }
 
-// A file in a line of #SBATCH, where a per cent sign begins a pattern, as in `name`.
+// Escapes a file name for a line of #SBATCH, where a per cent sign begins a pattern such as `name`.
 std::string sbatchPath(const std::filesystem::path& folder, const std::string& name) {
   std::string text = "\"";
   for (const char c : folder.string()) {
@@ -41,7 +41,7 @@ std::string scriptText(const Batch& batch, const SlurmRequest& request,
   std::string text = "#!/bin/bash\n#SBATCH --job-name=evical\n";
   text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --cpus-per-task={}\n", names.size() - 1, batch.threads);
   if (batch.memory_limit_mb > 0) text += fmt::format("#SBATCH --mem={}M\n", batch.memory_limit_mb);
-  // A node that is lost gives its tasks back; what they print goes on in the same file.
+  // Tasks of a lost node are queued again; their output is appended to the same file.
   text += fmt::format("#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --output={}\n",
                       sbatchPath(request.folder / "jobs", "slurm-%a.txt"));
   text += "jobs=(";
@@ -58,7 +58,7 @@ std::string contentOf(const std::filesystem::path& file) {
   return text;
 }
 
-// What a tool of Slurm's says, or nothing where it fails; then `said` has its words.
+// Output of a Slurm tool, or nothing if it fails; `said` then receives its message.
 std::optional<std::string> askSlurm(std::vector<std::string> command, const std::filesystem::path& folder,
                                     std::string* said = nullptr) {
   const std::filesystem::path file = folder / "jobs" / (command.front() + ".txt");
@@ -78,7 +78,7 @@ std::vector<std::string> unsettledJobs(const Batch& batch, const std::filesystem
   return names;
 }
 
-// The id is the last number: sites greet above it, and federations add ";cluster".
+// The id is the last number: some sites print a greeting before it, and federations append ";cluster".
 std::string idFrom(const std::string& answer) {
   const std::string line = answer.substr(answer.rfind('\n') + 1);
   return line.substr(0, line.find(';'));
@@ -111,8 +111,8 @@ std::string submitToSlurm(const Batch& batch, const SlurmRequest& request) {
   std::string said;
   const std::optional<std::string> answer = askSlurm(std::move(command), request.folder, &said);
   if (!answer)
-    throw calibrationFailed("sbatch", said.empty() ? "refused the job" : said,
-                            fmt::format("Mend --slurm-options, or {}", script.string()));
+    throw calibrationFailed("sbatch", said.empty() ? "rejected the job" : said,
+                            fmt::format("Correct --slurm-options, or {}", script.string()));
   const std::string id = idFrom(*answer);
   std::string yaml = fmt::format("evical_slurm: 1\nid: {}\njobs:\n", yamlText(id));
   for (const std::string& name : names) yaml += fmt::format("  - {}\n", yamlText(name));
@@ -125,7 +125,7 @@ void addQueueStates(const Batch& batch, const std::filesystem::path& folder, std
   try {
     states = queueStates(folder);
   } catch (const CalibrationError&) {
-    return;  // not submitted, or not on a machine that knows
+    return;  // not submitted, or no access to the queue
   }
   for (std::size_t k = 0; k < outcomes.size(); ++k) {
     const auto state = states.find(batch.jobs[k].name);

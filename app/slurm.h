@@ -1,5 +1,5 @@
-// A batch over a cluster by Slurm: an array job whose tasks each run one job of the batch. Slurm schedules; we write the
-// script, submit it, and ask how far it is.
+// A batch on a cluster with Slurm: an array job with one task per job of the batch. Writes the script,
+// submits it, and queries its state.
 #pragma once
 
 #include "core/pipeline/batch/batch_jobs.h"
@@ -14,14 +14,14 @@ namespace evical {
 
 struct SlurmRequest {
   std::filesystem::path program, folder;  // both absolute
-  std::string options;                    // for sbatch, as a shell would split them
+  std::string options;                    // for sbatch, separated by blanks
 };
 
-// Writes FOLDER/slurm.sh and submits it; jobs that are settled are left out. What sbatch said. Throws CalibrationError
-// (CalibrationFailed) where it is not there or refuses, in its words; the script stays.
+// Writes FOLDER/slurm.sh and submits it, without the settled jobs. Returns the message of sbatch. Throws
+// CalibrationError (CalibrationFailed) with its message if it is missing or refuses; the script remains.
 std::string submitToSlurm(const Batch& batch, const SlurmRequest& request);
 
-// Of jobs that have not ended what the queue says of them, where the batch was submitted and squeue answers.
+// Adds the queue's state to unfinished jobs, if the batch was submitted and squeue answers.
 void addQueueStates(const Batch& batch, const std::filesystem::path& folder, std::span<JobOutcome> outcomes);
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-# Libraries that bring neither a CMake package nor a find module, as imported targets evical_external::NAME. The build includes this,
-# and so does the installed EvicalConfig.cmake. What is missing is listed in evical_missing_libraries.
+# Libraries without a CMake package or a find module, as imported targets evical_external::NAME. The build and the installed
+# EvicalConfig.cmake include this. Missing libraries are listed in evical_missing_libraries.
 set(evical_missing_libraries "")
 
 # evical_find_library(NAME HEADER LIBRARIES... [SUFFIXES folders...])
@@ -20,7 +20,7 @@ endmacro()
 
 evical_find_library(lz4 lz4frame.h lz4)
 evical_find_library(zstd zstd.h zstd)
-# Debian has several builds of HDF5; this is the serial one.
+# The serial build of HDF5; Debian has several builds.
 evical_find_library(hdf5 hdf5.h hdf5_serial hdf5 SUFFIXES hdf5/serial)
 evical_find_library(blosc blosc.h blosc)
 evical_find_library(lzf liblzf/lzf.h lzf)

@@ -1,4 +1,4 @@
-# Target docs: pages of the public headers, by Doxygen, in <build>/docs/api. Not part of all.
+# Target docs: Doxygen pages of the public headers, in <build>/docs/api. Not part of target all.
 find_program(EVICAL_DOXYGEN doxygen)
 if(EVICAL_DOXYGEN)
   include(public_headers)
@@ -14,7 +14,7 @@ else()
                          COMMAND "${CMAKE_COMMAND}" -E false VERBATIM)
 endif()
 
-# Target docs_site: docs/ as a site, by MkDocs, in <build>/docs/site. Not part of all.
+# Target docs_site: MkDocs site of docs/, in <build>/docs/site. Not part of target all.
 find_program(EVICAL_MKDOCS mkdocs)
 if(EVICAL_MKDOCS)
   set(evical_site "${CMAKE_BINARY_DIR}/docs/site")

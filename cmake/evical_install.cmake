@@ -1,12 +1,12 @@
-# What `cmake --install` puts where: the programs, core's libraries with their public headers, and the package that find_package(Evical)
-# finds. Included once all of core is declared.
+# Files and destinations of `cmake --install`: the programs, core's libraries with their public headers, and the package for
+# find_package(Evical). Included after all of core is declared.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 get_property(layers GLOBAL PROPERTY EVICAL_LAYERS)
 list(TRANSFORM layers PREPEND evical_)
 
-# All layers in one name.
+# All layers under one name.
 add_library(evical_core INTERFACE)
 add_library(evical::core ALIAS evical_core)
 set_target_properties(evical_core PROPERTIES EXPORT_NAME core)
@@ -24,7 +24,7 @@ install(FILES "${CMAKE_BINARY_DIR}/EvicalConfig.cmake" "${CMAKE_BINARY_DIR}/Evic
               cmake/EvicalLibraries.cmake
         DESTINATION "${package_folder}" COMPONENT development)
 
-# Looked up when installing, so that the list is never old.
+# Determined at install time, so that the list is never outdated.
 install(CODE "include(\"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\")
   evical_public_headers(\"${CMAKE_SOURCE_DIR}\" headers)
   foreach(header IN LISTS headers)

@@ -1,4 +1,4 @@
-# Manual pages and bash completion, which the programs write themselves, out of what their --help says.
+# Manual pages and bash completion, which the programs generate from their --help.
 set(manual "${CMAKE_BINARY_DIR}/manual")
 add_custom_command(OUTPUT "${manual}/completions/evical"
   COMMAND "${CMAKE_COMMAND}" -E rm -rf "${manual}/man1" "${manual}/completions"
@@ -6,7 +6,7 @@ add_custom_command(OUTPUT "${manual}/completions/evical"
   DEPENDS evical COMMENT "Manual pages and completion of evical" VERBATIM)
 set(manual_files "${manual}/completions/evical")
 if(EVICAL_GUI)
-  # In a folder of its own: a page is not to outlive what it tells of.
+  # A separate folder, since man1 is removed and regenerated, without pages of commands that no longer exist.
   file(MAKE_DIRECTORY "${manual}/desktop/man1")
   add_custom_command(OUTPUT "${manual}/desktop/man1/evical-gui.1"
     COMMAND "${CMAKE_COMMAND}" -E env QT_QPA_PLATFORM=offscreen "$<TARGET_FILE:evical-gui>" --manual

@@ -1,4 +1,4 @@
-# Debian packages, which packaging/packages.sh makes. A component is a package; python3-evical is one where the
+# Debian packages, which packaging/packages.sh builds. Each component is a package; python3-evical is built if the
 # build has a component `python`. Included last, when all components are known.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME evical)
@@ -7,7 +7,7 @@ set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY "${CMAKE_BINARY_DIR}/packages")
 set(CPACK_STRIP_FILES ON)
-# Checks the tools, sets the time that files get; then what install() leaves open: compression, licences of what is linked.
+# Checks the tools and sets the files' time, then adds what install() does not do: compression, licences of linked libraries.
 set(CPACK_PROJECT_CONFIG_FILE "${CMAKE_SOURCE_DIR}/packaging/debian/before_packing.cmake")
 set(CPACK_PRE_BUILD_SCRIPTS "${CMAKE_SOURCE_DIR}/packaging/debian/finish_packages.cmake")
 set(CPACK_EVICAL_SOURCE "${CMAKE_SOURCE_DIR}")
@@ -30,7 +30,7 @@ function(evical_package component name section summary)
   set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} "${component}" PARENT_SCOPE)
 endfunction()
 
-set(about "Evical finds rotation, translation and time offset between event cameras,"
+set(about "Evical estimates rotation, translation and time offset of event cameras,"
           "frame cameras and IMUs, each with a standard deviation, from one recording"
           "of a printed board that is moved by hand." "")
 set(CPACK_COMPONENTS_ALL "")
@@ -38,7 +38,7 @@ evical_package(command_line evical science "calibrates event cameras and IMUs (c
   ${about} "This package has the command line, which needs no display.")
 evical_package(development libevical-dev libdevel "calibrates event cameras and IMUs (library)"
   ${about} "This package has the C++ library: headers, static libraries, and the package" "that CMake finds as Evical.")
-# What find_package(Evical) looks for: cmake/EvicalConfig.cmake.in.
+# Libraries that find_package(Evical) requires: cmake/EvicalConfig.cmake.in.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libapriltag-dev, libblosc-dev, libbz2-dev, libceres-dev (>= 2.1), libeigen3-dev (>= 3.4), \
 libfmt-dev, libhdf5-dev, liblz4-dev, liblzf-dev, libopencv-dev, libpng-dev, libsqlite3-dev, libyaml-cpp-dev, libzstd-dev, \

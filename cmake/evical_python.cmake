@@ -1,6 +1,6 @@
-# Whether the Python module is built (EVICAL_PYTHON), and for which Python: the system's own, since that is the one whose packages it
-# is installed beside. Included before core, whose libraries must then be fit for a shared object.
-set(EVICAL_PYTHON_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "The Python that the module is built and tested for")
+# EVICAL_PYTHON builds the Python module, for the system's Python, since it is installed next to that one's packages.
+# Included before core, whose libraries must then be position-independent.
+set(EVICAL_PYTHON_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "Python interpreter for which the module is built and tested")
 set(evical_python_default OFF)
 if(EXISTS "${EVICAL_PYTHON_EXECUTABLE}" AND NOT EVICAL_FUZZ AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   set(Python_EXECUTABLE "${EVICAL_PYTHON_EXECUTABLE}")
@@ -12,6 +12,6 @@ if(EXISTS "${EVICAL_PYTHON_EXECUTABLE}" AND NOT EVICAL_FUZZ AND NOT CMAKE_CXX_FL
 endif()
 option(EVICAL_PYTHON "Build the Python module (needs pybind11, NumPy and Python's headers)" ${evical_python_default})
 if(EVICAL_PYTHON AND NOT evical_python_default)
-  message(FATAL_ERROR "EVICAL_PYTHON needs pybind11, NumPy and the headers of ${EVICAL_PYTHON_EXECUTABLE}, and no sanitizer: "
+  message(FATAL_ERROR "EVICAL_PYTHON needs pybind11, NumPy and the headers of ${EVICAL_PYTHON_EXECUTABLE}, and a build without sanitizers: "
                       "apt-get install pybind11-dev python3-dev python3-numpy, or -DEVICAL_PYTHON=OFF")
 endif()

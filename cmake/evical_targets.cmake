@@ -1,4 +1,4 @@
-# What every target shares: language level, warnings, ccache; and the functions that make libraries and tests.
+# Common settings of all targets: language level, warnings, ccache; and the functions that define libraries and tests.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -6,20 +6,20 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-# Release builds: -O1, and -O3 for what processes recordings (evical_optimise). Reports, commands and windows gain nothing from
-# -O3 and take longer to compile.
+# Release builds: -O1, and -O3 for code that processes recordings (evical_optimise). Reports, commands and windows gain nothing
+# from -O3 and take longer to compile.
 set(CMAKE_CXX_FLAGS_RELEASE "-O1 -fno-math-errno -fno-trapping-math")
 
 find_program(EVICAL_CCACHE ccache)
 if(EVICAL_CCACHE)
-  # What ccache asks for to take precompiled headers into account; and paths as seen from the build folder, so that another
-  # checkout (a second work tree, CI) takes what this one has compiled; and precompiled headers are read once, not for each source.
+  # Settings of ccache: those that precompiled headers require; paths relative to the build folder, so that another checkout
+  # (a second work tree, CI) reuses this one's objects; precompiled headers are read once, not for each source.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}"
       CCACHE_NOHASHDIR=1 CCACHE_INODECACHE=1 "${EVICAL_CCACHE}")
 endif()
 
-# moc reads every header that a source includes, for macros that none of ours defines: with nowhere to look for them it says the
-# same in a fortieth of the time.
+# moc reads every included header for macros that none of our headers defines. Without include folders its output is the
+# same, in a fortieth of the time.
 find_package(Qt6 QUIET COMPONENTS Core)
 if(UNIX AND TARGET Qt6::moc)
   get_target_property(evical_moc Qt6::moc IMPORTED_LOCATION)
@@ -32,7 +32,7 @@ function(evical_use_moc target)
   endif()
 endfunction()
 
-# It links the tests in a tenth of the time that the usual linker needs.
+# This linker needs a tenth of the default linker's time for the tests.
 find_program(EVICAL_MOLD mold)
 if(EVICAL_MOLD AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12.1))
   add_link_options(-fuse-ld=mold)
@@ -44,10 +44,10 @@ find_package(Eigen3 3.4 REQUIRED)
 add_library(evical_warnings INTERFACE)
 target_compile_options(evical_warnings INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # Out of precompiled headers GCC 12 raises these falsely inside std::string (its bugs 105329 and 105651), and GCC 14 the last
+  # With precompiled headers, GCC 12 raises these falsely inside std::string (its bugs 105329 and 105651), and GCC 14 the last
   # one inside Eigen's views by indices.
   target_compile_options(evical_warnings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
-  # At -O1 it loses sight of what std::optional and Eigen's small matrices hold.
+  # At -O1 GCC cannot track the contents of std::optional and of Eigen's small matrices.
   target_compile_options(evical_warnings INTERFACE $<$<CONFIG:Release>:-Wno-maybe-uninitialized>)
 endif()
 if(EVICAL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -66,9 +66,9 @@ function(evical_optimise target)
 endfunction()
 
 # evical_unite(TARGET [BATCH]): with EVICAL_UNITY several sources are compiled as one unit, since most of a source's compile time
-# goes into headers and templates that its neighbours need, too. No two sources of a folder may therefore define the same name,
-# not even in unnamed namespaces. Larger batches than 12 sources gain nothing: the more templates there are, the longer GCC takes
-# for each. Where most of them are Eigen's, 7 is better.
+# goes into headers and templates that its neighbours need, too. Therefore no two sources of a folder may define the same name,
+# not even in unnamed namespaces. Batches of more than 12 sources gain nothing: GCC's time per template grows with their number.
+# If most templates are Eigen's, 7 is better.
 function(evical_unite target)
   if(EVICAL_UNITY)
     set(batch 12)
@@ -79,9 +79,9 @@ function(evical_unite target)
   endif()
 endfunction()
 
-# evical_precompile(NAME HEADERS... [LIBS...]): headers that many sources of one kind begin with, compiled once. What
-# uses them says so by evical_use_precompiled(TARGET NAME), with the same libraries, whose macros must agree. Unity units
-# need none: they read each header once for many sources.
+# evical_precompile(NAME HEADERS... [LIBS...]): headers that many sources of one kind begin with, compiled once. A target uses
+# them by evical_use_precompiled(TARGET NAME). It must link the same libraries, since macros must agree. Unity units do not need
+# this: they read each header once for many sources.
 function(evical_precompile name)
   if(EVICAL_UNITY)
     return()
@@ -100,8 +100,8 @@ function(evical_use_precompiled target name)
   endif()
 endfunction()
 
-# evical_make_shareable(TARGET): its code goes into the Python module, too, which is a shared object. Without interposition that costs
-# nothing elsewhere.
+# evical_make_shareable(TARGET): position-independent code, since it is also linked into the Python module, a shared object.
+# Without interposition this has no cost elsewhere.
 function(evical_make_shareable target)
   if(EVICAL_PYTHON)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -122,8 +122,8 @@ foreach(headers evical_headers evical_headers_fmt evical_headers_ceres)
   endif()
 endforeach()
 
-# evical_add_layer(NAME [FAST] SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library a folder of core.
-# FAST: it processes recordings.
+# evical_add_layer(NAME [FAST] SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library per folder of core.
+# FAST: code that processes recordings.
 function(evical_add_layer name)
   cmake_parse_arguments(ARG "FAST" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(evical_${name} STATIC ${ARG_SOURCES})
@@ -153,7 +153,7 @@ function(evical_add_layer name)
   endif()
 endfunction()
 
-# evical_add_ui_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library a folder of ui, with Qt's moc.
+# evical_add_ui_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library per folder of ui, with Qt's moc.
 function(evical_add_ui_layer name)
   evical_add_layer(ui_${name} ${ARGN} HEADERS evical_headers_ui)
   evical_use_moc(evical_ui_${name})
@@ -183,7 +183,7 @@ function(evical_add_test_program name)
   endforeach()
 endfunction()
 
-# evical_add_ui_test_program(NAME SOURCES... LIBS...): the same with widgets, run without a display.
+# evical_add_ui_test_program(NAME SOURCES... LIBS...): the same for tests of widgets, which run without a display.
 function(evical_add_ui_test_program name)
   evical_add_test_program(${name} WINDOWS ${ARGN} LIBS Qt6::Widgets)
   target_compile_definitions(${name} PRIVATE EVICAL_TEST_WITH_WINDOWS)

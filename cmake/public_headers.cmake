@@ -1,5 +1,5 @@
-# evical_public_headers(ROOT RESULT): core's headers that sources outside of their own folder include, and what these include; relative
-# to ROOT. The others are their folder's own business: they may show Ceres, OpenCV and the like, and are not installed.
+# evical_public_headers(ROOT RESULT): core's headers that sources outside of their folder include, and the headers that these include;
+# relative to ROOT. The others are private to their folder: they may expose Ceres, OpenCV and the like, and are not installed.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.25)
 function(evical_public_headers root result)

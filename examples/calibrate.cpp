@@ -1,4 +1,4 @@
-// Calibrates a session's sensors and prints where the cameras are, with sigmas: calibrate SESSION.
+// Calibrates a session's sensors and prints the poses of the cameras with sigmas: calibrate SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -11,7 +11,7 @@ using namespace evical;
 
 namespace {
 
-// Progress as a line a stage; fractions of a stage and log lines are left out.
+// Prints one line per stage, without fractions of a stage and log lines.
 class StageNames : public ProgressSink {
  public:
   void stageStarted(std::string_view stage) override { std::printf("%s\n", std::string(stage).c_str()); }

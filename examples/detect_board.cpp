@@ -1,4 +1,4 @@
-// Finds the board in a session's recording and prints where its first circle is: detect_board SESSION.
+// Detects the board in a session's recording and prints the position of its first circle: detect_board SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/pipeline/pass/recording_pass.h"

@@ -17,7 +17,7 @@ struct Count {
 void countStreams(const char* path) {
   const std::unique_ptr<RecordingReader> reader = openRecording(path);
   std::vector<Count> counts(reader->streams().size());
-  Packet packet;  // memory stays that of one packet, however long the recording is
+  Packet packet;  // only one packet is in memory at a time
   while (reader->read(packet)) {
     Count& count = counts[packet.stream];
     count.events += packet.events.size();

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Prints every figure of docs/accuracy.md: all scenarios of config/scenarios, seeds, what is spoilt one thing at a time, centres,
-# intrinsics, starts, then the costs of the hot paths and of reading files. Takes some hours on two cores. Fails where a wrong result
-# is called ok, or the errors over sigmas of twenty seeds leave 0.7 to 1.4, or a benchmark misses its targets.
+# Prints every figure of docs/accuracy.md: all scenarios of config/scenarios, seeds, single disturbances, circle centres,
+# intrinsics, start times, then the costs of the hot paths and of reading files. Takes some hours on two cores. Fails if a wrong
+# result is called ok, if the ratio of errors to sigmas over twenty seeds is outside 0.7 to 1.4, or if a benchmark misses its targets.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
@@ -17,7 +17,7 @@ run() {
   echo "FAILED: evical_benchmarks $*"
 }
 
-# All but what has no IMU to be calibrated, or is for many seeds.
+# All scenarios except those without an IMU to calibrate and those for many seeds.
 rigs=("$scenarios"/{stereo,stereo_two_imus,three_cameras,disjoint_views}.yaml)
 single=()
 for file in "$scenarios"/*.yaml; do
@@ -33,10 +33,10 @@ for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$fil
 # Circle centres along the motion, in ordinary and in small motions.
 run centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
 
-# The board, wherever a recording begins.
+# Detection of the board from different start times.
 run board_starts --duration 20 "${single[@]}"
 
-# Frame cameras, further boards, lenses; real ones, too, where EVICAL_DATA names them.
+# Frame cameras, further boards, lenses; also real recordings, if EVICAL_DATA is set.
 run frame_cameras
 
 run intrinsics "$scenarios"/intrinsics_*.yaml
@@ -44,15 +44,15 @@ run intrinsics --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
 run intrinsics --seeds 20 "$scenarios/wide_frame.yaml"
 run unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
 
-# One thing at a time that is not as the session says; fails where a wrong result is called ok.
+# One deviation from the session at a time; fails if a wrong result is called ok.
 run stress "$scenarios/davis346_10s.yaml"
 run stress --perfect --seeds 5 "$scenarios/davis346_10s.yaml"
 run stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yaml"
 
-# Five recordings before each of three boards, alone and together: half an hour.
+# Five recordings of each of three boards, alone and together: half an hour.
 run protocol --folder "$(mktemp -d)/recording" config/protocol
 
-# An old result beside a new recording, a hundred times.
+# Checks of an old result against a new recording, a hundred times.
 run check "$scenarios/davis346.yaml"
 
 # Without a board: rooms, and logs of IMUs over time. Three hours.
@@ -63,13 +63,13 @@ run costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
 run costs "$scenarios/davis346.yaml" --durations 10 30 60 120
 run speed --duration 3 "$scenarios/hd.yaml"
 
-# A run in the window beside one on the command line.
+# A run in the window compared with one on the command line.
 window=$(mktemp -d)
 printf 'base: %s/config/scenarios/davis346.yaml\n' "$PWD" > "$window/scenario.yaml"
 build/release/evical simulate "$window/scenario.yaml" -o "$window/recording" --quiet
 tests/benchmarks/window_cost.sh build/release "$window/recording/session.yaml" || failed=1
 rm -rf "$window"
 
-# How fast files are decoded, per format; fails where a packed one is below 20 million events/s.
+# Decoding speed per format; fails if a packed format is below 20 million events/s.
 run formats "$scenarios/davis346.yaml"
 exit "$failed"

@@ -1,4 +1,4 @@
-// A source that is only compiled, to measure how fast a machine compiles (packaging/test.sh). Not part of any program.
+// A source that is only compiled, to measure the machine's compile speed (packaging/test.sh). Not part of any program.
 #include <Eigen/Dense>
 
 #include <map>

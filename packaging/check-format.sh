@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Fails, and names the files, where a source is not as .clang-format has it. With --fix it rewrites them.
+# Fails and lists the files if sources do not conform to .clang-format. With --fix it rewrites them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Other versions format otherwise: sources are as Debian 12's has them.
+# Other versions format differently: the sources follow the version of Debian 12.
 version=$(clang-format --version | sed -n 's/.*version \([0-9]*\).*/\1/p')
 if [ "$version" != 14 ]; then
-  echo "Format: not checked, since this is clang-format $version and sources are as version 14 has them."
+  echo "Format: not checked, since this is clang-format $version and the sources follow version 14."
   exit 0
 fi
 
@@ -22,4 +22,4 @@ if ! clang-format --dry-run --Werror "${sources[@]}" 2>"$problems"; then
   echo "These files are not formatted: run packaging/check-format.sh --fix" >&2
   exit 1
 fi
-echo "Format: ${#sources[@]} files as .clang-format has them."
+echo "Format: ${#sources[@]} files conform to .clang-format."

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# Fails, and names the places, where clang-tidy finds something in core, app, ui or python:
+# Fails and lists the places if clang-tidy reports anything in core, app, ui or python:
 #   packaging/check-tidy.sh                    all sources
-#   packaging/check-tidy.sh SOURCE...          these
-#   packaging/check-tidy.sh --changed [BASE]   what differs from commit BASE, and what includes a header that differs
-# BASE is by default $EVICAL_BASE, or where the branch left its upstream; on a plain clone of main, the state one day before the last
-# commit. EVICAL_TIDY_TIMES=1 shows where the time goes.
+#   packaging/check-tidy.sh SOURCE...          these sources
+#   packaging/check-tidy.sh --changed [BASE]   sources that differ from commit BASE, or include a header that differs
+# BASE is by default $EVICAL_BASE, or the branch's merge base with its upstream; on a plain clone of main, the state one day before
+# the last commit. EVICAL_TIDY_TIMES=1 prints the time of each unit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Other versions have other checks: .clang-tidy is for Debian 12's.
+# Other versions have other checks: .clang-tidy is for the version of Debian 12.
 version=$(clang-tidy --version | sed -n 's/.*version \([0-9]*\).*/\1/p' | head -1)
 if [ "$version" != 14 ]; then
-  echo "clang-tidy: not run, since this is version $version and .clang-tidy is for version 14."
+  echo "clang-tidy: not run, since this is version $version, but .clang-tidy is for version 14."
   exit 0
 fi
 
@@ -33,7 +33,7 @@ cmake --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
 if [ "${1:-}" = --changed ]; then
   base=${2:-$(default_base)}
   if [ -n "$base" ]; then
-    echo "clang-tidy: what differs from $(git log -1 --format='%h of %cs' "$base")"
+    echo "clang-tidy: sources that differ from $(git log -1 --format='%h of %cs' "$base")"
     set -- --changed "$base"
   else
     shift "$#"

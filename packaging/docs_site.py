@@ -14,25 +14,25 @@ from mkdocs.structure.files import File
 log = logging.getLogger("mkdocs.plugins.docs_site")
 
 INCLUDE = re.compile(r"^\[[^\]\n]*\]\((?P<path>[^)#\n]+)(?:#(?P<anchor>[^)\n]+))?\) <!-- include -->$", re.MULTILINE)
-# Code first: what looks like a link there is none.
+# Code first: text in it that looks like a link is not one.
 LINK_OR_CODE = re.compile(r"^```.*?^```|^ {4}[^\n]*|``[^\n]+?``|`[^`\n]*`|(?P<text>!?\[[^\[\]]*\])\((?P<target>[^()\s]+)\)",
                           re.MULTILINE | re.DOTALL)
-# A list right below a text: GitHub sees it, MkDocs only after an empty line.
+# A list directly below a text: GitHub recognises it, MkDocs only after an empty line.
 LIST_BELOW_TEXT = re.compile(r"^(?![-*] |\d+\. |[ \n|#])([^\n]+\n)(?=- |1\. )", re.MULTILINE)
 NOT_PAGES = ("api/",)  # Doxygen's
-OPTIONAL = {"clusters.md"}  # in nav, and shown as soon as it is there
+OPTIONAL = {"clusters.md"}  # in nav, and shown if the file exists
 
 scratch = None
 places = {}
 
 
 def anchor_of(heading):
-    """As GitHub makes it; MkDocs' are the same for our headings, which the test of links sees to."""
+    """GitHub's anchor of a heading. MkDocs' anchors are the same for our headings; the test of links checks this."""
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 
 
 def headings(text):
-    """(line, level, anchor) of each heading outside of fenced code."""
+    """(line, level, anchor) of each heading outside fenced code."""
     found, fenced = [], False
     for index, line in enumerate(text.split("\n")):
         fenced ^= line.startswith("```")
@@ -43,7 +43,7 @@ def headings(text):
 
 
 def section(text, anchor):
-    """What stands below a heading, up to the next one of its level; without an anchor all but the title. None: not there."""
+    """The text below a heading, up to the next one of its level; without an anchor all except the title. None if absent."""
     lines, known = text.split("\n"), headings(text)
     if anchor is None:
         return "\n".join(lines[known[0][0] + 1:] if known else lines)
@@ -64,7 +64,7 @@ def read(config, path):
 
 
 def included(config, page_path, match):
-    """The text, and which file of the repository it is of."""
+    """The text, and the file of the repository that it comes from."""
     path = os.path.normpath(os.path.join(os.path.dirname(page_path), match["path"]))
     text = section(read(config, path), match["anchor"]) if os.path.isfile(os.path.join(root(config), path)) else None
     if text is None:
@@ -98,7 +98,7 @@ class Page:
         return LIST_BELOW_TEXT.sub(r"\1\n", LINK_OR_CODE.sub(link, text))
 
     def target(self, target, source):
-        """Where a link of this source leads to on the site; None: nowhere, to a folder."""
+        """Target on the site of a link in this source; None for a folder."""
         if re.match(r"[a-z]+:", target) or (target.startswith("#") and source == self.path):
             return target
         path, _, anchor = target.partition("#")
@@ -134,7 +134,7 @@ def notebook_page(config, file):
     name = os.path.splitext(file.src_path)[0]
     pictures = os.path.basename(name) + "_files"
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what it calls itself
+        warnings.simplefilter("ignore")  # about its own deprecated names
         text, resources = MarkdownExporter().from_filename(file.abs_src_path, resources={"output_files_dir": pictures})
     folder = os.path.join(scratch, os.path.dirname(name))
     os.makedirs(os.path.join(folder, pictures), exist_ok=True)
@@ -149,7 +149,7 @@ def notebook_page(config, file):
 
 
 def without(nav, path):
-    """Nav without the entries of one page, and without what that leaves empty."""
+    """Nav without the entries of one page, and without sections that become empty."""
     if isinstance(nav, list):
         return [kept for kept in (without(each, path) for each in nav) if kept]
     if isinstance(nav, dict):

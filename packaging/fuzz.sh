@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes every parser for so many seconds each (60 by default), with AddressSanitizer and UndefinedBehaviorSanitizer:
-# packaging/fuzz.sh [SECONDS [TARGET...]]. Begins with small files of our own and with those of tests/data; what was
-# learnt stays in build/fuzz/corpus. Findings stay in build/fuzz/findings and fail the script;
-# build/fuzz/tests/fuzz/evical_fuzz_TARGET FILE repeats one.
+# Fuzzes every parser for SECONDS each (60 by default), with AddressSanitizer and UndefinedBehaviorSanitizer:
+# packaging/fuzz.sh [SECONDS [TARGET...]]. Seeds are small generated files and those of tests/data; the corpus is kept in
+# build/fuzz/corpus. Findings are kept in build/fuzz/findings and fail the script;
+# build/fuzz/tests/fuzz/evical_fuzz_TARGET FILE reproduces one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,7 +22,7 @@ ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/evical_fuzz_seeds" "$seeds"
 /usr/bin/python3 tests/fuzz/hdf5_seeds.py "$seeds/hdf5"
 cp tests/fuzz/seeds/hdf5/*.h5 "$seeds/hdf5"
 mkdir -p "$seeds/yaml" "$seeds/calibrate" "$seeds/run_data"
-for kind in $(seq 0 11); do  # a lie of each kind, of a second's size in the middle
+for kind in $(seq 0 11); do  # a disturbance of each kind, about a second long, in the middle
   printf "\\x$(printf %02x "$kind")\\x60\\xa0\\x06\\x01\\x02" >"$seeds/calibrate/$kind"
 done
 cp -r tests/fuzz/seeds/detections "$seeds"
@@ -46,11 +46,11 @@ failed=0
 for target in "${targets[@]}"; do
   corpus=$build/corpus/$target
   mkdir -p "$corpus"
-  # libhdf5 loses memory on damaged files: what it keeps is not ours to free. And it asks for what they claim: the system
-  # refuses that, and it says so.
+  # libhdf5 leaks memory on damaged files, which we cannot free. It also allocates the sizes that they claim: the system
+  # refuses these, and libhdf5 reports an error.
   leaks=1 allocations= patience=20
   [ "$target" != hdf5 ] || { leaks=0 allocations=allocator_may_return_null=1; }
-  # Libraries that are not built with the sanitizers share containers with what is, and keep pools of their own.
+  # Libraries that are not built with the sanitizers share containers with code that is, and have separate memory pools.
   case "$target" in calibrate | yaml) leaks=0 allocations=detect_container_overflow=0 ;; esac
   [ "$target" != calibrate ] || patience=300
   if ASAN_OPTIONS=$allocations LSAN_OPTIONS=suppressions=tests/fuzz/leaks.supp:print_suppressions=0 \

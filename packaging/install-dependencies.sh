@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs Debian 12 packages: packaging/install-dependencies.sh [LIST...]. Lists:
-#   run      what building and running the programs needs (without a list: this one)
-#   test     what packaging/test.sh needs besides: it includes run and package
-#   package  what makes and checks Debian packages
+#   run      to build and run the programs (the default)
+#   test     for packaging/test.sh; includes run and package
+#   package  to build and check Debian packages
 #   fuzz     clang for packaging/fuzz.sh
-# Does nothing, and needs no rights, if all packages are installed. With --list in front it only prints their names.
+# Does nothing, and needs no root rights, if all packages are installed. With --list in front it only prints their names.
 set -euo pipefail
 
 run=(
@@ -30,7 +30,7 @@ test=(
   python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
   # documentation site
   mkdocs
-  # other programs' loaders of what Evical exports, and libraries that they read with
+  # other programs' loaders for the files that Evical exports, and their libraries
   python3-camera-calibration-parsers liburdfdom-tools python3-yaml libcereal-dev libgflags-dev
 )
 fuzz=(clang libclang-rt-14-dev)
@@ -84,7 +84,7 @@ export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 
-# The Slurm test starts daemons of its own: those of the packages must not run, now or at boot.
+# The Slurm test starts its own daemons: those of the packages must not run, now or at boot.
 if [[ " ${missing[*]} " == *" slurm-wlm "* ]] && command -v systemctl >/dev/null; then
   for service in slurmctld slurmd munge; do
     "${as_root[@]}" systemctl disable --now "$service" >/dev/null 2>&1 || "${as_root[@]}" systemctl disable "$service" >/dev/null 2>&1 || true

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night.
-#   no-unity    build each source as a unit of its own, and all tests but the real-time ones
-#   debug       build without optimisation and with assertions, and the same tests
-#   clang       build with clang, and the same tests
+# Checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night.
+#   no-unity    build each source as a separate unit, and run all tests except the real-time ones
+#   debug       build without optimisation and with assertions, and run the same tests
+#   clang       build with clang, and run the same tests
 #   sanitizers  packaging/sanitizers.sh
 #   fuzz        packaging/fuzz.sh, one hour over all targets
 #   benchmarks  packaging/benchmarks.sh, with their targets
@@ -20,7 +20,7 @@ for step in "$@"; do
   fi
 done
 
-# Real-time limits hold for builds as users have them: packaging/realtime-tests.sh.
+# Real-time limits apply to release builds only: packaging/realtime-tests.sh.
 build_and_test() { # FOLDER TIMEOUT_s CMAKE_ARGUMENT...
   local folder=$1 timeout_s=$2
   shift 2

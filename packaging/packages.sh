@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the Debian packages evical, evical-gui, libevical-dev (and python3-evical, where the build has it) in build/package/packages.
-# The same sources give the same bytes, wherever they are built.
+# Builds the Debian packages evical, evical-gui, libevical-dev (and python3-evical, if the build has it) in build/package/packages.
+# Builds are reproducible: the same sources give the same bytes in any folder.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs the desktop program's tests with the address and undefined-behaviour sanitizers, and calibrations in the
-# program's pattern of threads, but without Qt, with the thread sanitizer. By hand: on two cores building takes an hour,
-# and the tests one and more.
-# Usage: packaging/sanitizers.sh [asan|tsan]    both without a word
+# program's pattern of threads, but without Qt, with the thread sanitizer. Run by hand: on two cores the build takes an hour,
+# and the tests more than one.
+# Usage: packaging/sanitizers.sh [asan|tsan]    both without an argument
 set -euo pipefail
 cd "$(dirname "$0")/.."
 which=${1:-both}

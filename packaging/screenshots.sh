@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Makes the pictures of README and documentation site, of the demo recording. Without a display. With a folder as
-# argument: every screen, light and dark, there.
+# Renders the pictures of README and documentation site from the demo recording. Needs no display. With a folder as
+# argument, it writes every screen there, light and dark.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${EVICAL_BUILD:-build/release}
-demo=${TMPDIR:-/tmp}/evical/demo # it is seen in pictures
+demo=${TMPDIR:-/tmp}/evical/demo # visible in pictures
 
 [ -x "$build/evical-gui" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
 [ -f "$demo/truth.yaml" ] || "$build/evical" simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
@@ -15,7 +15,7 @@ for seed in 2 3; do
   printf 'base: %s/config/scenarios/davis346_10s.yaml\nseed: %s\n' "$PWD" "$seed" > "$demo/recording_$seed.yaml"
   "$build/evical" simulate "$demo/recording_$seed.yaml" -o "$more" --quiet
 done
-# A log of two IMUs, for the page that needs no board.
+# A log of two IMUs, for the page without a board.
 moved=$demo/moved
 [ -f "$moved/truth.yaml" ] || "$build/evical" simulate config/scenarios/maintain/step_lever.yaml -o "$moved" --quiet
 shown="start-light print-board-light how-to-record-light check-light recording-light detection-dark trajectory-light
@@ -28,13 +28,13 @@ if [ $# -gt 0 ]; then
   done
 fi
 mkdir -p "$pictures"
-export QT_QPA_PLATFORM=offscreen # also where there is a display: the same pictures everywhere
-# Runs and settings of the person at this machine have no place in them.
+export QT_QPA_PLATFORM=offscreen # even with a display: the same pictures everywhere
+# Runs and settings of the user must not appear in them.
 XDG_CONFIG_HOME=$(mktemp -d)
 XDG_DATA_HOME=$XDG_CONFIG_HOME
 export XDG_CONFIG_HOME XDG_DATA_HOME
 trap 'rm -rf "$XDG_CONFIG_HOME"' EXIT
-# The camera alone, for the result of a lens.
+# A camera alone, for the result of a lens.
 sed -e '/^imus:/,$d' -e '/^    intrinsics:/,$d' "$demo/session.yaml" > "$demo/camera.yaml"
 for picture in $shown; do
   screen=${picture%-*} session=$demo/session.yaml
@@ -46,7 +46,7 @@ for picture in $shown; do
   esac
   [ "$screen" != lens ] || { screen=result session=$demo/camera.yaml; }
   "$build/evical-gui" --screenshot "$screen" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$session" "${further[@]}"
-  # A palette makes them a third of their size, and people see no difference.
+  # A palette reduces the size to a third without a visible difference.
   convert "$pictures/$picture.png" +dither -colors 256 -strip -define png:compression-level=9 "PNG8:$pictures/$picture.small.png"
   mv "$pictures/$picture.small.png" "$pictures/$picture.png"
 done

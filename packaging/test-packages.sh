@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Tries the Debian packages for real: builds them twice in different folders and compares the bytes, asks lintian, then installs, uses,
-# removes and purges them in a bare Debian 12 (packaging/debian/try_in_root.sh). Needs mmdebstrap and some 2 GB in TMPDIR; half an hour and
-# more, since the second build takes nothing from ccache (with EVICAL_WARM=1 it does). EVICAL_MIRROR is where Debian's packages come from;
-# by default where this machine has them from.
+# Tests the Debian packages: builds them twice in different folders and compares the bytes, runs lintian, then installs, uses, removes
+# and purges them in a bare Debian 12 (packaging/debian/try_in_root.sh). Needs mmdebstrap and some 2 GB in TMPDIR. Takes at least half an
+# hour, since the second build does not use ccache (with EVICAL_WARM=1 it does). EVICAL_MIRROR is the mirror of Debian's packages, by
+# default this machine's.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,10 +12,10 @@ need() { # PROGRAM PACKAGE
 need mmdebstrap mmdebstrap
 need lintian lintian
 need git git
-# The first of the machine's own mirrors that has this release.
-# shellcheck disable=SC2016  # it is apt that puts in what $ stands for
+# First mirror of this machine that has this release.
+# shellcheck disable=SC2016  # apt expands $(...), not the shell
 mirror=${EVICAL_MIRROR:-$(apt-get indextargets --format '$(RELEASE) $(REPO_URI)' 2>/dev/null | awk '$1 == "bookworm" { print $2; exit }')}
-[ -n "$mirror" ] || { echo "This machine's apt knows no mirror of Debian 12 (bookworm): set EVICAL_MIRROR" >&2; exit 1; }
+[ -n "$mirror" ] || { echo "This machine's apt has no mirror of Debian 12 (bookworm): set EVICAL_MIRROR" >&2; exit 1; }
 
 umask 022
 scratch=$(mktemp -d)
@@ -28,7 +28,7 @@ packages=$PWD/build/package/packages
 echo "Second build"
 second=$scratch/at/another/place
 mkdir -p "$second"
-# With .git: the window tells of which commit it is.
+# With .git: the window shows the commit of its build.
 (git ls-files -z && printf '.git\0') | tar --null --files-from=- -c | tar -x -C "$second"
 (
   cd "$second"

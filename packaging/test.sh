@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
-# clang-tidy on what has changed, and every test. Prints at its end the wall time and the processor time of each step. Fails if
-# a build that took nothing from ccache needed much more processor time than its budget.
+# clang-tidy on changed sources, and every test. At the end it prints wall time and processor time of each step. Fails if
+# a build without hits in ccache needed much more processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Processor time of a build with nothing in ccache, over that of compiling packaging/build_reference.cpp on the same machine.
+# Processor time of a build without hits in ccache, divided by that of compiling packaging/build_reference.cpp on the same machine.
 build_budget=110
 build_may_exceed_percent=15
 
 times=() failed=()
 scratch=$(mktemp -d)
-# Sets processor_cs: hundredths of a second that all children which have ended have computed. Not in a subshell, which has none.
+# Sets processor_cs: processor time of all ended children, in hundredths of a second. Not in a subshell, which has no children.
 count_processor() {
   times >"$scratch/times"
   processor_cs=$(awk 'NR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); printf "%d", 100 * (60 * (u[1] + s[1]) + u[2] + s[2]) }' "$scratch/times")
@@ -32,18 +32,18 @@ summary() {
   printf '\n%-20s %8s %8s\n' step wall CPU
   [ "${#times[@]}" -eq 0 ] || printf '%s\n' "${times[@]}"
   count_processor
-  printf '%-20s %6d s %6d s\n' "all of it" "$SECONDS" $((processor_cs / 100))
+  printf '%-20s %6d s %6d s\n' "total" "$SECONDS" $((processor_cs / 100))
   [ "${#failed[@]}" -eq 0 ] || printf 'Failed: %s\n' "${failed[*]}"
 }
 trap 'summary; rm -rf "$scratch"' EXIT
 
-# The processor time of the build against its budget. A build with hits in ccache tells nothing of it.
+# Compares the processor time of the build with its budget. Builds with hits in ccache are not comparable.
 check_build_budget() {
   local hits misses before reference ratio
   hits=$(grep -c '_cache_hit$' build/ccache.log || true)
   misses=$(grep -c '^cache_miss$' build/ccache.log || true)
   if [ "$misses" -lt 150 ] || [ "$hits" -gt $((misses / 50)) ]; then
-    echo "Build budget: not judged, since $hits of $((hits + misses)) objects came from ccache."
+    echo "Build budget: not checked, since $hits of $((hits + misses)) objects came from ccache."
     return
   fi
   count_processor

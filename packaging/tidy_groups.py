@@ -3,9 +3,9 @@
 BUILD is a folder that CMake has configured with EVICAL_UNITY=OFF, so that it lists every source. Nothing needs to be compiled in it.
 --changed checks the sources that differ from commit BASE, and those that include a header that differs.
 
-Most of what clang-tidy costs is reading the headers of Eigen, Ceres, Qt and VTK, again for every source. So the sources of a folder
-are checked as one unit that includes them. A source that does not compile in its unit is checked alone. Precompiled headers of
-GCC's are left out of the commands, since clang cannot read them.
+Most of clang-tidy's time goes into the headers of Eigen, Ceres, Qt and VTK, which it reads again for every source. Therefore the
+sources of a folder are checked as one unit that includes them. A source that does not compile in its unit is checked alone. GCC's
+precompiled headers are removed from the commands, since clang cannot read them.
 """
 import argparse
 import collections
@@ -25,13 +25,13 @@ FOLDERS = ("core", "app", "ui", "python")
 CHECKED = tuple(f"{ROOT / folder}{os.sep}" for folder in FOLDERS)
 MOST_SOURCES = 12  # in a unit: with more, one core idles at the end while the other is busy with the last
 ORDER_MATTERS = re.compile(r"^#include <(?:GL|EGL)/", re.M)  # sources with these are checked alone
-INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)  # ours: paths from the root
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)  # the project's own headers: paths from the root
 ALL_CHANGE = (".clang-tidy", "packaging/tidy_groups.py", "packaging/check-tidy.sh")
 AT_ONCE = int(os.environ.get("EVICAL_TIDY_JOBS", 2))
 
 
 def flags_of(command):
-    """What tells clang how to read a source: neither source, output, warnings nor precompiled headers. In pairs where they are."""
+    """Compiler flags without source, output, warnings and precompiled headers; a flag with an argument is a pair."""
     arguments, flags, at = shlex.split(command), [], 0
     while at < len(arguments) and not arguments[at].startswith("-"):  # launcher and compiler
         at += 1
@@ -56,7 +56,7 @@ def kind_of(source):
 
 
 def units_of(sources):
-    """Which sources are checked together: those of a folder, at most MOST_SOURCES."""
+    """Groups of sources that are checked together: those of a folder, at most MOST_SOURCES."""
     folders = collections.defaultdict(list)
     for source in sorted(sources):
         alone = ORDER_MATTERS.search(Path(source).read_text())
@@ -70,7 +70,7 @@ def git(*arguments):
 
 
 def changed_since(base, sources):
-    """The sources that differ from a commit, in the working tree or by what they include."""
+    """The sources that differ from a commit in the working tree, or include a header that differs."""
     changed = set(git("diff", "--name-only", base)) | set(git("ls-files", "--others", "--exclude-standard"))
     if changed & set(ALL_CHANGE):
         return sources
@@ -95,7 +95,7 @@ class Checker:
         scratch.mkdir(exist_ok=True)
 
     def run(self, name, sources):
-        """What clang-tidy finds in these sources and our headers, and its exit code."""
+        """The findings of clang-tidy in these sources and our headers, and its exit code."""
         unit = self.scratch / f"{name}.cpp"
         unit.write_text("".join(f'#include "{source}"\n' for source in sources))
         ours = f"^({'|'.join(map(re.escape, CHECKED))})"
@@ -105,7 +105,7 @@ class Checker:
         return outcome.stdout + (outcome.stderr if outcome.returncode and not outcome.stdout else ""), outcome.returncode
 
     def check(self, name, unit):
-        """Prints what is found in a unit; whether that is nothing."""
+        """Prints the findings in a unit. Returns True if there are none."""
         begin = time.monotonic()
         together, alone = list(unit), []
         found, code = self.run(name, together)
@@ -114,7 +114,7 @@ class Checker:
             if not broken:
                 break
             source = broken.group(1)
-            if source not in together:  # in some header: it may be anyone's
+            if source not in together:  # in a header, which any source may include
                 alone, together, found, code = together + alone, [], "", 0
                 break
             print(f"  alone: {os.path.relpath(source, ROOT)} ({broken.group(0).split(': ', 2)[2]})", flush=True)
@@ -127,7 +127,7 @@ class Checker:
         if os.environ.get("EVICAL_TIDY_TIMES"):
             print(f"  {name}: {len(unit)} sources, {time.monotonic() - begin:.1f} s", flush=True)
         problems = set(re.findall(r"^\S+?:\d+:\d+: (?:error|warning): .*", found, re.M))
-        new = problems - self.problems  # those of headers are found again and again
+        new = problems - self.problems  # findings in headers repeat in other units
         self.problems |= problems
         if code:
             print("\n".join(sorted(new)) if problems else found or f"{name}: clang-tidy ended with {code}", flush=True)
@@ -143,7 +143,7 @@ def main():
     entries = [entry for entry in json.loads((asked.build / "compile_commands.json").read_text())
                if entry["file"].startswith(CHECKED) and entry["file"].endswith(".cpp") and "_autogen" not in entry["file"]]
     flags = collections.defaultdict(dict)
-    for entry in entries:  # all that any source of a kind is compiled with, once and in order
+    for entry in entries:  # the union of the flags of a kind's sources, each once and in order
         flags[kind_of(entry["file"])].update(dict.fromkeys(flags_of(entry["command"])))
     flags = {kind: [word for flag in own for word in flag] for kind, own in flags.items()}
     sources = sorted({entry["file"] for entry in entries})

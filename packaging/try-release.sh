@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Tests what is committed here on another release of Debian, in a root that is thrown away:
+# Tests the current commit on another release of Debian, in a temporary root:
 # packaging/try-release.sh RELEASE [COMMAND...], e.g. trixie. Without a command it runs packaging/test.sh. Needs root and the
-# package mmdebstrap. EVICAL_DATA, if it is set, is there, too.
+# package mmdebstrap. EVICAL_DATA, if set, is available there, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ "$#" -eq 0 ]; then

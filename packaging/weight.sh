@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Prints how large the project is: packaging/weight.sh [--check] [FOLDER]
-# Lines and files of each folder beside its budget (docs/architecture.md), levels of dependencies, options of each level, words of
-# the README, and the time that the last build took for each folder, if there is one. --check fails if a folder exceeds its
-# budget by more than 10 %, or a folder has none. FOLDER is a checkout, by default this one.
+# Prints the size of the project: packaging/weight.sh [--check] [FOLDER]
+# Lines and files of each folder with its budget (docs/architecture.md), levels of dependencies, options of each level, words of
+# the README, and the time of the last build for each folder, if there is one. --check fails if a folder exceeds its
+# budget by more than 10 %, or has none. FOLDER is a checkout, by default this one.
 set -euo pipefail
 exec python3 - "$(cd "$(dirname "$0")/.." && pwd)" "$@" <<'PYTHON'
 import collections
@@ -46,7 +46,7 @@ levels = {}
 
 
 def level(folder, path=()):
-    """1 for a folder that needs no other; else one more than the highest of those that it needs."""
+    """1 for a folder without dependencies; else one more than the highest level of its dependencies."""
     if folder in path:
         raise SystemExit("Circle: " + " -> ".join((*path, folder)))
     if folder not in levels:
@@ -61,7 +61,7 @@ for row in page.read_text().splitlines() if page.is_file() else []:
     if len(cells) == 3 and cells[2].isdigit():
         budgets[cells[0].strip("`").rstrip("/")] = int(cells[2])
 
-# Wall time of each compiled object. A compiler is one thread, so that this is its processor time if the machine is not overloaded.
+# Wall time of each compiled object. A compiler has one thread, so this is its processor time if the machine is not overloaded.
 seconds = collections.Counter()
 log = root / "build/ci/.ninja_log"
 for entry in log.read_text().splitlines()[1:] if log.is_file() else []:
@@ -105,6 +105,6 @@ if readme.is_file():
 
 if check and problems:
     print("\nToo heavy:", *problems, sep="\n  ", file=sys.stderr)
-    print("Remove code, or raise the budget in a commit of its own that gives the reason.", file=sys.stderr)
+    print("Remove code, or raise the budget in a separate commit that gives the reason.", file=sys.stderr)
     sys.exit(1)
 PYTHON

@@ -1,4 +1,4 @@
-// NumPy's arrays: of what an object of ours keeps, without a copy, and points in and out.
+// NumPy arrays: views of an object's own memory without a copy, and conversion of points in both directions.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::a
 // the argument.
 Numbers pointsFrom(const pybind11::object& values, pybind11::ssize_t columns, const char* what);
 
-// The leading shape of `values` with `last` in the place of `dropped` trailing axes.
+// The shape of `values` with its `dropped` trailing axes replaced by `last`.
 std::vector<pybind11::ssize_t> shapeLike(const Numbers& values, int dropped,
                                          const std::vector<pybind11::ssize_t>& last);
 

@@ -1,4 +1,4 @@
-// What module.cpp puts together: one function a subject. Types that others take are bound before them.
+// Parts of the module, one function per subject. A type is bound before the functions that take it.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -24,7 +24,7 @@ namespace {
 
 namespace py = pybind11;
 
-// What the command line does, from the session to the folder.
+// The same steps as on the command line, from the session to the result folder.
 std::shared_ptr<const Result> calibrated(const Session& session,
                                          const std::optional<std::filesystem::path>& output, RunLog& log,
                                          const RunContext& context) {
@@ -44,7 +44,7 @@ std::shared_ptr<const Result> calibrated(const Session& session,
 
 std::shared_ptr<Result> calibrate(const Session& given, const std::optional<std::filesystem::path>& output,
                                   const py::object& progress) {
-  const Session session = given;  // nobody changes this one meanwhile
+  const Session session = given;  // a copy, which no other thread can change
   std::shared_ptr<const Result> result;
   RunLog log;
   runInterruptibly(progress, log,
@@ -58,9 +58,10 @@ std::size_t cameraOf(const Session& session, const std::optional<std::string>& n
     if (name && session.cameras[k].name == *name) return k;
     known += (known.empty() ? "" : ", ") + session.cameras[k].name;
   }
-  if (name) throw badInput(*name, "is no camera of the session", "There are: " + known);
+  if (name) throw badInput(*name, "is not a camera of the session", "Use one of: " + known);
   if (session.cameras.size() != 1)
-    throw badInput("camera", "the session has not one camera", "Name one of: " + known);
+    throw badInput("camera", fmt::format("the session has {} cameras", session.cameras.size()),
+                   "Name one of: " + known);
   return 0;
 }
 
@@ -77,18 +78,18 @@ IntrinsicsResult findIntrinsics(const Session& given, const std::optional<std::s
 }
 
 void bindIntrinsics(py::module_& module) {
-  py::class_<IntrinsicsResult>(module, "IntrinsicsResult", "A lens as it was calibrated alone.")
+  py::class_<IntrinsicsResult>(module, "IntrinsicsResult", "Result of the calibration of one lens alone.")
       .def_property_readonly(
           "status", [](const IntrinsicsResult& r) { return statusName(r.status); }, "ok or doubtful.")
-      .def_readonly("reason", &IntrinsicsResult::reason, "Why it is not ok, in plain words.")
-      .def_readonly("advice", &IntrinsicsResult::advice, "What more views would improve.")
+      .def_readonly("reason", &IntrinsicsResult::reason, "Why the status is not ok, as text.")
+      .def_readonly("advice", &IntrinsicsResult::advice, "Which further views would improve the result.")
       .def_readonly("intrinsics", &IntrinsicsResult::intrinsics, "A Camera.")
       .def_property_readonly(
           "covariance", [](const IntrinsicsResult& r) { return arrayOf(Eigen::MatrixXd(r.covariance)); },
-          "(9, 9) of fx, fy, cx, cy [px] and five coefficients; 0 where one is held.")
+          "(9, 9) of fx, fy, cx, cy [px] and five coefficients; 0 for fixed parameters.")
       .def_property_readonly(
           "std", [](const IntrinsicsResult& r) { return arrayOf(Eigen::VectorXd(r.standardDeviations())); },
-          "(9,): sigmas of the same.")
+          "(9,): sigmas of the same parameters.")
       .def_readonly("reprojection_rms_px", &IntrinsicsResult::reprojection_rms_px)
       .def_readonly("views_used", &IntrinsicsResult::views_used)
       .def(py::pickle(

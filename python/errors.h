@@ -1,4 +1,4 @@
-// Errors of core as Python's: evical.errors, in the same words.
+// Errors of core as Python exceptions (evical.errors), with the same text.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -16,7 +16,7 @@ namespace py = pybind11;
 
 constexpr std::chrono::milliseconds kBetweenLooks(50);
 
-// A function in a thread of its own.
+// A function in a separate thread.
 class Worker {
  public:
   explicit Worker(std::function<void(std::stop_token)> work)
@@ -63,7 +63,7 @@ void handOn(const RunLog::News& news, const py::object& progress) {
   if (news.moved && !progress.is_none()) progress(news.stage, news.fraction);
 }
 
-// Looks for signals and news until the worker ends; what Python raised meanwhile.
+// Checks for signals and news until the worker ends. Returns what Python raised meanwhile.
 std::exception_ptr attend(Worker& worker, RunLog& log, const py::object& progress) {
   try {
     for (bool ended = false; !ended;) {
@@ -132,7 +132,7 @@ void runInterruptibly(const py::object& progress, RunLog& log,
 
 void checkProgress(const py::object& progress) {
   if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0)
-    throw py::type_error("progress must be a function of a stage's name and a fraction, or None");
+    throw py::type_error("progress must be a function of a stage's name and its fraction done, or None");
 }
 
 }  // namespace evical::python

@@ -1,4 +1,4 @@
-// Long work for a caller in Python: without the interpreter's lock, with progress, and stopped by Ctrl-C.
+// Long work called from Python: runs without the interpreter's lock, reports progress, and stops on Ctrl-C.
 #pragma once
 
 #include "core/base/progress.h"
@@ -13,7 +13,7 @@
 
 namespace evical::python {
 
-// Keeps what a worker tells until the caller's thread asks, since only that one may call Python.
+// Collects a worker's messages for the caller's thread, since only that thread may call Python.
 class RunLog final : public ProgressSink {
  public:
   void stageStarted(const ProgressStage& stage) override;
@@ -29,7 +29,7 @@ class RunLog final : public ProgressSink {
   struct News {
     std::string stage;
     double fraction = 0.0;
-    bool moved = false;  // since it was asked for last
+    bool moved = false;  // since the last takeNews()
     std::vector<Line> lines;
   };
   News takeNews();
@@ -41,13 +41,13 @@ class RunLog final : public ProgressSink {
   Stopwatch since_start_;
 };
 
-// Calls `work` in a thread and waits for its end, meanwhile handing on news: progress(stage, fraction) in the caller's
-// thread, log lines to Python's logger "evical". Where a signal's handler or `progress` raises, work is asked to stop
-// and waited for, and that is thrown; else what work throws. Call with the interpreter's lock.
+// Calls `work` in a thread and waits for its end. Meanwhile it calls progress(stage, fraction) in the caller's thread
+// and sends log lines to Python's logger "evical". If a signal handler or `progress` raises, work is asked to stop and
+// is waited for, and that exception is thrown; else the one that work throws. Call with the interpreter's lock.
 void runInterruptibly(const pybind11::object& progress, RunLog& log,
                       const std::function<void(const RunContext&)>& work);
 
-// None, or what can be called; else raises TypeError.
+// Raises TypeError unless `progress` is None or callable.
 void checkProgress(const pybind11::object& progress);
 
 }  // namespace evical::python

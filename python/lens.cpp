@@ -1,4 +1,4 @@
-// evical.Camera: a lens, from its numbers to points, rays and undistorted events.
+// evical.Camera: a lens with its parameters, projection, rays and undistorted events.
 #include "core/base/error.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
@@ -24,7 +24,7 @@ namespace py = pybind11;
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
-// One of undistort_events.
+// A record of undistort_events.
 struct UndistortedEvent {
   std::int64_t time_ns;
   float x_px, y_px;
@@ -37,7 +37,7 @@ CameraIntrinsics checked(const CameraIntrinsics& camera) {
   return camera;
 }
 
-// JSON is YAML, so that a map means the same here and in a session.
+// JSON is a subset of YAML, so the map is parsed like one in a session.
 CameraIntrinsics fromMap(const py::dict& map) {
   const auto text = py::module_::import("json").attr("dumps")(map).cast<std::string>();
   return checked(readIntrinsics(YamlNode::parse(text, "intrinsics")));
@@ -55,7 +55,7 @@ py::dict toMap(const CameraIntrinsics& camera) {
   return map;
 }
 
-// `apply(in, out)` for each point along the last axis.
+// Calls `apply(in, out)` for each point along the last axis.
 template <class Apply>
 Numbers forEachPoint(const Numbers& points, py::ssize_t columns_out, const Apply& apply) {
   Numbers out(shapeLike(points, 1, {columns_out}));
@@ -99,7 +99,7 @@ WholeNumbers fieldOf(const py::array& events, const char* name) {
   const py::array values = events.attr("__getitem__")(name);
   const char kind = values.dtype().kind();
   if (kind != 'i' && kind != 'u' && kind != 'b')
-    throw py::type_error(fmt::format("the events' field {} must be of whole numbers", name));
+    throw py::type_error(fmt::format("the field {} of the events must have an integer type", name));
   return WholeNumbers(values);
 }
 
@@ -123,9 +123,9 @@ py::array undistortEvents(const CameraIntrinsics& camera, const py::array& event
     const std::int64_t x_px = x.data()[i], y_px = y.data()[i];
     if (x_px < 0 || y_px < 0 || x_px >= size_px.width_px || y_px >= size_px.height_px)
       throw badInput(fmt::format("event {}", i),
-                     fmt::format("({}, {}) is outside of the camera's {} x {} pixels", x_px, y_px,
+                     fmt::format("({}, {}) is outside the camera's {} x {} pixels", x_px, y_px,
                                  size_px.width_px, size_px.height_px),
-                     "Give the events of this camera");
+                     "Pass events of this camera");
     const Eigen::Vector2f& ideal = table(static_cast<int>(x_px), static_cast<int>(y_px));
     out[i] = {t.data()[i], ideal.x(), ideal.y(), p.data()[i] > 0};
   }
@@ -168,21 +168,21 @@ void bindNumbers(py::class_<CameraIntrinsics>& camera) {
       .def_property_readonly(
           "principal_point_px",
           [](const CameraIntrinsics& c) { return arrayOf(Eigen::VectorXd(c.principal_point_px)); },
-          "(2,): cx, cy; the middle of the top left pixel is (0, 0).")
+          "(2,): cx, cy; the centre of the top left pixel is (0, 0).")
       .def_property_readonly(
           "distortion",
           [](const CameraIntrinsics& c) {
             return arrayOf(Eigen::VectorXd(
                 Eigen::Map<const Eigen::VectorXd>(c.distortion.data(), coefficientCount(c.model))));
           },
-          "Coefficients in the order of `coefficients`, which is OpenCV's where it has the model.")
+          "Values in the order of `coefficients`, which is OpenCV's order for models that OpenCV has.")
       .def_property_readonly(
           "coefficients",
           [](const CameraIntrinsics& c) {
             const auto names = distortionNames(c.model);
             return std::vector<std::string>(names.begin(), names.begin() + coefficientCount(c.model));
           },
-          "What the coefficients are called.")
+          "Names of the distortion coefficients.")
       .def_property_readonly(
           "matrix",
           [](const CameraIntrinsics& c) {
@@ -191,47 +191,43 @@ void bindNumbers(py::class_<CameraIntrinsics>& camera) {
             matrix.col(2).head<2>() = c.principal_point_px;
             return arrayOf(Eigen::MatrixXd(matrix));
           },
-          "(3, 3): of undistorted pixels, as undistort and undistort_events give them.")
-      .def("to_dict", toMap, "The map of a session or a result.");
+          "(3, 3): camera matrix of undistorted pixels, which undistort and undistort_events return.")
+      .def("to_dict", toMap, "The intrinsics as a map, with the keys of a session or a result.");
 }
 
 }  // namespace
 
 void bindLens(py::module_& module) {
   py::class_<CameraIntrinsics> camera(module, "Camera",
-                                      "A lens. Camera frame: x right, y down, z forward; pixels with the "
-                                      "middle of the top left one at (0, 0).");
+                                      "A lens. Camera frame: x right, y down, z forward. The centre of the "
+                                      "top left pixel is (0, 0).");
   camera
       .def(py::init(&fromMap), py::arg("intrinsics"),
-           "From a session's map: model, resolution_px, focal_length_px, principal_point_px, distortion. "
-           "Raises "
-           "InputError.")
+           "From a map with the keys of a session: model, resolution_px, focal_length_px, "
+           "principal_point_px, distortion. Raises InputError.")
       .def_static(
           "load",
           [](const std::filesystem::path& path, const std::string& name) {
             return checked(readIntrinsicsFile(path, name, ""));
           },
           py::arg("path"), py::arg("name") = "",
-          "From a file: such a map, a result, a Kalibr camchain or a ROS camera_info; `name` of one of "
-          "several "
-          "cameras. Raises InputError.");
+          "From a file: such a map, a result, a Kalibr camchain or a ROS camera_info. `name` selects one of "
+          "several cameras. Raises InputError.");
   bindNumbers(camera);
   camera
       .def("project", projectPoints, py::arg("points"),
-           "Pixels (..., 2) of points (..., 3) [m, or any unit] in the camera's frame; NaN where it does not "
-           "see "
-           "them. Points outside of the image have pixels outside of it.")
+           "Pixels (..., 2) of points (..., 3) [m, or any unit] in the camera frame; NaN for points that the "
+           "lens cannot project. Pixels may be outside the image.")
       .def("unproject", unprojectPixels, py::arg("pixels"),
-           "Unit vectors (..., 3) in the camera's frame of the rays through pixels (..., 2); NaN where there "
-           "is none.")
+           "Rays through pixels (..., 2), as unit vectors (..., 3) in the camera frame; NaN for pixels "
+           "without a ray.")
       .def("undistort", idealPixels, py::arg("pixels"),
-           "Pixels (..., 2) as the lens without distortion (`matrix`) would have them; NaN beyond 85 degrees "
-           "off "
-           "the axis.")
+           "Undistorted pixels (..., 2), of a pinhole camera with `matrix`; NaN for rays at more than 85 "
+           "degrees from the optical axis.")
       .def("undistort_events", undistortEvents, py::arg("events"),
-           "(N,) records t [as given], x, y [undistorted px, float32, see `undistort`], p [bool] of (N,) "
-           "records t, "
-           "x, y, p of whole numbers. Raises InputError for events outside of the image.")
+           "Undistorts (N,) records t, x, y, p of integer types. Returns (N,) records t [unchanged], x, y "
+           "[undistorted px, float32, see `undistort`], p [bool]. Raises InputError for events outside the "
+           "image.")
       .def(py::self == py::self)
       .def("__hash__", [](const CameraIntrinsics& c) { return py::hash(stateOfLens(c)); })
       .def(py::pickle(&stateOfLens, &lensFromState))

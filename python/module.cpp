@@ -1,4 +1,4 @@
-// The Python module evical._evical; the package evical beside it is what people import.
+// The compiled module evical._evical. Programs import the package evical, which contains it.
 #include "python/bindings.h"
 
 namespace py = pybind11;

@@ -17,7 +17,7 @@ bool isRead(const StreamInfo& stream) {
   return stream.readable && std::find(kReadTypes.begin(), kReadTypes.end(), stream.type) != kReadTypes.end();
 }
 
-// Those of this name, or of this type.
+// Streams of this name or this type.
 std::vector<std::size_t> indicesOf(const RecordingReader& reader, const std::string& wanted) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
@@ -25,8 +25,9 @@ std::vector<std::size_t> indicesOf(const RecordingReader& reader, const std::str
     if (isRead(stream) && (stream.name == wanted || streamTypeName(stream.type) == wanted))
       found.push_back(i);
   }
-  if (found.empty()) static_cast<void>(findStream(reader, wanted, kReadTypes));  // says which there are
-  if (found.empty()) throw badInput(wanted, "this stream of the recording cannot be read");
+  if (found.empty())
+    static_cast<void>(findStream(reader, wanted, kReadTypes));  // throws with a list of streams
+  if (found.empty()) throw badInput(wanted, "the recording has this stream, but it cannot be read");
   return found;
 }
 

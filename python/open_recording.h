@@ -1,4 +1,4 @@
-// A recording that is open: packets for whoever asks next, from any thread.
+// An open recording. Any thread may read the next packet.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -22,7 +22,7 @@ class OpenRecording {
   std::shared_ptr<Packet> read();
   void close();
 
-  // What was known last stays known once it is closed.
+  // After close(), these return the last values.
   bool closed() const;
   std::string path() const { return path_.string(); }
   const std::string& format() const { return format_; }

@@ -1,4 +1,4 @@
-// evical.open, evical.inspect: recordings as NumPy's arrays.
+// evical.open, evical.inspect: recordings as NumPy arrays.
 #include "core/base/error.h"
 #include "core/frames/gray_image.h"
 #include "core/recording/inspection.h"
@@ -28,7 +28,7 @@ struct Stream {
   StreamInfo info;
 };
 
-// One packet with what its numbers mean; arrays of it keep it.
+// One packet with its stream's description. Arrays of its data keep it alive.
 struct PacketOfStream {
   std::shared_ptr<Packet> packet;
   StreamInfo info;
@@ -52,7 +52,7 @@ py::dtype eventType() {
                     sizeof(Event));
 }
 
-// Three doubles stand at the beginning of Eigen's vector, which is all of it.
+// Eigen's vector consists of three doubles only.
 py::dtype imuType() {
   static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && std::is_standard_layout_v<RawImuSample>);
   return recordType({{"t", "<i8", offsetof(RawImuSample, time_ns)},
@@ -70,7 +70,7 @@ py::dtype pointType() {
                     sizeof(MeasuredPoint));
 }
 
-// The packet's own memory, kept by `owner`.
+// A view of the packet's own memory, which `owner` keeps alive.
 template <class Record>
 py::array recordsOf(const std::vector<Record>& records, const py::dtype& type, const py::object& owner) {
   return {type, {static_cast<py::ssize_t>(records.size())}, {}, records.data(), owner};
@@ -134,7 +134,7 @@ py::array pixelsOf(const py::object& self) {
   const auto row_bytes = static_cast<py::ssize_t>(frame.row_bytes);
   if (height <= 0 || width <= 0 || row_bytes < width * pixel_bytes ||
       static_cast<py::ssize_t>(frame.bytes.size()) < (height - 1) * row_bytes + width * pixel_bytes)
-    throw badInput(owner.place, "a frame has fewer bytes than its size needs", "Record again");
+    throw badInput(owner.place, "a frame has fewer bytes than its resolution requires", "Record again");
   std::vector<py::ssize_t> shape = {height, width}, strides = {row_bytes, pixel_bytes};
   if (layout.channels > 1) {
     shape.push_back(layout.channels);
@@ -155,7 +155,7 @@ py::object nextPacket(const std::shared_ptr<OpenRecording>& recording) {
   } catch (const OpenRecording::Closed&) {
     throwClosed(recording->path());
   }
-  // A loop over packets is left by Ctrl-C between two of them.
+  // Ctrl-C ends a loop over packets between two of them.
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   if (!packet) return py::none();
   StreamInfo info = recording->stream(packet->stream);
@@ -186,70 +186,73 @@ void bindParts(py::module_& module) {
           "type", [](const Stream& s) { return streamTypeName(s.info.type); },
           "events, imu, frames, points, triggers or other.")
       .def_property_readonly(
-          "message", [](const Stream& s) { return s.info.message; }, "What the file calls its content.")
+          "message", [](const Stream& s) { return s.info.message; }, "The file's name for the type of data.")
       .def_property_readonly(
           "resolution_px", [](const Stream& s) { return resolutionOf(s.info.resolution_px); },
-          "(width, height), or None where the file does not say it.")
+          "(width, height), or None if the file does not state it.")
       .def_property_readonly(
-          "readable", [](const Stream& s) { return s.info.readable; }, "False: it is only listed.")
+          "readable", [](const Stream& s) { return s.info.readable; },
+          "False: the stream is only listed and cannot be read.")
       .def_property_readonly(
           "acceleration_to_m_s2", [](const Stream& s) { return metresPerSecond2(s.info.acceleration_unit); },
-          "What an IMU's `acceleration` is multiplied by to be in m/s^2, as the format says.")
+          "Factor that converts `acceleration` of an IMU to m/s^2, according to the format.")
       .def_property_readonly(
           "angular_rate_to_rad_s", [](const Stream& s) { return radiansPerSecond(s.info.angular_rate_unit); },
-          "What an IMU's `angular_rate` is multiplied by to be in rad/s, as the format says.")
+          "Factor that converts `angular_rate` of an IMU to rad/s, according to the format.")
       .def("__repr__", [](const Stream& s) {
         return fmt::format("<evical.Stream '{}': {}>", s.info.name, streamTypeName(s.info.type));
       });
-  py::class_<RecordingFault>(module, "Fault", "What is damaged or odd about a recording.")
-      .def_readonly("stream", &RecordingFault::stream, "Empty: the file as a whole.")
+  py::class_<RecordingFault>(module, "Fault", "A damage or an anomaly of a recording.")
+      .def_readonly("stream", &RecordingFault::stream, "Name of the stream; empty: the whole file.")
       .def_property_readonly("kind", [](const RecordingFault& f) { return nameOf(f.kind); })
-      .def_readonly("at_s", &RecordingFault::at_s, "Since the stream's first time; 0 where it has no place.")
-      .def_readonly("text", &RecordingFault::text, "One sentence for people.")
+      .def_readonly("at_s", &RecordingFault::at_s, "Seconds since the stream's first time; 0 if unknown.")
+      .def_readonly("text", &RecordingFault::text, "Description in one sentence.")
       .def("__repr__", [](const RecordingFault& f) {
         return fmt::format("<evical.Fault {}: {}>", nameOf(f.kind), f.text);
       });
-  py::class_<FrameOfPacket>(module, "Frame", "A frame camera's picture.")
+  py::class_<FrameOfPacket>(module, "Frame", "An image of a frame camera.")
       .def_property_readonly(
-          "t", [](const FrameOfPacket& f) { return f.frame().time_ns; }, "Its stamp, ns.")
+          "t", [](const FrameOfPacket& f) { return f.frame().time_ns; }, "Timestamp, ns.")
       .def_property_readonly(
-          "exposure_s", [](const FrameOfPacket& f) { return f.frame().exposure_s; }, "0: not known.")
+          "exposure_s", [](const FrameOfPacket& f) { return f.frame().exposure_s; },
+          "Exposure time; 0: unknown.")
       .def_property_readonly(
           "format", [](const FrameOfPacket& f) { return layoutOf(f.frame()).name; },
-          "gray8, gray16, rgb8, bgr8, rgba8, bgra8, bayer_rggb8 and the like, or encoded.")
+          "gray8, gray16, rgb8, bgr8, rgba8, bgra8, bayer_rggb8, bayer_bggr8, bayer_gbrg8, bayer_grbg8 or "
+          "encoded.")
       .def_property_readonly(
           "image", pixelsOf,
-          "Pixels as they are stored, (height, width) or (height, width, channels), uint8 or "
-          "uint16, without a copy; of encoded pictures their brightness, uint8.")
+          "Stored pixels without a copy: (height, width) or (height, width, channels), uint8 or uint16. For "
+          "encoded images the decoded brightness, uint8.")
       .def_property_readonly("brightness", brightnessOf,
-                             "(height, width), uint8: as the board is looked for in it.");
+                             "(height, width), uint8: the grey image in which the board is searched.");
 }
 
 void bindPacket(py::module_& module) {
-  py::class_<PacketOfStream>(module, "Packet", "Some events, IMU samples, frames or points of one stream.")
+  py::class_<PacketOfStream>(module, "Packet",
+                             "Consecutive events, IMU samples, frames or points of one stream.")
       .def_property_readonly("stream", [](const PacketOfStream& p) { return Stream{p.info}; })
       .def_property_readonly(
           "events",
           [](const py::object& self) {
             return recordsOf(self.cast<const PacketOfStream&>().packet->events, eventType(), self);
           },
-          "(N,) records t [ns, int64], x, y [px, uint16; (0, 0) is top left], p [bool, True: brighter], in "
-          "order "
-          "of t. The packet's own memory.")
+          "(N,) records t [ns, int64], x, y [px, uint16; (0, 0) is top left], p [bool, True: brighter], "
+          "sorted by t. A view of the packet's memory.")
       .def_property_readonly(
           "imu",
           [](const py::object& self) {
             return recordsOf(self.cast<const PacketOfStream&>().packet->imu_samples, imuType(), self);
           },
-          "(N,) records t [ns, int64], angular_rate (3,), acceleration (3,) in the recording's own units "
-          "(Stream.angular_rate_to_rad_s, Stream.acceleration_to_m_s2) and the IMU's frame; at rest the "
+          "(N,) records t [ns, int64], angular_rate (3,), acceleration (3,) in the recording's units "
+          "(Stream.angular_rate_to_rad_s, Stream.acceleration_to_m_s2) and in the IMU's frame. At rest the "
           "acceleration is +g upwards.")
       .def_property_readonly(
           "points",
           [](const py::object& self) {
             return recordsOf(self.cast<const PacketOfStream&>().packet->points, pointType(), self);
           },
-          "(N,) records t [ns, int64], point [index], x, y, sigma [px, float32; 0: not said].")
+          "(N,) records t [ns, int64], point [index], x, y, sigma [px, float32; a sigma of 0: not stated].")
       .def_property_readonly("frames", framesOf, "A list of Frame.")
       .def("__len__",
            [](const PacketOfStream& p) {
@@ -268,9 +271,8 @@ void bindRecording(py::module_& module) {
   bindPacket(module);
   py::class_<OpenRecording, std::shared_ptr<OpenRecording>>(
       module, "Recording",
-      "A recording that is open: iterate over it once, and close it, or use `with`. Memory is that of a "
-      "packet. "
-      "Threads may share it; each packet goes to one of them.")
+      "An open recording. Iterate over its packets once, then close it, or use `with`. Only one packet is "
+      "in memory at a time. Threads may share a recording; each packet goes to one of them.")
       .def("__enter__",
            [](const std::shared_ptr<OpenRecording>& r) {
              if (r->closed()) throwClosed(r->path());
@@ -280,7 +282,7 @@ void bindRecording(py::module_& module) {
           "__exit__", [](OpenRecording& r, const py::args&) { r.close(); },
           py::call_guard<py::gil_scoped_release>())
       .def("close", &OpenRecording::close, py::call_guard<py::gil_scoped_release>(),
-           "Lets go of the file; arrays that were handed out stay. Closing twice is no error.")
+           "Closes the file; arrays remain valid. A second call does nothing.")
       .def_property_readonly("closed", &OpenRecording::closed)
       .def("__iter__",
            [](const std::shared_ptr<OpenRecording>& r) {
@@ -301,10 +303,11 @@ void bindRecording(py::module_& module) {
             for (StreamInfo& info : r.streams()) streams.push_back({std::move(info)});
             return streams;
           },
-          "All that the file holds, also what is not read.")
+          "All streams of the file, including those that are not read.")
       .def_property_readonly("faults", &OpenRecording::faults,
-                             "Found so far; complete after the last packet.")
-      .def_property_readonly("fraction_read", &OpenRecording::fractionRead, "Of the file's bytes, 0..1.")
+                             "Faults found so far; complete after the last packet.")
+      .def_property_readonly("fraction_read", &OpenRecording::fractionRead,
+                             "Fraction of the file's bytes that is read, 0..1.")
       .def("__repr__", [](const OpenRecording& r) {
         return fmt::format("<evical.Recording '{}', {}{}>", r.path(), r.format(),
                            r.closed() ? ", closed" : "");
@@ -313,8 +316,8 @@ void bindRecording(py::module_& module) {
   module.def("_serve_recording", serveRecording, py::arg("path"));
   module.def("_open", openForPython, py::arg("path"), py::arg("streams"));
   module.def("inspect", inspect, py::arg("path"), py::arg("progress") = py::none(),
-             "What a recording holds and what is wrong with it: the dictionary of `evical inspect --json "
-             "--checksum`. Reads to the end.");
+             "Contents and faults of a recording: the dictionary of `evical inspect --json --checksum`. "
+             "Reads the whole recording.");
 }
 
 }  // namespace evical::python

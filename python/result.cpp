@@ -14,10 +14,10 @@
 namespace evical::python {
 namespace {
 
-// What run.data knows and result.yaml does not; it must be of the same sensors.
+// Adds the parts of run.data that result.yaml does not contain. Both must have the same sensors.
 void addRunData(const std::filesystem::path& file, Result& result) {
   if (!isThere(file)) {
-    result.missing.push_back("the trajectory: there is no run.data beside result.yaml");
+    result.missing.push_back("the trajectory: there is no run.data next to result.yaml");
     return;
   }
   ReadRunData data = readRunData(file);
@@ -26,7 +26,7 @@ void addRunData(const std::filesystem::path& file, Result& result) {
   const CalibrationState& known = result.numbers().state;
   const CalibrationState& kept = data.run.result.state;
   if (kept.cameras.size() != known.cameras.size() || kept.imus.size() != known.imus.size()) {
-    result.missing.push_back("the trajectory: run.data is of another run than result.yaml");
+    result.missing.push_back("the trajectory: run.data belongs to another run than result.yaml");
     return;
   }
   result.named.result = std::make_shared<const CalibrationResult>(std::move(data.run.result));
@@ -46,11 +46,11 @@ std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
   const std::filesystem::path file = resultFileOf(path);
   auto result = std::make_shared<Result>();
   result->named = readResultYaml(file);
-  // A file under another name was copied away from what stood beside it.
+  // A file with another name is a copy without its run.data.
   if (file.filename() == kResultFile)
     addRunData(file.parent_path() / "run.data", *result);
   else
-    result->missing.push_back("the trajectory: only result.yaml in its folder has run.data beside it");
+    result->missing.push_back("the trajectory: run.data is read only next to a file named result.yaml");
   return result;
 }
 

@@ -1,4 +1,4 @@
-// A result with all that its folder keeps of the run.
+// A result with the run data of its folder.
 #pragma once
 
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -13,19 +13,19 @@ namespace evical::python {
 
 struct Result {
   NamedResult named;
-  std::vector<std::string> missing;  // what an older or damaged folder lacks, and why
+  std::vector<std::string> missing;  // missing parts of an older or damaged folder, with the reason
 
   const CalibrationResult& numbers() const { return *named.result; }
   bool hasTrajectory() const { return !numbers().state.world_from_imu_rotation.control_points.empty(); }
 };
 
-// Of a run that has just ended; keeps its numbers, not its observations.
+// The result of a run that has just ended; keeps its numbers, not its observations.
 std::shared_ptr<const Result> resultOf(const Session& session, const CalibrationRun& run);
 
-// A result folder, its result.yaml, or such a file by itself. Throws CalibrationError (BadInput).
+// From a result folder, its result.yaml, or a separate file like that. Throws CalibrationError (BadInput).
 std::shared_ptr<const Result> loadResult(const std::filesystem::path& path);
 
-// Pickled form of a result: result.yaml, and the numbers that it does not hold.
+// Pickled form of a result: result.yaml, and the numbers that it does not contain.
 struct ResultState {
   std::string yaml, data;
   std::vector<std::string> missing;
@@ -38,7 +38,7 @@ struct Trajectory {
   std::shared_ptr<const Result> result;
 };
 
-// Throws CalibrationError (BadInput) where the result has none.
+// Throws CalibrationError (BadInput) if the result has none.
 Trajectory trajectoryOf(const std::shared_ptr<const Result>& result);
 
 }  // namespace evical::python

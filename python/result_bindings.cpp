@@ -17,7 +17,7 @@ namespace {
 
 namespace py = pybind11;
 
-// A sensor of a result, which it keeps.
+// A sensor of a result. It keeps the result alive.
 struct CameraOfResult {
   std::shared_ptr<const Result> result;
   std::size_t index;
@@ -57,24 +57,24 @@ py::dict windowsOf(const CameraFit& fit) {
   return windows;
 }
 
-// What cameras and IMUs have alike.
+// Properties that cameras and IMUs share.
 template <class Sensor>
 void bindSensor(py::class_<Sensor>& sensor) {
   sensor.def_property_readonly("name", [](const Sensor& s) { return s.known().name; })
       .def_property_readonly("stream", [](const Sensor& s) { return s.known().stream; })
       .def_property_readonly(
           "rotation_std_deg", [](const Sensor& s) { return arrayOf(inDegrees(s.sigma().rotation_std_rad)); },
-          "(3,), deg, about the reference's axes.")
+          "(3,), deg, about the axes of the reference.")
       .def_property_readonly(
           "translation_std_m", [](const Sensor& s) { return arrayOf(s.sigma().translation_std_m); },
-          "(3,), m, in the reference's frame.")
+          "(3,), m, in the frame of the reference.")
       .def_property_readonly(
           "time_offset_s", [](const Sensor& s) { return s.state().time_offset_s; },
-          "time on the reference's clock = time on the sensor's + time_offset_s.")
+          "Time on the reference's clock = time on the sensor's clock + time_offset_s.")
       .def_property_readonly("time_offset_std_s", [](const Sensor& s) { return s.sigma().time_offset_std_s; })
       .def_property_readonly(
           "clock_drift_ppm", [](const Sensor& s) { return s.state().time_offset_drift_ppm; },
-          "What the offset grows by, us per s; time_offset_s holds at clock_drift_at_s.")
+          "Growth of the offset, us per s; time_offset_s is valid at clock_drift_at_s.")
       .def_property_readonly("clock_drift_std_ppm",
                              [](const Sensor& s) { return s.sigma().time_offset_drift_std_ppm; })
       .def_property_readonly("clock_drift_at_s", [](const Sensor& s) { return s.state().time_offset_at_s; })
@@ -92,10 +92,10 @@ void bindCamera(py::module_& module) {
       .def_property_readonly(
           "reference_from_camera",
           [](const CameraOfResult& c) { return poseMatrix(c.state().reference_from_camera); },
-          "(4, 4) [m]: p_reference = reference_from_camera @ p_camera, homogeneous.")
+          "(4, 4) [m]: p_reference = reference_from_camera @ p_camera, in homogeneous coordinates.")
       .def_property_readonly(
           "intrinsics", [](const CameraOfResult& c) { return c.state().lens.inUse(); },
-          "A Camera: the lens as it was solved for, else as it was given; None where the file has none.")
+          "A Camera: the estimated lens, else the given one; None if the file has none.")
       .def_property_readonly(
           "intrinsics_std",
           [](const CameraOfResult& c) -> py::object {
@@ -103,15 +103,15 @@ void bindCamera(py::module_& module) {
             if (!sigmas) return py::none();
             return arrayOf(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(sigmas->data(), 9)));
           },
-          "(9,): sigmas of fx, fy, cx, cy [px] and up to five coefficients; None where the lens was given.")
+          "(9,): sigmas of fx, fy, cx, cy [px] and up to five coefficients; None if the lens was given.")
       .def_property_readonly(
           "line_delay_us", [](const CameraOfResult& c) { return c.state().line_delay_us; },
-          "Of frames: from one row's exposure to the next one's.")
+          "Rolling shutter of a frame camera: time between the exposures of consecutive rows.")
       .def_property_readonly("reprojection_rms_px",
                              [](const CameraOfResult& c) { return c.fit().reprojection_rms_px; })
       .def_property_readonly(
           "windows", [](const CameraOfResult& c) { return windowsOf(c.fit()); },
-          "How many windows there were: total, complete, partial, used.")
+          "Numbers of windows: total, complete, partial, used.")
       .def("__repr__",
            [](const CameraOfResult& c) { return fmt::format("<evical.CameraResult '{}'>", c.known().name); });
 }
@@ -121,10 +121,10 @@ void bindImu(py::module_& module) {
   bindSensor(imu);
   imu.def_property_readonly(
          "accelerometer_stream", [](const ImuOfResult& i) { return i.known().accelerometer_stream; },
-         "Where it has one of its own; stream is then the gyroscope's.")
+         "Stream of the accelerometer, if it is separate; `stream` is then the gyroscope's.")
       .def_property_readonly(
           "reference_from_imu", [](const ImuOfResult& i) { return poseMatrix(i.state().reference_from_imu); },
-          "(4, 4) [m]; the identity for the reference.")
+          "(4, 4) [m]: p_reference = reference_from_imu @ p_imu; the identity for the reference.")
       .def_property_readonly(
           "gyroscope_bias_rad_s",
           [](const ImuOfResult& i) { return arrayOf(i.state().gyroscope_bias_rad_s); },
@@ -134,7 +134,7 @@ void bindImu(py::module_& module) {
       .def_property_readonly(
           "gyroscope_mapping",
           [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().gyroscopeMatrix())); },
-          "(3, 3), from true rates in the IMU's frame.")
+          "(3, 3): from true rates in the IMU's frame to measured ones.")
       .def_property_readonly("gyroscope_rms_rad_s",
                              [](const ImuOfResult& i) { return i.fit().gyroscope_rms_rad_s; })
       .def_property_readonly(
@@ -150,7 +150,7 @@ void bindImu(py::module_& module) {
           "(3, 3), upper triangular.")
       .def_property_readonly(
           "accelerometer_delay_s", [](const ImuOfResult& i) { return i.state().accelerometer_delay_s; },
-          "Against the gyroscope, whose clock is the IMU's.")
+          "Delay relative to the gyroscope, whose clock is the IMU's.")
       .def_property_readonly("accelerometer_rms_m_s2",
                              [](const ImuOfResult& i) { return i.fit().accelerometer_rms_m_s2; })
       .def("__repr__",
@@ -182,7 +182,7 @@ void bindVerdict(py::class_<Result, Shared>& result) {
       .def_property_readonly(
           "status", [](const Result& r) { return statusName(r.numbers().status); }, "ok, doubtful or failed.")
       .def_property_readonly(
-          "reason", [](const Result& r) { return r.numbers().reason; }, "Why it is not ok, in plain words.")
+          "reason", [](const Result& r) { return r.numbers().reason; }, "Why the status is not ok, as text.")
       .def_property_readonly(
           "repair",
           [](const Result& r) -> py::object {
@@ -190,15 +190,15 @@ void bindVerdict(py::class_<Result, Shared>& result) {
             if (!repair) return py::none();
             return py::make_tuple(repair->key, repair->value);
           },
-          "(key, value) for Session.set, where that would mend the reason; else None.")
+          "(key, value) for Session.set if that would fix the cause; else None.")
       .def_property_readonly(
           "weakest", [](const Result& r) { return r.numbers().uncertainty.weakest; },
-          "What this recording tells least of, in plain words.")
+          "The direction that this recording determines least, as text.")
       .def_property_readonly("notes", [](const Result& r) { return r.numbers().notes; })
       .def_property_readonly(
-          "version", [](const Result& r) { return r.named.version; }, "Of the program that made it.")
+          "version", [](const Result& r) { return r.named.version; }, "Version of Evical that wrote it.")
       .def_readonly("missing", &Result::missing,
-                    "What the folder of an older program, or a damaged one, lacks, and why; empty: nothing.")
+                    "Missing parts of an older or damaged folder, with the reason; empty if complete.")
       .def_property_readonly("timing_s", timingOf);
 }
 
@@ -207,8 +207,7 @@ void bindVerdict(py::class_<Result, Shared>& result) {
 void bindResult(py::module_& module) {
   bindCamera(module);
   bindImu(module);
-  py::class_<Result, Shared> result(module, "Result",
-                                    "What a calibration says. Nothing of it can be changed.");
+  py::class_<Result, Shared> result(module, "Result", "Result of a calibration. All of it is read-only.");
   result.def_static(
       "load",
       [](const std::filesystem::path& path) {
@@ -216,13 +215,12 @@ void bindResult(py::module_& module) {
         return std::const_pointer_cast<Result>(loadResult(path));
       },
       py::arg("path"),
-      "From the folder that a calibration wrote, or its result.yaml; also truth.yaml of a simulation. Older "
-      "folders "
-      "may lack something (`missing`). Raises InputError.");
+      "From the folder that a calibration wrote, or its result.yaml; also from truth.yaml of a simulation. "
+      "`missing` lists what an older folder lacks. Raises InputError.");
   bindVerdict(result);
   result
       .def_property_readonly(
-          "reference", [](const Result& r) { return r.named.reference; }, "A sensor's name.")
+          "reference", [](const Result& r) { return r.named.reference; }, "Name of the reference sensor.")
       .def_property_readonly(
           "cameras", [](const Shared& r) { return byName<CameraOfResult>(r, r->named.cameras); },
           "CameraResult by name.")
@@ -230,14 +228,14 @@ void bindResult(py::module_& module) {
           "imus", [](const Shared& r) { return byName<ImuOfResult>(r, r->named.imus); }, "ImuResult by name.")
       .def_property_readonly(
           "gravity_m_s2", [](const Result& r) { return arrayOf(r.numbers().state.gravity_in_world_m_s2); },
-          "(3,), in the board's frame, pointing down.")
+          "(3,), in the board's frame; points down.")
       .def_property_readonly(
           "start_ns", [](const Result& r) { return r.numbers().start_ns; },
-          "Where times in seconds begin, on the recording's clock; None where it is not known.")
-      .def_property_readonly("covariance", covarianceOf, "A Covariance of all that was estimated.")
+          "Origin of times in seconds, on the recording's clock; None if unknown.")
+      .def_property_readonly("covariance", covarianceOf, "A Covariance of all estimated quantities.")
       .def_property_readonly(
           "trajectory", [](const Shared& r) { return trajectoryOf(r); },
-          "A Trajectory. Raises InputError where the folder has none.")
+          "A Trajectory. Raises InputError if the folder has none.")
       .def(py::pickle(
           [](const Result& r) {
             const ResultState state = stateOf(r);

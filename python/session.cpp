@@ -1,4 +1,4 @@
-// evical.Session: what is to be calibrated, of which recording.
+// evical.Session: the sensors to calibrate, and their recording.
 #include "core/pipeline/session/session.h"
 
 #include "core/base/error.h"
@@ -18,7 +18,7 @@ namespace {
 
 namespace py = pybind11;
 
-// An option's text as what it is.
+// The value of an option as bool, int, float or str.
 py::object valueOf(const OptionRow& row) {
   if (row.choices == std::vector<std::string>{"false", "true"}) return py::bool_(row.value == "true");
   if (!row.choices.empty()) return py::str(row.value);
@@ -33,7 +33,7 @@ py::object optionsOf(const Session& session) {
   return readOnly(options);
 }
 
-// All or nothing: a value that is refused changes nothing.
+// A value that is refused leaves the session unchanged.
 void setKey(Session& session, const std::string& key, const py::object& value) {
   const std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
                                                             : py::str(value).cast<std::string>();
@@ -44,7 +44,8 @@ void setKey(Session& session, const std::string& key, const py::object& value) {
 }
 
 Session guess(const py::args& given, const py::object& progress) {
-  if (given.empty()) throw badInput("recordings", "none is given", "Give the paths of one or several");
+  if (given.empty())
+    throw badInput("recordings", "no path is given", "Give the path of at least one recording");
   std::vector<std::filesystem::path> recordings;
   for (const py::handle& path : given) recordings.push_back(path.cast<std::filesystem::path>());
   SessionDraft draft;
@@ -64,7 +65,7 @@ Session guess(const py::args& given, const py::object& progress) {
   return draft.session;
 }
 
-// Sensors by name, as parts of the session, which they keep.
+// Sensors by name. Each is a reference into the session and keeps it alive.
 template <class Sensor>
 py::object sensorByName(std::vector<Sensor>& sensors, const py::object& session) {
   py::dict found;
@@ -80,7 +81,7 @@ std::size_t indexOf(const std::array<const char*, Count>& words, const std::stri
     if (word == words[i]) return i;
     known += (known.empty() ? "" : ", ") + std::string(words[i]);
   }
-  throw badInput(place, fmt::format("'{}' is not known", word), "Give one of: " + known);
+  throw badInput(place, fmt::format("'{}' is not a valid value", word), "Give one of: " + known);
 }
 
 constexpr std::array kShades{"dark", "bright"};
@@ -115,14 +116,14 @@ void bindBoard(py::module_& module) {
           [](Board& b, const std::string& type) {
             b.type = static_cast<BoardType>(indexOf(kBoardTypeNames, type, "board.type"));
           },
-          "asymmetric_circles, symmetric_circles, checkerboard, aprilgrid, charuco; of session files points, "
-          "too.")
-      .def_readwrite("rows", &Board::rows, "Of circles, inner corners, tags or squares.")
+          "asymmetric_circles, symmetric_circles, checkerboard, aprilgrid or charuco; session files may also "
+          "have points.")
+      .def_readwrite("rows", &Board::rows, "Number of rows of circles, inner corners, tags or squares.")
       .def_readwrite("cols", &Board::cols)
       .def_readwrite("spacing_m", &Board::spacing_m,
-                     "Between two rows of circles; a square's edge; from one tag to the next.")
-      .def_readwrite("radius_m", &Board::radius_m, "Of circles.")
-      .def_readwrite("tag_size_m", &Board::tag_size_m, "Edge of a tag's black square.")
+                     "Distance between rows of circles, edge of a square, or distance between tags.")
+      .def_readwrite("radius_m", &Board::radius_m, "Radius of the circles.")
+      .def_readwrite("tag_size_m", &Board::tag_size_m, "Edge length of a tag's black square.")
       .def_property(
           "circles", [](const Board& b) { return kShades[static_cast<std::size_t>(b.circles)]; },
           [](Board& b, const std::string& shade) {
@@ -139,9 +140,8 @@ void bindBoard(py::module_& module) {
               all.row(static_cast<Eigen::Index>(i)).head<2>() = points[i].transpose();
             return arrayOf(all);
           },
-          "(N, 3): centres of circles or corners by index, in the board's frame. Raises InputError where the "
-          "numbers "
-          "make no board.")
+          "(N, 3): circle centres or corners by index, in the board's frame. Raises InputError if the board "
+          "is invalid.")
       .def(py::pickle(&stateOfBoard, &boardFromState))
       .def("__repr__", [](const Board& b) {
         return fmt::format("<evical.Board {}, {} x {}, {} m>", boardTypeName(b.type), b.rows, b.cols,
@@ -150,7 +150,7 @@ void bindBoard(py::module_& module) {
 }
 
 void setResolution(SessionCamera& camera, const std::optional<std::array<int, 2>>& size_px) {
-  // Unknown is 0 here, and left out of files: what would be taken for that is refused at once.
+  // 0 means unknown here and is omitted from files. Values that would be taken for it are refused at once.
   if (size_px && ((*size_px)[0] <= 0 || (*size_px)[1] <= 0))
     throw badInput(fmt::format("cameras.{}.resolution_px", camera.name), "must be two numbers above 0");
   camera.resolution_px = size_px ? Resolution{(*size_px)[0], (*size_px)[1]} : Resolution{};
@@ -159,32 +159,35 @@ void setResolution(SessionCamera& camera, const std::optional<std::array<int, 2>
 void bindSensors(py::module_& module) {
   py::class_<SessionCamera>(module, "SessionCamera", "A camera of a session.")
       .def_readonly("name", &SessionCamera::name)
-      .def_readwrite("stream", &SessionCamera::stream, "Topic, or the stream's name in the file.")
+      .def_readwrite("stream", &SessionCamera::stream, "Topic or stream name in the file.")
       .def_readwrite(
           "intrinsics", &SessionCamera::intrinsics,
-          "A Camera; None: calibrated first, from the same events. A copy: assign it to change it.")
+          "A Camera; None: the lens is calibrated first, from the same events. This is a copy: assign a "
+          "Camera to change it.")
       .def_property(
           "resolution_px",
           [](const SessionCamera& c) -> std::optional<std::array<int, 2>> {
             if (!c.resolution_px.known()) return std::nullopt;
             return std::array<int, 2>{c.resolution_px.width_px, c.resolution_px.height_px};
           },
-          setResolution, "[width, height]; None: the recording says it.")
-      .def_readwrite("recording", &SessionCamera::recording, "Its own; empty: the session's.")
-      .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s, "Known: added to the stream's times.");
+          setResolution, "[width, height]; None: the recording states it.")
+      .def_readwrite("recording", &SessionCamera::recording, "Separate recording; empty: the session's.")
+      .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s,
+                     "Known offset that is added to the stream's times.");
   py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
       .def_readonly("name", &SessionImu::name)
       .def_readwrite("stream", &SessionImu::stream)
       .def_readwrite("accelerometer_stream", &SessionImu::accelerometer_stream,
-                     "Stream of the accelerometer, if it has its own. Then `stream` is the gyroscope's.")
+                     "Stream of the accelerometer, if it is separate; `stream` is then the gyroscope's.")
       .def_property(
           "gyroscope_noise_density", [](const SessionImu& i) { return i.noise.gyroscope_density; },
           [](SessionImu& i, double density) { i.noise.gyroscope_density = density; }, "rad/s/sqrt(Hz).")
       .def_property(
           "accelerometer_noise_density", [](const SessionImu& i) { return i.noise.accelerometer_density; },
           [](SessionImu& i, double density) { i.noise.accelerometer_density = density; }, "m/s^2/sqrt(Hz).")
-      .def_readwrite("recording", &SessionImu::recording, "Its own; empty: the session's.")
-      .def_readwrite("clock_offset_s", &SessionImu::clock_offset_s, "Known: added to the stream's times.");
+      .def_readwrite("recording", &SessionImu::recording, "Separate recording; empty: the session's.")
+      .def_readwrite("clock_offset_s", &SessionImu::clock_offset_s,
+                     "Known offset that is added to the stream's times.");
 }
 
 }  // namespace
@@ -192,33 +195,30 @@ void bindSensors(py::module_& module) {
 void bindSession(py::module_& module) {
   bindBoard(module);
   bindSensors(module);
-  py::class_<Session>(module, "Session",
-                      "Which recording, which board, which sensors, and what is known of them.")
+  py::class_<Session>(module, "Session", "Recording, board, sensors, and their known parameters.")
       .def_static("load", &readSession, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-                  "From a session file. Raises InputError with file, key and line.")
+                  "From a session file. Raises InputError that names file, key and line.")
       .def_static(
           "guess", &guess, py::arg("progress") = py::none(),
-          "guess(*recordings, progress=None): what recordings suggest, their event streams as cameras, their "
-          "IMUs; board and noise are to be filled in, and the logger \"evical\" says what. Reads to the end. "
-          "Raises InputError where they make no session.")
-      .def("save", &writeSession, py::arg("path"), "The file appears whole or not at all.")
+          "guess(*recordings, progress=None): drafts a session from recordings, with their event streams as "
+          "cameras, and their IMUs. Fill in board and noise; the logger \"evical\" lists what is missing. "
+          "Reads the whole recordings. Raises InputError if no session results.")
+      .def("save", &writeSession, py::arg("path"), "Writes a session file: the whole file or nothing.")
       .def(
           "to_yaml",
           [](const Session& s, const std::filesystem::path& folder) { return sessionYaml(s, folder); },
-          py::arg("folder") = ".", "What save would write; paths as seen from `folder`.")
+          py::arg("folder") = ".", "The text that save writes, with paths relative to `folder`.")
       .def("set", &setKey, py::arg("key"), py::arg("value"),
-           "What `--set` of the command line sets: an option (\"group.option\"), \"imus.NAME.KEY\" of units "
-           "and axes, "
-           "or \"time_range_s\". Raises InputError, and then changes nothing.")
+           "Sets one value, as `--set` on the command line: an option (\"group.option\"), \"imus.NAME.KEY\" "
+           "for units and axes, or \"time_range_s\". If it raises InputError, nothing is changed.")
       .def_property_readonly("options", &optionsOf,
-                             "All options by name, with their values; read-only: `set` changes them.")
+                             "Values of all options by name; read-only: use `set` to change them.")
       .def_readonly("source", &Session::source, "The file it was read from.")
       .def_readwrite("recording", &Session::recording)
       .def_readwrite("time_range_s", &Session::time_range_s,
-                     "[begin, end] since the recording's start; None: all of it.")
+                     "[begin, end] since the recording's start; None: the whole recording.")
       .def_readwrite("board", &Session::board)
-      .def_readwrite("reference", &Session::reference,
-                     "The name of an IMU; of a camera where there is no IMU.")
+      .def_readwrite("reference", &Session::reference, "Name of an IMU; of a camera if there is no IMU.")
       .def_property_readonly(
           "cameras", [](const py::object& self) { return sensorByName(self.cast<Session&>().cameras, self); },
           "SessionCamera by name. The mapping is read-only, the cameras are not.")

@@ -1,4 +1,4 @@
-// evical.Trajectory: where the reference and the cameras were.
+// evical.Trajectory: poses of the reference and of the cameras over time.
 #include "core/geometry/trajectory.h"
 
 #include "core/base/error.h"
@@ -22,12 +22,12 @@ const CalibrationState& stateOf(const Trajectory& trajectory) {
   return trajectory.result->numbers().state;
 }
 
-// NumPy takes None for a NaN.
+// NumPy would convert None to NaN.
 Numbers timesFrom(const py::object& times) {
   try {
     if (!times.is_none()) return Numbers(times);
   } catch (py::error_already_set&) {
-    // Said below.
+    // Reported below.
   }
   throw py::type_error("times must be a number or an array of numbers, in seconds");
 }
@@ -38,7 +38,7 @@ std::optional<RigidTransform> poseAt(const CalibrationState& state, double time_
   return worldFromImu(state.world_from_imu_rotation, state.imu_in_world_m, time_s);
 }
 
-// 4 x 4 row by row; NaN where there is no pose.
+// 4 x 4, row-major; NaN if there is no pose.
 void writeTrajectory(const std::optional<RigidTransform>& pose, double* to) {
   Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(to);
   if (!pose) {
@@ -68,7 +68,7 @@ std::size_t cameraNamed(const Result& result, const std::string& name) {
     if (result.named.cameras[i].name == name) return i;
     known += (known.empty() ? "" : ", ") + result.named.cameras[i].name;
   }
-  throw badInput(name, "is no camera of the result", "There are: " + known);
+  throw badInput(name, "is not a camera of the result", "Use one of: " + known);
 }
 
 Numbers at(const Trajectory& trajectory, const py::object& times_s) {
@@ -91,14 +91,14 @@ Numbers cameraAt(const Trajectory& trajectory, const std::string& name, const py
 void bindTrajectory(py::module_& module) {
   py::class_<Trajectory>(
       module, "Trajectory",
-      "Where the rig was. World = the board's frame: x along a row, y down the columns, z into it. "
+      "Motion of the rig. World = the board's frame: x along a row, y down the columns, z into the board. "
       "Times are seconds since the recording's start (Result.start_ns).")
       .def_property_readonly(
           "begin_s",
           [](const Trajectory& t) {
             return std::max(stateOf(t).world_from_imu_rotation.start_s, stateOf(t).imu_in_world_m.start_s);
           },
-          "On the reference's clock.")
+          "First time, on the reference's clock.")
       .def_property_readonly("end_s",
                              [](const Trajectory& t) {
                                return std::min(stateOf(t).world_from_imu_rotation.endTime_s(),
@@ -106,12 +106,10 @@ void bindTrajectory(py::module_& module) {
                              })
       .def("at", at, py::arg("times_s"),
            "world_from_reference, (..., 4, 4) [m], at times (...) on the reference's clock; NaN before "
-           "begin_s and "
-           "after end_s.")
-      .def(
-          "camera_at", cameraAt, py::arg("name"), py::arg("times_s"),
-          "world_from_camera, (..., 4, 4) [m], at times (...) on that camera's own clock; its time offset is "
-          "taken into account.")
+           "begin_s and after end_s.")
+      .def("camera_at", cameraAt, py::arg("name"), py::arg("times_s"),
+           "world_from_camera, (..., 4, 4) [m], at times (...) on that camera's clock; its time offset is "
+           "applied.")
       .def(py::pickle(
           [](const Trajectory& t) { return py::make_tuple(std::const_pointer_cast<Result>(t.result)); },
           [](const py::tuple& state) { return trajectoryOf(state[0].cast<std::shared_ptr<Result>>()); }))

@@ -82,6 +82,6 @@ endforeach()
 
 if(faults)
   list(JOIN faults "\n  " text)
-  message(FATAL_ERROR "Citations that lead nowhere:\n  ${text}")
+  message(FATAL_ERROR "Invalid citations:\n  ${text}")
 endif()
 message(STATUS "Citations: ${count}, all of documents, sections and functions that exist.")

@@ -1,4 +1,4 @@
-# check_citations.cmake must pass good citations and find each kind of bad one.
+# check_citations.cmake must accept valid citations and find each kind of invalid one.
 # Run with -DCHECKER=<check_citations.cmake> -DSCRATCH=<folder>; -P.
 cmake_minimum_required(VERSION 3.25)
 
@@ -11,7 +11,7 @@ function(expect outcome what maths comment)
   if(outcome STREQUAL "passes" AND NOT code EQUAL 0)
     message(FATAL_ERROR "${what}: refused")
   elseif(outcome STREQUAL "fails" AND code EQUAL 0)
-    message(FATAL_ERROR "${what}: let through")
+    message(FATAL_ERROR "${what}: accepted")
   endif()
 endfunction()
 
@@ -19,13 +19,13 @@ set(good "# Mathematics\n\n## 1. One\n\n### 1.1 First\n\n### 1.2 Second\n\n## 2.
 expect(passes "a section" "${good}" "// Text (docs/maths.md, 1.2).")
 expect(passes "a chapter" "${good}" "// Text (docs/maths.md, 2; A. Author).")
 expect(passes "a range" "${good}" "// Text (docs/maths.md, 1.1 to 1.2).")
-expect(fails "a section that isn't there" "${good}" "// Text (docs/maths.md, 1.3).")
+expect(fails "a section that does not exist" "${good}" "// Text (docs/maths.md, 1.3).")
 expect(fails "the end of a range" "${good}" "// Text (docs/maths.md, 1.1 to 2.1).")
 expect(fails "no section" "${good}" "// Text (docs/maths.md, edge timing).")
-expect(fails "a document that isn't there" "${good}" "// Text (docs/other.md).")
+expect(fails "a document that does not exist" "${good}" "// Text (docs/other.md).")
 expect(fails "a heading without a number" "${good}\n## Three\n" "// Text.")
-expect(fails "a number that is left out" "${good}\n## 4. Four\n" "// Text.")
+expect(fails "a skipped number" "${good}\n## 4. Four\n" "// Text.")
 expect(passes "a function" "${good}Code: `core/a/b` (`run`)\n" "void run();")
 expect(fails "a function that does not exist" "${good}Code: `core/a/b` (`run`, `stop`)\n" "void run();")
 expect(fails "a file that does not exist" "${good}Code: `core/a/c` (`run`)\n" "void run();")
-message(STATUS "check_citations.cmake tells good citations from bad ones.")
+message(STATUS "check_citations.cmake distinguishes valid and invalid citations.")

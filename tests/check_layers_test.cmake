@@ -1,5 +1,5 @@
-# The checker itself: a clean tree passes, and each kind of offence fails with its own words.
-#   cmake -DCHECKER=tests/check_layers.cmake -DSCRATCH=<folder> -P tests/check_layers_test.cmake
+# Tests the checker itself: a clean tree passes, and each kind of offence fails with its message.
+# cmake -DCHECKER=tests/check_layers.cmake -DSCRATCH=<folder> -P tests/check_layers_test.cmake
 cmake_minimum_required(VERSION 3.25)
 
 # check(NAME expected-text path content [path content ...]); an empty text expects success.
@@ -36,20 +36,20 @@ check(numerics_everywhere "" core/geometry/a.cpp "#include \"core/numerics/b.h\"
 check(stage_to_pipeline "core/report may not include core/pipeline" core/report/a.h "#include \"core/pipeline/b.h\"")
 check(program_to_program "core/pipeline/rig may not include core/pipeline/check" core/pipeline/rig/a.h
       "#include \"core/pipeline/check/b.h\"")
-check(program_of_no_layer "core/pipeline is no layer" core/pipeline/a.h "#include <string>")
-check(core_to_app "core knows nothing of app" core/report/a.cpp "#include \"app/b.h\"")
-check(qt_in_core "core has neither Qt nor VTK" core/report/a.cpp "#include <QString>")
-check(qt_module_in_core "core has neither Qt nor VTK" core/report/a.cpp "#  include <QtCore/QString>")
-check(vtk_in_core "core has neither Qt nor VTK" core/geometry/a.cpp "#include <vtkActor.h>")
-check(qt_in_command_line "the command line has neither" app/evical.cpp "#include <QCoreApplication>")
+check(program_of_no_layer "core/pipeline is not a layer" core/pipeline/a.h "#include <string>")
+check(core_to_app "core may not include app" core/report/a.cpp "#include \"app/b.h\"")
+check(qt_in_core "core may not include Qt or VTK" core/report/a.cpp "#include <QString>")
+check(qt_module_in_core "core may not include Qt or VTK" core/report/a.cpp "#  include <QtCore/QString>")
+check(vtk_in_core "core may not include Qt or VTK" core/geometry/a.cpp "#include <vtkActor.h>")
+check(qt_in_command_line "the command line may not" app/evical.cpp "#include <QCoreApplication>")
 check(python_clean "" python/a.cpp "#include \"core/data/event.h\"" python/b.cpp "#include \"python/a.h\"" python/a.h
       "#include <pybind11/pybind11.h>")
-check(python_to_app "the Python module has core only" python/a.cpp "#include \"app/b.h\"")
-check(python_to_qt "the Python module has core only" python/a.cpp "#include <QString>")
-check(core_to_python "core knows nothing of python" core/report/a.cpp "#include \"python/b.h\"")
-check(app_to_python "app knows nothing of python" app/evical.cpp "#include \"python/b.h\"")
+check(python_to_app "the Python module may include only core" python/a.cpp "#include \"app/b.h\"")
+check(python_to_qt "the Python module may include only core" python/a.cpp "#include <QString>")
+check(core_to_python "core may not include python" core/report/a.cpp "#include \"python/b.h\"")
+check(app_to_python "app may not include python" app/evical.cpp "#include \"python/b.h\"")
 check(qt_linked "links Qt or VTK" core/report/CMakeLists.txt "target_link_libraries(x Qt6::Core)")
-check(unknown_layer "is no layer" core/helpers/a.cpp "#include <string>")
+check(unknown_layer "is not a layer" core/helpers/a.cpp "#include <string>")
 check(library_in_header "shows ceres/ceres.h" core/optimisation/a.h "#include <ceres/ceres.h>"
       core/pipeline/rig/p.cpp "#include \"core/optimisation/a.h\"")
 check(library_by_way_of_header "core/optimisation/b.h: shows fmt/format.h" core/optimisation/a.h
@@ -60,7 +60,7 @@ check(library_in_own_header "" core/optimisation/a.h "#include <ceres/ceres.h>" 
 check(ui_screen_to_screen "ui/plots may not include ui/scene" ui/plots/a.cpp "#include \"ui/scene/b.h\"")
 check(ui_screen_to_document "ui/detection may not include ui/document" ui/detection/a.cpp
       "#include \"ui/document/b.h\"")
-check(ui_unknown_folder "is no folder" ui/helpers/a.cpp "#include \"ui/theme/theme.h\"")
+check(ui_unknown_folder "is not a folder" ui/helpers/a.cpp "#include \"ui/theme/theme.h\"")
 check(ui_clean "" ui/window/a.cpp "#include \"ui/plots/b.h\"" ui/plots/b.h "#include <QWidget>")
 check(ui_page_to_jobs "" ui/plots/a.cpp "#include \"ui/jobs/latest_job.h\"")
 check(ui_jobs_to_page "ui/jobs may not include ui/plots" ui/jobs/a.cpp "#include \"ui/plots/b.h\"")

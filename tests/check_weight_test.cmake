@@ -1,5 +1,5 @@
-# The check of folders' sizes: a folder within its budget passes, a heavy one and one without a budget fail.
-#   cmake -DCHECKER=packaging/weight.sh -DSCRATCH=<folder> -P tests/check_weight_test.cmake
+# Tests the check of folder sizes: a folder within its budget passes; one beyond it or without a budget fails.
+# cmake -DCHECKER=packaging/weight.sh -DSCRATCH=<folder> -P tests/check_weight_test.cmake
 cmake_minimum_required(VERSION 3.25)
 
 # check(NAME expected-text budget-row): core/base has 22 lines; an empty text expects success.

@@ -21,7 +21,7 @@
 namespace evical {
 namespace {
 
-// A name that nobody else has.
+// A unique name.
 std::string nameAside(const std::filesystem::path& path) {
   std::string aside = path.string() + ".part.XXXXXX";
   const int file = ::mkostemp(aside.data(), O_CLOEXEC);
@@ -30,7 +30,7 @@ std::string nameAside(const std::filesystem::path& path) {
   return aside;
 }
 
-// Moves that can be taken back until they are kept.
+// Moves that are undone by the destructor unless they are kept.
 class Moves {
  public:
   Moves() = default;
@@ -43,7 +43,7 @@ class Moves {
     }
   }
 
-  // Out of the way, if it is there.
+  // Moves an older file away, if it exists.
   void hide(const std::filesystem::path& path) {
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0) return;
@@ -64,7 +64,7 @@ class Moves {
       done_.push_back({from, to, Kind::Exchanged});
       return;
     }
-    const bool is_new = errno == ENOENT;  // else this file system exchanges nothing
+    const bool is_new = errno == ENOENT;  // else the file system does not support exchanging
     if (std::rename(from.c_str(), to.c_str()) != 0) throw writeError(to, errno);
     done_.push_back({from, to, is_new ? Kind::New : Kind::Replaced});
   }
@@ -94,7 +94,7 @@ class Moves {
   std::vector<Done> done_;
 };
 
-// The time of the last change in it.
+// Time of the latest change in a folder.
 std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
   std::error_code ignored;
   std::filesystem::file_time_type latest = std::filesystem::last_write_time(path, ignored);
@@ -155,8 +155,8 @@ void makeOutputFolder(const std::filesystem::path& folder) {
     error = std::make_error_code(std::errc::not_a_directory);
   if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
   if (error)
-    throw badInput(folder.string(), fmt::format("cannot be used as output folder: {}", error.message()),
-                   "Choose a folder that you may write to");
+    throw badInput(folder.string(), fmt::format("cannot be used as an output folder: {}", error.message()),
+                   "Choose a folder with write permission");
 }
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Files that appear whole or not at all.
+// Atomic writing of files: a file appears completely or not at all.
 #pragma once
 
 #include "core/base/text_sink.h"
@@ -10,35 +10,36 @@
 
 namespace evical {
 
-// Writes beside the target, syncs, renames. On failure throws CalibrationError (CalibrationFailed) that names
-// path and reason, leaves nothing behind and an older file as it was. The folder must exist. What is there
-// and is no file (a device, a pipe) stays.
+// Writes a temporary file next to the target, syncs and renames it. On failure, throws CalibrationError
+// (CalibrationFailed) that names path and reason, leaves no temporary file, and keeps an older file
+// unchanged. The folder must exist. An existing device or pipe is not replaced.
 void writeFileWhole(const std::filesystem::path& path, std::string_view content);
 
 struct FileContent {
   std::filesystem::path path;
   std::string content;
-  TextSource pieces = {};  // of what is large, in the place of content; refers to what it is made of
+  TextSource pieces = {};  // of large files, instead of content; references its source data
 };
 std::string contentOf(const FileContent& file);
 
-// The same for several files that belong together: all are written aside before the first takes its place,
-// and where one cannot, those before give theirs back. The last of them is the mark of the whole: it goes
-// first and comes last, so that a run that is killed between leaves no mark rather than parts of two runs.
+// The same for several files that belong together: all are written to temporary files before the first is
+// renamed. If one rename fails, those before it are undone. The last file marks the whole set as complete: it
+// is removed first and appears last, so that a killed run leaves no mark instead of parts of two runs.
 void writeFilesWhole(std::span<const FileContent> files);
 
-// The same with files and folders that are written already, elsewhere in the file system of their places; a folder takes
-// the place of an older one as a whole. Where it throws, they are where they were.
+// The same for existing files and folders, elsewhere in the same file system; a folder replaces an older one
+// as a whole. If it throws, all are in their old places.
 struct FileMove {
   std::filesystem::path from, to;
 };
 void moveFilesWhole(std::span<const FileMove> moves);
 
-// Removes what killed runs have left of this file while it was written: "NAME.part.XXXXXX", files or folders
-// in which nothing has changed for an hour.
+// Removes temporary files of this file that killed runs have left: "NAME.part.XXXXXX", files or folders
+// without a change for an hour.
 void removeLitterOf(const std::filesystem::path& path);
 
-// Makes the folder and those above it; throws CalibrationError (BadInput) if it can't be made or written to.
+// Creates the folder and its parents; throws CalibrationError (BadInput) if it cannot be created or written
+// to.
 void makeOutputFolder(const std::filesystem::path& folder);
 
 }  // namespace evical

@@ -12,12 +12,13 @@
 #include <cstring>
 #include <utility>
 
-extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to us
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX requires programs to declare it
 
 namespace evical {
 namespace {
 
-// Its files and signals as a shell would give them: none blocked, a group of its own, so that Ctrl-C reaches only us.
+// Files and signals as a shell sets them: no blocked signals; a separate process group, so that Ctrl-C
+// reaches only us.
 class SpawnSettings {
  public:
   explicit SpawnSettings(const ProcessStart& start) {
@@ -28,7 +29,7 @@ class SpawnSettings {
     posix_spawn_file_actions_addopen(&files_, STDOUT_FILENO, start.output.c_str(),
                                      O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, kReadableByAll);
     posix_spawn_file_actions_adddup2(&files_, STDOUT_FILENO, STDERR_FILENO);
-    if (start.kept_descriptor >= 0)  // onto itself: it is not closed then
+    if (start.kept_descriptor >= 0)  // duplicated onto itself, so that it stays open
       posix_spawn_file_actions_adddup2(&files_, start.kept_descriptor, start.kept_descriptor);
     sigset_t none, children;
     sigemptyset(&none);
@@ -94,7 +95,7 @@ std::optional<ProcessEnd> ChildProcess::collected(int wait_options) {
   rusage usage{};
   const pid_t found = ::wait4(process_, &status, wait_options, &usage);
   if (found == 0 || (found < 0 && errno == EINTR)) return std::nullopt;
-  if (found < 0) {  // nobody kept how it ended, as where SIGCHLD is ignored
+  if (found < 0) {  // the exit status is unavailable, for example if SIGCHLD is ignored
     end_ = ProcessEnd{-1, 0, since_start_.elapsed_s(), 0.0};
     return end_;
   }

@@ -1,4 +1,4 @@
-// Names for folders of results, from the paths of what they are made of.
+// Names for result folders, from the paths of their inputs.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace evical {
 
-// Letters, digits, '-', '_' and '.', and neither empty nor dots alone.
+// Only letters, digits, '-', '_' and '.'; neither empty nor dots alone.
 std::string fitForFolder(std::string name);
 
-// As many as there are paths, each once: by the files' names, or by those of their folders where these say more
-// ("left/recording.bag" beside "right/recording.bag"), with numbers where neither differs.
+// One unique name per path: file names, or names of the folders if these are more specific
+// ("left/recording.bag" and "right/recording.bag"), with numbers if neither is unique.
 std::vector<std::string> distinctNames(std::span<const std::filesystem::path> paths);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Lists that run parallel to another may be shorter than it.
+// Access to a list that may be shorter than the list that it is parallel to.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace evical {
 
-// The element there, or an empty one if the list is shorter.
+// values[i], or an empty element if the list is shorter.
 template <class T>
 T elementOrNone(const std::vector<T>& values, std::size_t i) {
   return i < values.size() ? values[i] : T{};

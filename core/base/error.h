@@ -1,4 +1,4 @@
-// The one exception that core throws at people: what went wrong, where, and what to do.
+// The exception of core for user-visible errors: what happened, where, and what to do.
 #pragma once
 
 #include "core/base/repair.h"
@@ -10,21 +10,20 @@
 namespace evical {
 
 enum class ErrorKind {
-  BadInput,           // usage, session or recording: exit code 2, nothing written
-  CalibrationFailed,  // a stage could not do its work: exit code 1
+  BadInput,           // invalid usage, session or recording: exit code 2, no files written
+  CalibrationFailed,  // a stage failed: exit code 1
 };
 
 class CalibrationError : public std::runtime_error {
  public:
-  // `place` names a file, a key, a stream or a time; `advice` tells what to do. Neither
-  // ends with a full stop.
+  // `place` is a file, a key, a stream or a time; `advice` is an imperative. Neither ends with a full stop.
   CalibrationError(ErrorKind kind, std::string place, std::string problem, std::string advice = {});
 
   ErrorKind kind() const { return kind_; }
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
   const std::string& advice() const { return advice_; }
-  // Of a cause that is certain, what can be set so that it is none any more.
+  // If the cause is certain: the settings that remove it.
   const std::optional<Repair>& repair() const { return repair_; }
   CalibrationError repairedBy(std::optional<Repair> repair) &&;
 
@@ -37,8 +36,8 @@ class CalibrationError : public std::runtime_error {
 CalibrationError badInput(std::string place, std::string problem, std::string advice = {});
 CalibrationError calibrationFailed(std::string place, std::string problem, std::string advice = {});
 
-// Thrown by RunContext::throwIfStopped. Not an error: whoever started the run turns
-// it into the outcome "cancelled".
+// Thrown by RunContext::throwIfStopped. Not an error: the caller that started the run converts it to the
+// outcome "cancelled".
 struct Cancelled {};
 
 }  // namespace evical

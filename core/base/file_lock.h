@@ -1,5 +1,6 @@
-// A file that one process at a time may hold, on one machine or, where the file system passes locks on (NFS from version 4,
-// Lustre with flock), on many. It is free again when that process and those that inherited it have ended, however they did.
+// Lock file for one process at a time: on one machine, or on several if the file system supports locks (NFS
+// from version 4, Lustre with flock). The lock is released when that process and those that inherited it have
+// ended, in any way.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +9,14 @@ namespace evical {
 
 class FileLock {
  public:
-  // Takes it if it is free. Throws CalibrationError (CalibrationFailed) if the file cannot be made.
+  // Acquires the lock if it is free. Throws CalibrationError (CalibrationFailed) if the file cannot be
+  // created.
   explicit FileLock(const std::filesystem::path& file);
   ~FileLock();
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;
 
-  bool taken() const { return taken_; }  // by us
+  bool taken() const { return taken_; }  // by this process
   bool tryAgain();
   int descriptor() const { return descriptor_; }
 

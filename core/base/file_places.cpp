@@ -10,8 +10,8 @@ namespace evical {
 
 CalibrationError writeError(const std::filesystem::path& path, int error) {
   return calibrationFailed(path.string(), fmt::format("cannot be written: {}", std::strerror(error)),
-                           error == ENOSPC ? "Free some space, or choose another folder"
-                                           : "Check that the folder exists and may be written to");
+                           error == ENOSPC ? "Free disk space, or choose another folder"
+                                           : "Check that the folder exists and has write permission");
 }
 
 int whyNoPlace(const std::filesystem::path& path) {

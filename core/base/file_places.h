@@ -1,4 +1,4 @@
-// Where files may be put, and what is said where they may not: for those who write them.
+// Checks of output paths, and their error messages.
 #pragma once
 
 #include "core/base/error.h"
@@ -7,10 +7,10 @@
 
 namespace evical {
 
-// That nothing can be written there, `error` as errno has it.
+// The error that this path cannot be written; `error` is an errno.
 CalibrationError writeError(const std::filesystem::path& path, int error);
 
-// Why nothing may be put there, as errno has it; 0 if it may. A rename would replace a device or a pipe.
+// Why this path cannot be replaced, as an errno; 0 if it can. A rename would replace a device or a pipe.
 int whyNoPlace(const std::filesystem::path& path);
 
 // True if the path exists, false if it does not or cannot be examined.

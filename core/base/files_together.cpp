@@ -17,7 +17,7 @@
 namespace evical {
 namespace {
 
-// 0, or errno of what failed.
+// 0, or the errno of a failure.
 int writeAll(int file, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(file, content.data(), content.size());
@@ -28,7 +28,7 @@ int writeAll(int file, std::string_view content) {
   return 0;
 }
 
-// A file that is open.
+// An open file.
 class OpenFile {
  public:
   OpenFile(int file, const std::filesystem::path& path) : file_(file), path_(path) {}
@@ -49,10 +49,10 @@ class OpenFile {
 
  private:
   int file_;
-  const std::filesystem::path& path_;  // that it is to have
+  const std::filesystem::path& path_;  // the final path
 };
 
-// mkostemp makes files private; what we write should be as readable as any other file of this person.
+// mkostemp creates private files; results get the permissions that the user's other files have.
 void giveUsualPermissions(int file) {
   const mode_t mask = ::umask(0);
   ::umask(mask);

@@ -1,5 +1,5 @@
-// Files that belong together, written one after the other: they appear all or not at all, and no more than one of them
-// need be in memory.
+// Atomic writing of a set of files one after the other: all appear or none, and at most one of them is in
+// memory.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -12,19 +12,20 @@ namespace evical {
 class FilesTogether {
  public:
   FilesTogether() = default;
-  // What was not placed goes away again, and with it the folders that were made for it.
+  // Removes files that were not placed, and the folders that were created for them.
   ~FilesTogether();
   FilesTogether(const FilesTogether&) = delete;
   FilesTogether& operator=(const FilesTogether&) = delete;
 
-  // Makes the folder and those above it, as makeOutputFolder.
+  // Creates the folder and its parents, as makeOutputFolder does.
   void makeFolder(const std::filesystem::path& folder);
-  // Beside its place, synced; throws as writeFileWhole does.
+  // Writes a temporary file next to the target, and syncs it; throws as writeFileWhole does.
   void write(const std::filesystem::path& path, const TextSource& content);
   void write(const FileContent& file);
-  // At the file's path within a folder; makes those that are not there.
+  // The same at the file's path within a folder; creates missing folders.
   void writeInto(const std::filesystem::path& folder, const FileContent& file);
-  // All take their places, as writeFilesWhole says: the one that was written last is the mark of the whole.
+  // Renames all files to their targets, as writeFilesWhole does: the last one written marks the set as
+  // complete.
   void place();
 
  private:

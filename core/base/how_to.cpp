@@ -20,7 +20,7 @@ const char* commandLineWords(HowTo way) {
     case HowTo::MakeFlashingPage:
       return "with 'evical board --blink'";
     case HowTo::SayThatBoardFlashes:
-      return "say blinking: true in the session's board";
+      return "set blinking: true for the session's board";
     case HowTo::EditBoard:
     case HowTo::EditSession:
       return "in the session";
@@ -29,7 +29,7 @@ const char* commandLineWords(HowTo way) {
     case HowTo::GiveResolution:
       return "Give resolution_px: [width, height] for this camera in the session";
     case HowTo::NameSeparateStreams:
-      return "Name both streams in the session, in place of stream: gyroscope: %1 and accelerometer: %2";
+      return "Replace the key stream of this IMU in the session by gyroscope: %1 and accelerometer: %2";
     case HowTo::NameLogOfImu:
       return "--imu %1=%2";
     case HowTo::SetAccelerationUnit:

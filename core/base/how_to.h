@@ -1,4 +1,5 @@
-// What each front end has its own words for: a message of core names the way, never a command, an option flag or a page.
+// Instructions whose wording depends on the front end: a message of core never names a command, a flag or a
+// page directly.
 #pragma once
 
 #include <initializer_list>
@@ -22,20 +23,21 @@ enum class HowTo {
   SetAccelerationUnit,  // unit
   SetAngularRateUnit,   // unit
   CalibrateEach,        // "Give several recordings ..."
-  LimitTime,            // the name of the setting: "no samples in ..."
-  UseDetections,        // the name of the setting: "leave ... out"
-  Option,               // the name of an argument
+  LimitTime,            // name of the setting: "no samples in ..."
+  UseDetections,        // name of the setting: "leave ... out"
+  Option,               // name of an argument
 };
 constexpr int kHowTos = static_cast<int>(HowTo::Option) + 1;
 
-// With %1 and %2 where the parts belong.
+// Text of one instruction, with %1 and %2 for its arguments.
 using HowToWords = const char* (*)(HowTo way);
 const char* commandLineWords(HowTo way);
 
-// Once, when a program begins; until then it is the command line that speaks.
+// Sets the front end's texts. Called once at start-up; the default is the command line's.
 void speakWith(HowToWords words);
 
-// In the words of this program's front end: for errors, which are shown. What is kept in files suits all of them.
+// The instruction for this program's front end, for displayed errors. Texts that are saved in files must not
+// depend on it.
 std::string howTo(HowTo way, std::initializer_list<std::string_view> parts = {});
 
 }  // namespace evical

@@ -1,13 +1,13 @@
-// For work beside a window: whoever looks at it goes first where both want the processor.
+// Lower thread priorities for background work, so that the window stays responsive.
 #pragma once
 
 namespace evical {
 
-// Lowers the priority of the calling thread and of those that it will start. Does nothing where the system
-// has no priorities of threads (other systems than Linux).
+// Lowers the priority of the calling thread and of the threads that it will start. No effect on systems
+// without thread priorities (other systems than Linux).
 void makeThreadModest();
 
-// The same for work that nobody waits for: it goes after all other work.
+// The same for work that nobody waits for: lowest priority.
 void makeThreadLast();
 
 }  // namespace evical

@@ -42,7 +42,7 @@ std::string nameAdvice(std::string_view name, std::span<const std::string> known
   if (known.empty()) return {};
   const std::string nearest = nearestName(name, known);
   if (!nearest.empty()) return fmt::format("Did you mean '{}'?", nearest);
-  return fmt::format("Known here: {}", joined(known));
+  return fmt::format("Known names: {}", joined(known));
 }
 
 std::string joined(std::span<const std::string> words) {

@@ -1,4 +1,4 @@
-// A folder that is made for results, and goes away again when nothing came of them.
+// A folder that is created for results, and removed if it stays empty.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -11,7 +11,7 @@ namespace evical {
 
 class NewFolder {
  public:
-  // Throws CalibrationError (BadInput) if it can't be made or written to.
+  // Throws CalibrationError (BadInput) if it cannot be created or written to.
   explicit NewFolder(const std::filesystem::path& folder) : folder_(folder), was_there_(isThere(folder)) {
     makeOutputFolder(folder);
   }

@@ -1,4 +1,5 @@
-// Numbers from texts, and as texts. A number in a text is in C's spelling whatever the locale: strtod would read "0.5" as 0 where decimals have a comma.
+// Conversion between numbers and texts. Texts use C's spelling in any locale: strtod would read "0.5" as 0 if
+// the locale has decimal commas.
 #pragma once
 
 #include <charconv>
@@ -9,7 +10,7 @@
 
 namespace evical {
 
-// All of `text`; nothing if it is no finite number.
+// All of `text` as a number; empty if it is not a finite number.
 inline std::optional<double> realFrom(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0.0;
@@ -18,10 +19,10 @@ inline std::optional<double> realFrom(std::string_view text) {
   return good ? std::optional(number) : std::nullopt;
 }
 
-// Decimals that show a number to its sigma's second digit; `without` where it has no sigma.
+// Number of decimals that shows a value to its sigma's second digit; `without` if it has no sigma.
 int decimalsFor(double sigma, int most = 6, int without = 4);
 
-// "12.345 +- 0.012"; the value alone where it has no sigma.
+// "12.345 +- 0.012"; only the value if it has no sigma.
 std::string withSigma(double value, double sigma, std::string_view between = " +- ");
 
 }  // namespace evical

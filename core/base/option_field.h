@@ -1,5 +1,5 @@
 // One row per option: name, member, default, range, unit and help. Session files, --set, validation, `evical
-// options` and the forms all walk these rows. They are in the source beside the struct:
+// options` and the forms all use these rows. They are defined in the source file of the struct:
 //
 //   constexpr std::tuple kFields{
 //       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, within(1, 5), "px", "Half width."},
@@ -24,7 +24,7 @@ namespace evical {
 
 template <class Value>
 struct Range {
-  Value least, most;  // both allowed
+  Value least, most;  // inclusive
 };
 template <class Value>
 constexpr Range<Value> within(Value least, Value most) {
@@ -46,7 +46,7 @@ template <class Options, class Value>
 Field(const char*, Value Options::*, std::type_identity_t<Value>, Range<std::type_identity_t<Value>>,
       const char*, const char*, Level = Level::Tuning, Applies = Applies::Always) -> Field<Options, Value>;
 
-// On or off.
+// A boolean option.
 template <class Options>
 struct Switch {
   const char* name;
@@ -60,7 +60,7 @@ template <class Options>
 Switch(const char*, bool Options::*, bool, const char*, Level = Level::Tuning, Applies = Applies::Always)
     -> Switch<Options>;
 
-// One of a few words; enumerator i is written as choices[i].
+// One of several words; enumerator i is written as choices[i].
 template <class Options, class Enum, std::size_t Count>
 struct Choice {
   const char* name;
@@ -75,7 +75,7 @@ template <class Options, class Enum, std::size_t Count>
 Choice(const char*, Enum Options::*, std::type_identity_t<Enum>, std::array<const char*, Count>, const char*,
        Level = Level::Tuning, Applies = Applies::Always) -> Choice<Options, Enum, Count>;
 
-// A relation between two options: the one is never above the other.
+// A constraint on two options: the first must not exceed the second.
 template <class Options, class Value>
 struct Ordered {
   Value Options::*lower;
@@ -96,8 +96,9 @@ constexpr void giveDefaults(Options& options, const Fields& fields) {
   forEachField(fields, [&](const auto& field) { options.*field.member = field.initial; });
 }
 
-// Comparing reads every member, and one without a row has no value: then this is no constant expression. (GCC
-// 12 forgets that where a function returns the struct, so it is filled here once more.)
+// The comparison reads every member. A member without a row is uninitialised, so the expression is not
+// constant and does not compile. (GCC 12 misses that if a function returns the struct, so the defaults are
+// set here again.)
 template <class Options, class Fields>
 constexpr bool giveEveryMember(const Fields& fields) {
   Options options{NoDefaults{}};
@@ -108,7 +109,7 @@ constexpr bool giveEveryMember(const Fields& fields) {
 
 }  // namespace detail
 
-// Does not compile where a member has no row.
+// The defaults; does not compile if a member has no row.
 template <class Options, const auto& kFields>
 constexpr Options defaultsOf() {
   static_assert(detail::giveEveryMember<Options>(kFields), "every option needs a row");

@@ -1,4 +1,4 @@
-// One option as text, for people, files and forms; and the error of two options that exclude each other.
+// One option as text, for users, files and forms; and the error of two options that contradict each other.
 #pragma once
 
 #include "core/base/error.h"
@@ -9,18 +9,19 @@
 
 namespace evical {
 
-// Public options are what people can judge, and are shown first; Expert ones are for those who know the method. Tuning
-// is for tests and developers: in no form, help or document, without promises, and its names begin with "tuning.".
+// Public options need no knowledge of the method, and are shown first; Expert options need it. Tuning options
+// are for tests and developers: absent from forms, help and documents, without guarantees; their names begin
+// with "tuning.".
 enum class Level { Tuning, Expert, Public };
 
 inline constexpr std::string_view kTuning = "tuning.";
 
-// The name in the tables: without "tuning.".
+// Name in the tables: without "tuning.".
 inline std::string_view nameInTables(std::string_view name) {
   return name.starts_with(kTuning) ? name.substr(kTuning.size()) : name;
 }
 
-// What an option needs to have an effect (idle_options.h).
+// The conditions under which an option has an effect (idle_options.h).
 enum class Applies {
   Always,
   WithImu,
@@ -41,20 +42,20 @@ enum class Applies {
   InMaintain
 };
 
-// Minimum and maximum are empty for switches and choices, whose words `choices` gives.
+// Minimum and maximum are empty for switches and choices; `choices` lists the words of a choice.
 struct OptionRow {
   std::string name, default_value, value, minimum, maximum, unit, help;
   std::vector<std::string> choices;
   Level level = Level::Tuning;
-  std::vector<Applies> applies = {};  // all that it needs
+  std::vector<Applies> applies = {};  // all must be met
 };
 
-// BadInput whose text names both options with their values.
+// BadInput whose text gives both options with their values.
 class OptionConflict : public CalibrationError {
  public:
   OptionConflict(const OptionRow& lower, const OptionRow& upper);
 
-  // Full names; the first must not be above the second.
+  // Full names; the first must not exceed the second.
   const std::string& lower() const { return lower_; }
   const std::string& upper() const { return upper_; }
 

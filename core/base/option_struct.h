@@ -1,6 +1,5 @@
-// What the header of an options struct needs; its rows, which hold defaults, ranges and help, are
-// in the source beside it (option_field.h, option_table.h), so that a change of a default or a
-// text rebuilds that source only.
+// Declarations for the header of an options struct. Its rows (defaults, ranges, help) are in its source file
+// (option_field.h, option_table.h), so that a change of a default or a text rebuilds only that source.
 //
 //   struct NormalFlowOptions {
 //     int plane_radius_px;
@@ -15,7 +14,7 @@
 
 namespace evical {
 
-// Makes a struct whose members have no values yet: defaultsOf (option_field.h) gives them theirs.
+// Tag of the constructor that leaves members uninitialised: defaultsOf (option_field.h) sets them.
 struct NoDefaults {};
 
 template <class Options>

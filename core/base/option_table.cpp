@@ -34,7 +34,7 @@ OptionConflict::OptionConflict(const OptionRow& lower, const OptionRow& upper)
 namespace detail {
 namespace {
 
-// All of `text` as a number, or false. from_chars: no locale, no blanks, no hexadecimal.
+// Parses all of `text` as a number; false if it is not one. from_chars: no locale, no blanks, no hexadecimal.
 template <class Number>
 bool parseWhole(std::string_view text, Number& value) {
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -49,7 +49,7 @@ void checkRange(const std::string& name, Number value, Number minimum, Number ma
   throw badInput(
       name,
       fmt::format("{} is {} the {} of {}", withUnit(numberText(value), unit), below ? "below" : "above",
-                  below ? "least" : "most", withUnit(numberText(below ? minimum : maximum), unit)),
+                  below ? "minimum" : "maximum", withUnit(numberText(below ? minimum : maximum), unit)),
       fmt::format("Give a value from {} to {}", numberText(minimum), withUnit(numberText(maximum), unit)));
 }
 

@@ -1,6 +1,6 @@
-// The rows of one options struct (option_field.h) behind functions of text: set from text, checked against
-// type, range and each other, listed for people. All values travel as text here, so session files, --set and
-// forms share one way in.
+// Text access to the rows of one options struct (option_field.h): set from text, validated against type,
+// range and each other, listed for users. All values are passed as text, so that session files, --set and
+// forms share one code path.
 #pragma once
 
 #include "core/base/nearest_name.h"
@@ -25,7 +25,7 @@ std::string fullName(const OptionRow& row, const std::string& group);
 std::string numberText(double value);
 std::string numberText(std::int64_t value);
 
-// Throw CalibrationError (BadInput, place `name`) that names value, bound and unit.
+// Throw CalibrationError (BadInput, place `name`) that gives value, bound and unit.
 double parseReal(const std::string& name, std::string_view text, double minimum, double maximum,
                  const char* unit);
 std::int64_t parseInteger(const std::string& name, std::string_view text, std::int64_t minimum,
@@ -95,23 +95,23 @@ class OptionTable {
   template <class Fields, class... Values>
   explicit OptionTable(const Fields& fields, const Ordered<Options, Values>&... orders);
 
-  // Without group and "tuning."; null: there is no such option.
+  // Name without group and "tuning."; null if there is no such option.
   const OptionRow* find(std::string_view name) const;
 
-  // `group` precedes names here and in messages ("grid" gives "grid.least_circles"), and "tuning." those of tuning;
-  // empty for none.
+  // `group` is the prefix of names here and in messages ("grid" gives "grid.least_circles"), followed by
+  // "tuning." for tuning options; may be empty.
   std::vector<OptionRow> rows(const Options& options, const std::string& group) const;
 
-  // Throws CalibrationError (BadInput) that names the option, and what is wrong or the nearest known name. A
-  // value that does not fit another option's is only found by checkOrder, when all are set.
+  // Throws CalibrationError (BadInput) with the option's name, and the problem or the nearest known name.
+  // Contradictions between options are found by checkOrder, after all are set.
   void set(Options& options, const std::string& group, std::string_view name, std::string_view text) const;
 
-  // Throws OptionConflict for the first two options of which the lower is above the upper.
+  // Throws OptionConflict for the first pair whose lower option exceeds the upper one.
   void checkOrder(const Options& options, const std::string& group) const;
 
  private:
   struct Entry {
-    OptionRow row;  // without group and value
+    OptionRow row;  // group and value are not set
     std::function<std::string(const Options&)> text;
     std::function<void(Options&, const std::string& full_name, std::string_view)> set;
   };

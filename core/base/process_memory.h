@@ -3,10 +3,10 @@
 
 namespace evical {
 
-// How much was in use at most, in MB (10^6 bytes); 0 where the system does not say.
+// Peak memory use in MB (10^6 bytes); 0 if the system does not report it.
 double peakMemory_mb();
 
-// To the system goes what is free; by itself little of it does where what is kept lies between.
+// Returns free heap memory to the system. The allocator keeps most of it if used blocks are in between.
 void giveBackFreeMemory();
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// What long work may tell the outside, and how it learns that it should stop. No threads, no GUI in here.
+// Progress reports of long work, and the request to stop it. Without threads and GUI.
 #pragma once
 
 #include <stop_token>
@@ -8,14 +8,14 @@
 
 namespace evical {
 
-class CalibrationObserver;  // core/data/calibration_observer.h; from here it is only handed on
+class CalibrationObserver;  // core/data/calibration_observer.h; only passed on here
 
 enum class LogLevel { Debug, Info, Warning };
-const char* levelName(LogLevel level);  // as logs have it
+const char* levelName(LogLevel level);  // as printed in logs
 
-// A stage of long work. Stages of several parts have the same names: then `part` tells which one it is of.
+// A stage of long work. If several parts have stages of the same name, `part` identifies the part.
 struct ProgressStage {
-  // NOLINTBEGIN(google-explicit-constructor): most stages are a name
+  // NOLINTBEGIN(google-explicit-constructor): most stages consist of a name
   ProgressStage(const char* given, std::string_view of = {}) : name(given), part(of) {}
   ProgressStage(std::string given, std::string_view of = {}) : name(std::move(given)), part(of) {}
   // NOLINTEND(google-explicit-constructor)
@@ -26,8 +26,8 @@ struct ProgressStage {
   std::string name, part;  // of a calibration: core/data/calibration_stage.h
 };
 
-// Called from worker threads; implementations lock where they must. All fractions are real: work
-// done / work to do.
+// Called from worker threads; implementations must lock if necessary. All fractions are work done / work to
+// do.
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;
@@ -36,16 +36,16 @@ class ProgressSink {
   virtual void log(LogLevel level, std::string_view text) = 0;
 };
 
-// Swallows everything; for tests and small tools.
+// Discards all reports; for tests and small tools.
 ProgressSink& silentProgress();
 
 struct RunContext {
   ProgressSink& progress = silentProgress();
   std::stop_token stop = {};
-  CalibrationObserver* observer = nullptr;  // not owned; null: nobody watches
+  CalibrationObserver* observer = nullptr;  // not owned; may be null
 
   void throwIfStopped() const;  // throws Cancelled
-  // For work on the way whose steps are not those of the run itself.
+  // For sub-tasks whose stages are not those of the run.
   RunContext unobserved() const { return {progress, stop, nullptr}; }
 };
 

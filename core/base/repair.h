@@ -1,4 +1,4 @@
-// What would mend what is wrong, where that can be set: as data, so that a command line can print it and a window offer it.
+// The setting that fixes a problem, as data: a command line can print it and a window offer it.
 #pragma once
 
 #include <string>
@@ -6,8 +6,9 @@
 namespace evical {
 
 struct Repair {
-  // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU, "imus.left_imu.acceleration_unit", or
-  // "time_range_s": setInSession (core/pipeline/session/session.h) takes them all.
+  // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU,
+  // "imus.left_imu.acceleration_unit", or "time_range_s": accepted by setInSession
+  // (core/pipeline/session/session.h).
   std::string key, value;
 
   bool operator==(const Repair&) const = default;

@@ -18,7 +18,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kStageRow = 0;  // those of threads follow
+constexpr std::size_t kStageRow = 0;  // followed by the rows of threads
 constexpr double kMicroseconds = 1e6;
 
 std::string jsonText(std::string_view text) {
@@ -45,7 +45,7 @@ std::string rowName(std::size_t row, std::string_view name) {
                      jsonText(name));
 }
 
-// Since it began.
+// Computing time since the process began.
 std::optional<double> computing_s(const std::filesystem::path& task) {
   std::ifstream file(task / "schedstat");
   double nanoseconds = 0.0;
@@ -128,7 +128,7 @@ void RunTrace::look() {
   looked_s_ = now_s;
 }
 
-// One that is new has begun since the last look. Those that others keep from the processors are at work, too.
+// A new thread has begun since the last sample. A thread that waits for a processor counts as working.
 void RunTrace::lookAt(int thread_id, double spent_s, double now_s) {
   constexpr double kLeastShare = 0.02;
   const auto [found, is_new] = threads_.try_emplace(thread_id);
@@ -149,7 +149,7 @@ void RunTrace::lookAt(int thread_id, double spent_s, double now_s) {
   work.computing_s += worked_s;
 }
 
-// Threads that have ended leave theirs to the next ones.
+// Rows of ended threads are used again by new threads.
 std::size_t RunTrace::freeRow() const {
   const auto isTaken = [&](std::size_t row) {
     return std::any_of(threads_.begin(), threads_.end(),

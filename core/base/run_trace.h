@@ -1,5 +1,5 @@
-// Where a run's time goes: its stages and what it logs, when which thread was at work, processors and memory in use, as a
-// trace in the JSON that Chrome (chrome://tracing) and Perfetto open.
+// Execution trace of a run: stages, logs, work per thread, processors and memory in use; in the JSON of
+// Chrome (chrome://tracing) and Perfetto.
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,8 +15,8 @@
 
 namespace evical {
 
-// Hands on to another sink what it is told. Threads and counters are looked at a hundred times a second, by a thread of its
-// own that does not count; where the system does not tell of them (other systems than Linux) they are missing.
+// Forwards all reports to another sink. Threads and counters are sampled 100 times per second by a separate
+// thread, which is not counted; they are missing on other systems than Linux.
 class RunTrace final : public ProgressSink {
  public:
   explicit RunTrace(ProgressSink& shown);
@@ -25,7 +25,7 @@ class RunTrace final : public ProgressSink {
   void stageProgress(double fraction_of_stage) override { shown_.stageProgress(fraction_of_stage); }
   void log(LogLevel level, std::string_view text) override;
 
-  // Until now; the last stage ends here.
+  // The trace until now; the last stage ends here.
   std::string json();
 
  private:
@@ -33,7 +33,7 @@ class RunTrace final : public ProgressSink {
     double at_s;
     std::string text;
   };
-  // A stretch of time in which a thread was at work.
+  // An interval in which a thread was working.
   struct Work {
     double begin_s, end_s, computing_s;
     std::size_t row;
@@ -41,7 +41,7 @@ class RunTrace final : public ProgressSink {
   struct Thread {
     double computing_s = 0.0;
     std::size_t row = 0;
-    std::ptrdiff_t work = -1;  // the stretch that goes on, in work_
+    std::ptrdiff_t work = -1;  // index of the current interval in work_; -1: idle
     bool seen = false;
   };
   struct Counters {
@@ -59,10 +59,10 @@ class RunTrace final : public ProgressSink {
   std::vector<Told> stages_, logged_;
   std::vector<Work> work_;
   std::vector<Counters> counters_;
-  std::map<int, Thread> threads_;    // that are there, by the system's number
-  double looked_s_ = 0.0, spent_s_;  // when it looked last, and what the process had computed by then
+  std::map<int, Thread> threads_;    // existing threads, by their id
+  double looked_s_ = 0.0, spent_s_;  // latest sample: time, and computing time of the process
   std::atomic<int> watcher_id_ = 0;
-  std::jthread watcher_;  // last: it uses the others
+  std::jthread watcher_;  // last member: uses the others
 };
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-// Options that most code only copies. It holds them by pointer to a constant value, so a file that copies them does not
-// need their definition and is not rebuilt when they change.
+// Shared, immutable options for code that only copies them. They are kept by pointer, so that a file that
+// copies them does not need their definition and is not rebuilt when they change.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ class SharedOptions {
     options_ = std::make_shared<const Options>(std::move(options));
     return *this;
   }
-  // A copy of its own, for a change at once: it must not be kept, since later copies share it.
+  // Copies the options before a change. Do not keep the reference: later copies share it.
   Options& edit() {
     auto copy = std::make_shared<Options>(*options_);
     Options& own = *copy;
@@ -30,7 +30,7 @@ class SharedOptions {
   }
 
  private:
-  std::shared_ptr<const Options> options_;  // never changed, only replaced
+  std::shared_ptr<const Options> options_;  // immutable; replaced on change
 };
 
 }  // namespace evical

@@ -1,11 +1,11 @@
-// Text as one word of a shell's command line, for commands that people copy.
+// Quoting of a text as one word of a shell command, for commands that users copy.
 #pragma once
 
 #include <string>
 
 namespace evical {
 
-// As it is where that is one word, else in single quotes.
+// Unchanged if no quotes are needed, else in single quotes.
 inline std::string shellWord(const std::string& text) {
   constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;

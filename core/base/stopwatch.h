@@ -1,4 +1,4 @@
-// How long work takes, by a clock that nobody sets.
+// Elapsed time by a monotonic clock.
 #pragma once
 
 #include <chrono>
@@ -7,10 +7,10 @@ namespace evical {
 
 class Stopwatch {
  public:
-  // Since it was made or restarted.
+  // Since construction or the last restart.
   double elapsed_s() const { return secondsFrom(Clock::now() - begin_); }
 
-  // Starts again; how long it ran.
+  // Restarts; returns the elapsed time.
   double restart_s() {
     const Clock::time_point now = Clock::now();
     const double since_s = secondsFrom(now - begin_);

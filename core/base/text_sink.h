@@ -1,4 +1,4 @@
-// Texts that are too large to be held in memory as a whole: handed on piece by piece.
+// Sinks for texts that are too large for memory: passed on piece by piece.
 #pragma once
 
 #include <functional>

@@ -24,7 +24,7 @@ YamlNode::YamlNode(std::shared_ptr<const Node> node, std::string file, std::stri
 
 namespace {
 
-// What waits for a writer, never ends, or is a recording by mistake is not read into memory.
+// Devices, pipes and files of a recording's size are rejected before they are read into memory.
 void requireText(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 64 << 20;
   std::error_code error;
@@ -48,7 +48,7 @@ YamlNode YamlNode::load(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   if (!stream || !(content << stream.rdbuf()))
-    throw badInput(file.string(), "cannot be read, or is empty", "Check the file and its permissions");
+    throw badInput(file.string(), "is empty or cannot be read", "Check the file and its permissions");
   return parse(content.str(), file.string());
 }
 
@@ -57,7 +57,7 @@ YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
     return {std::make_shared<const Node>(Node{YAML::Load(text), 1}), file, ""};
   } catch (const YAML::Exception& problem) {
     throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1),
-                   fmt::format("is no valid YAML: {}", problem.msg),
+                   fmt::format("is not valid YAML: {}", problem.msg),
                    "Correct the line, or the one before it");
   }
 }
@@ -95,10 +95,10 @@ std::vector<std::string> YamlNode::keys() const {
   std::vector<std::string> names;
   for (const auto& entry : node_->yaml) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name.empty()) throw error("has a key that is no plain word");
+    if (name.empty()) throw error("has a key that is not a plain word");
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw child(name, {entry.second, entry.first.Mark().line + 1})
-          .error("is there twice", "Remove one of them");
+          .error("occurs twice", "Remove one of them");
     names.push_back(name);
   }
   return names;
@@ -128,7 +128,7 @@ bool YamlNode::has(const std::string& name) const {
 
 YamlNode YamlNode::operator[](const std::string& name) const {
   if (const auto found = find(name)) return *found;
-  throw child(name, {YAML::Node(), 0}).error("is missing", fmt::format("Add '{}' here", name));
+  throw child(name, {YAML::Node(), 0}).error("is missing", fmt::format("Add '{}'", name));
 }
 
 std::vector<YamlNode> YamlNode::items() const {

@@ -1,5 +1,5 @@
-// YAML as our readers want it: every error says file, key and line; unknown keys are errors that name the
-// nearest known one. yaml-cpp stays behind this.
+// Strict YAML reader: every error has file, key and line; an unknown key is an error that suggests the
+// nearest known one. Hides yaml-cpp.
 #pragma once
 
 #include "core/base/error.h"
@@ -28,11 +28,11 @@ class YamlNode {
   bool isNull() const;
 
   // Maps
-  std::vector<std::string> keys() const;  // throws unless a map, or when a key is there twice
+  std::vector<std::string> keys() const;  // throws if this is not a map, or if a key occurs twice
   void allowOnly(std::initializer_list<const char*> known) const;
   void allowOnly(const std::vector<std::string>& known) const;
   bool has(const std::string& key) const;
-  YamlNode operator[](const std::string& key) const;  // throws when it isn't there
+  YamlNode operator[](const std::string& key) const;  // throws if it is missing
   std::optional<YamlNode> find(const std::string& key) const;
 
   // Sequences
@@ -43,7 +43,7 @@ class YamlNode {
   double real() const;  // finite
   double real(double minimum, double maximum, const char* unit) const;
   int integer(int minimum, int maximum) const;
-  std::int64_t nanoseconds() const;  // any whole number
+  std::int64_t nanoseconds() const;  // any integer
   std::vector<double> reals() const;
   std::vector<double> reals(std::size_t count) const;
   std::size_t choice(std::initializer_list<const char*> words) const;
@@ -62,7 +62,7 @@ class YamlNode {
   std::string file_, key_;
 };
 
-// A string as a YAML scalar, in double quotes where it needs them.
+// A string as a YAML scalar, in double quotes if necessary.
 std::string yamlText(std::string_view text);
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-// Comparison of new data with an old result, quantity by quantity: the common part of `evical check`, `evical maintain` and
-// `evical repeat`.
+// Comparison of new data with an old result, quantity by quantity: the common part of `evical check`, `evical
+// maintain` and `evical repeat`.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace evical {
 
 enum class Verdict { Unchanged, Changed, CannotTell };
 
-// A number that may be missing. Its sigma is 0 where the number was given.
+// An optional number. Its sigma is 0 if the number was given.
 struct ValueWithSigma {
   double value = std::numeric_limits<double>::quiet_NaN(), sigma = 0.0;
 
@@ -21,31 +21,31 @@ struct ValueWithSigma {
 // One number of a quantity, in shown units.
 struct ComparedNumber {
   std::string name, unit;      // "rotation.x", "deg"
-  ValueWithSigma before = {};  // as the old result has it
-  ValueWithSigma now = {};     // of the new data alone
-  ValueWithSigma joint = {};   // of the new data with the old result as prior
-  ValueWithSigma change = {};  // of a step, which has nothing else
+  ValueWithSigma before = {};  // in the old result
+  ValueWithSigma now = {};     // from the new data alone
+  ValueWithSigma joint = {};   // from the new data with the old result as prior
+  ValueWithSigma change = {};  // of a step, which has no other values
 };
 
 // Data that a finding is based on.
 enum class FindingSource { Recording, Stops, Trajectory, OtherImu };
 
-// A quantity of a sensor as a whole: its change has a size in one unit, of a lens the RMS over its image.
+// A quantity of one sensor: its change has a size in one unit; for a lens it is the RMS over its image.
 struct Finding {
-  std::string sensor, against;        // `against`: the sensor that it is relative to; empty: none is named
+  std::string sensor, against;        // `against`: the sensor that it is relative to; may be empty
   std::string quantity, title, unit;  // "translation", "lever arm", "mm"
   FindingSource source = FindingSource::Recording;
   std::vector<ComparedNumber> numbers;
-  // If only this has changed, and all others by no more than they may.
+  // The change if only this quantity has changed, and all others at most by the allowed drift.
   double change = 0.0, change_sigma = 0.0;
-  double sigmas = 0.0;        // the change by its covariance
-  double limit_sigmas = 0.0;  // significant beyond `allowed_drift`
-  double edge_px = 0.0;  // what it moves at most at the image's edge; 0: nothing, or not that of a camera
-  double smallest_detectable_change = 0.0;  // found with a probability of 95 %, in any direction
+  double sigmas = 0.0;                      // size of the change relative to its covariance
+  double limit_sigmas = 0.0;                // limit of `sigmas`, which allows for `allowed_drift`
+  double edge_px = 0.0;                     // largest shift at the image's edge; 0: none, or not of a camera
+  double smallest_detectable_change = 0.0;  // detected with a probability of 95 %, in any direction
   double allowed_drift = 0.0;               // changes up to this size are ignored
-  double required_detectability = 0.0;      // a change that the verdict must be able to exclude; 0: any
+  double required_detectability = 0.0;      // size of change that the verdict must be able to exclude; 0: any
   bool changed = false;
-  std::vector<std::string> alternatives;  // other quantities whose change explains the data as well
+  std::vector<std::string> alternatives;  // other quantities whose change explains the data equally well
 
   bool isConclusive() const {
     return required_detectability <= 0.0 || smallest_detectable_change <= required_detectability;
@@ -58,13 +58,13 @@ struct Finding {
 
 struct Assessment {
   Verdict verdict = Verdict::CannotTell;
-  std::string reason;  // a sentence without its full stop
+  std::string reason;  // a sentence without full stop
   std::vector<Finding> findings;
   std::vector<std::string> advice;  // what to do
   std::vector<std::string> notes;
-  double false_alarms = 0.0;        // upper bound of the share of unchanged cases that are called changed
-  std::string before;               // the old result as people know it; empty: there is none
-  std::vector<std::string> inputs;  // recordings or logs as people know them
+  double false_alarms = 0.0;  // upper bound on the share of unchanged cases that are reported as changed
+  std::string before;         // name of the old result; may be empty
+  std::vector<std::string> inputs;  // names of recordings or logs
   std::string version;
 };
 

@@ -24,7 +24,7 @@ Height largest(const BoardState& state, const Board& board) {
 
 }  // namespace
 
-// An arc's sagitta, and x y between the middle and a corner.
+// An arc's sagitta; for a twist, x y between the middle and a corner.
 double bowHeight_m2(QuantityId curvature, const Board& board) {
   const Eigen::Vector2d extent_m = board.extent_m();
   if (curvature == QuantityId::Twist) return extent_m.x() * extent_m.y() / 4.0;
@@ -35,12 +35,12 @@ double bowHeight_m2(QuantityId curvature, const Board& board) {
 std::string bowWords(const BoardState& state, const Board& board, const std::string& called) {
   const Height most = largest(state, board);
   if (most.of == QuantityId::Twist)
-    return fmt::format("the {} seems bent: twisted, so that its corners stand out or lie back by {:.2g} mm",
+    return fmt::format("the {} seems bent: twisted, with corners that protrude or are recessed by {:.2g} mm",
                        called, std::abs(most.mm));
   const bool rows = most.of == QuantityId::RowCurvature;
-  return fmt::format("the {} seems bent: over the {:.2g} m of its {} the middle {} by {:.2g} mm", called,
+  return fmt::format("the {} seems bent: over the {:.2g} m of its {}, the middle {} by {:.2g} mm", called,
                      rows ? board.extent_m().x() : board.extent_m().y(), rows ? "rows" : "columns",
-                     most.mm > 0.0 ? "stands out" : "lies back", std::abs(most.mm));
+                     most.mm > 0.0 ? "protrudes" : "is recessed", std::abs(most.mm));
 }
 
 double largestBow_mm(const BoardState& state, const Board& board) {

@@ -1,4 +1,4 @@
-// How far a board is from flat, for people: curvatures as heights over the board's own lengths.
+// Deviation of a board from a plane: curvatures as heights over the board's lengths.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -9,14 +9,15 @@
 
 namespace evical {
 
-// What one unit of this curvature (row_curvature, column_curvature, twist) makes of it: by how much the middle of its
-// rows, or of its columns, stands out against their ends; of a twist, two corners against the other two's plane.
+// Height for one unit of this curvature (row_curvature, column_curvature, twist): of the middle of a row or
+// column over its ends; for a twist, of two corners over the plane of the other two.
 double bowHeight_m2(QuantityId curvature, const Board& board);
 
-// "the board seems bent: over the 0.5 m of its columns the middle stands out by 1.1 mm"; of the largest.
+// Description of the largest one: "the board seems bent: over the 0.5 m of its columns, the middle protrudes
+// by 1.1 mm".
 std::string bowWords(const BoardState& state, const Board& board, const std::string& called = "board");
 
-// That in mm, without a sign.
+// Its magnitude in mm.
 double largestBow_mm(const BoardState& state, const Board& board);
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-// What was found of the board: its points over time, each with its own time, covariance and velocity. They are
-// called circles, as which event cameras see them; corners are circles of radius 0.
+// Observations of the board: its points over time, each with its own time, covariance and velocity. All
+// points are called circles, which is what event cameras detect; corners are circles of radius 0.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@
 
 namespace evical {
 
-// One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) where the camera's
-// intrinsics are known, and the sensor's own otherwise.
+// One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) if the camera's
+// intrinsics are known, else the sensor's own pixels.
 struct CircleObservation {
   int circle = 0;  // index on the board, Board::index
   double time_s =
@@ -21,15 +21,16 @@ struct CircleObservation {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  // of the ellipse
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
-  // How far the centre moves (ideal pixels) for each pixel by which edges are seen ahead of where they are.
+  // Shift of the centre (ideal pixels) per pixel of edge lead.
   Eigen::Vector2d edge_lead_effect = Eigen::Vector2d::Zero();
   Eigen::Vector2d semi_axes_px = Eigen::Vector2d::Zero();  // major, minor
   double angle_rad = 0.0;                                  // of the major axis, from x towards y
-  int events = 0;                                          // edge bursts that the fit rests on
+  int events = 0;                                          // edge bursts in the fit
   double residual_rms_px = 0.0;                            // of those, normal to the ellipse
-  // Of frames: the sensor's row less the middle one. Lines are exposed one after the other, and time_s is the middle's.
+  // Frames only: the sensor's row minus the middle row. Lines are exposed one after the other; time_s is the
+  // middle row's.
   double rows_below_middle = 0.0;
-  // Of frames: their exposure less the mean of all; 0 where it is not known.
+  // Exposure minus the mean exposure, frames only; 0 if unknown.
   double longer_exposed_s = 0.0;
 };
 
@@ -42,22 +43,22 @@ struct BoardView {
   std::vector<CircleObservation> circles;  // in order of circle index; some may be missing
 };
 
-// Why a window has no board: the first stage at which it was lost.
+// Why a window has no board: the first stage that failed.
 enum class WindowOutcome {
   Complete,
   Partial,
-  TooFewEvents,      // near standstill, or nothing in view
+  TooFewEvents,      // near standstill, or no board in view
   TooFewCircles,     // fewer candidates than a partial grid needs
-  NoLattice,         // candidates that make no lattice
+  NoLattice,         // candidates do not form a lattice
   TooFewInGrid,      // lattice found, too few circles on it
-  Ambiguous,         // several placements on the board fit as well
-  RefinementFailed,  // circles lost when all were fitted together
-  Blurred,           // of a frame: the board moved too far while it was exposed
-  Unreadable,        // of a frame: its picture is damaged
-  RejectedByHand,    // the board was found; a person left it out after a look at its residuals
+  Ambiguous,         // several placements on the board fit equally well
+  RefinementFailed,  // circles lost in the joint fit
+  Blurred,           // frame: the board moved too far during the exposure
+  Unreadable,        // frame: its picture is damaged
+  RejectedByHand,    // the board was found; rejected by a user because of its residuals
 };
 inline constexpr std::size_t kWindowOutcomeCount = 11;
-const char* windowOutcomeName(WindowOutcome outcome);  // in plain words, for tables and logs
+const char* windowOutcomeName(WindowOutcome outcome);  // for tables and logs
 
 struct WindowReport {
   double time_s = 0.0;  // middle
@@ -66,27 +67,27 @@ struct WindowReport {
   int events = 0;        // bursts in it
   int candidates = 0;    // circles proposed
   int circles = 0;       // in the final grid
-  bool tracked = false;  // found from its neighbour in time instead of from nothing
+  bool tracked = false;  // predicted from an adjacent window instead of searched
 };
 
-// Whether the lattice of circles ends where the board does, along its rows or along its columns. Views are
-// counted in which the image shows a place that decides it: the lines of circles one step beyond the board,
-// and the board's own outermost lines.
+// Evidence for whether the lattice of circles has the board's size, along its rows or its columns. The counts
+// are of views that show a decisive place: the lines of circles one step beyond the board, and the board's
+// own outermost lines.
 struct LatticeEnds {
-  int beyond_in_view = 0, beyond_seen = 0;  // circles where the board has none: it is larger
-  int edge_in_view = 0, edge_missing = 0;   // no circles where the board has some: it is smaller
+  int beyond_in_view = 0, beyond_seen = 0;  // circles beyond the board: it is larger
+  int edge_in_view = 0, edge_missing = 0;   // missing circles on the board: it is smaller
 };
 struct BoardExtent {
   LatticeEnds rows, cols;
 };
 
-// How much later a camera's pixels tell of edges that brighten them than of edges that darken them; a camera clock's
-// time offset holds the mean of both.
+// Additional delay of ON edges compared with OFF edges in a camera's pixels; the camera's time offset
+// contains the mean of both.
 struct PolarityDelay {
   double later_s = 0.0, std_s = 0.0;
 };
 
-// What measured the points: the front end from events, ours from frames, or another program.
+// Source of the points: the front end for events, the one for frames, or another program.
 enum class CameraKind { Events, Frames, Points };
 
 struct BoardObservations {
@@ -95,9 +96,9 @@ struct BoardObservations {
   std::vector<BoardView> views;       // in time order
   std::vector<WindowReport> windows;  // all of them, in time order
   BoardExtent extent;
-  std::uint64_t events = 0;                          // read; or frames, or points
-  std::optional<PolarityDelay> polarity_delay = {};  // of events, where speeds differ enough to tell
-  double stamp_step_s = 0.0;  // of events whose time stamps are rounded; 0: they are fine
+  std::uint64_t events = 0;                          // number of events, frames or points read
+  std::optional<PolarityDelay> polarity_delay = {};  // of events, if speeds vary enough to determine it
+  double stamp_step_s = 0.0;                         // of events with rounded time stamps; 0: not rounded
 };
 
 }  // namespace evical

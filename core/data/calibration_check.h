@@ -9,7 +9,7 @@
 
 namespace evical {
 
-// What became of the windows of a recording without a board.
+// Use of the windows of a recording without a board.
 struct CheckedWindows {
   struct LeftOut {
     std::string key, words;
@@ -17,12 +17,12 @@ struct CheckedWindows {
   };
   std::string sensor;
   std::size_t all = 0, used = 0;
-  std::size_t turning_alone = 0;  // used ones in which translation explains no more
-  std::vector<LeftOut> left_out;  // for each reason
+  std::size_t turning_alone = 0;  // used windows in which a translation does not improve the fit
+  std::vector<LeftOut> left_out;  // by reason
 };
 
 struct CalibrationCheck : Assessment {
-  bool without_board = false;           // then `windows` says what it rests on
+  bool without_board = false;           // if true, `windows` has the data used
   std::vector<CheckedWindows> windows;  // by event camera
 };
 

@@ -1,6 +1,6 @@
-// What is known of a rig beforehand, sensor by sensor. A value with standard deviations is weighed against
-// what the recording says; one without them is given: held as it is, and not estimated. In the keys, units
-// and frames of a result: rotations and translations to the reference, sigmas of rotations about its axes.
+// Prior knowledge of a rig, sensor by sensor. A value with standard deviations is a prior that is combined
+// with the recording's information; one without them is given: fixed, not estimated. Keys, units and frames
+// as in a result: rotations and translations to the reference, sigmas of rotations about its axes.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,9 +39,9 @@ bool isGiven(const std::optional<Known>& known) {
 
 struct SensorPrior {
   std::optional<KnownRotation> rotation;         // reference_from_sensor
-  std::optional<KnownVector> translation;        // of that, m
+  std::optional<KnownVector> translation;        // of reference_from_sensor, m
   std::optional<KnownNumber> time_offset;        // reference_time = sensor_time + it, s
-  std::optional<KnownNumber> time_offset_drift;  // by how much that grows, ppm
+  std::optional<KnownNumber> time_offset_drift;  // growth of time_offset, ppm
 
   bool operator==(const SensorPrior&) const = default;
 };
@@ -55,7 +55,7 @@ struct ImuPrior : SensorPrior {
   bool operator==(const ImuPrior&) const = default;
 };
 
-// As SensorPrior::time_offset where time offsets are not estimated: held where they are known to be, or at 0.
+// Like SensorPrior::time_offset if time offsets are not estimated: fixed at a known value, or at 0.
 inline KnownNumber heldTimeOffset(const SensorPrior& prior) {
   return {prior.time_offset ? prior.time_offset->value : 0.0};
 }

@@ -1,4 +1,4 @@
-// What a calibration says: the state, how sure it is, and how well it explains the data.
+// Result of a calibration: the state, its uncertainty, and how well it explains the data.
 #pragma once
 
 #include "core/base/repair.h"
@@ -28,8 +28,8 @@ struct CameraUncertainty {
   double time_offset_std_s = 0.0;
   double edge_lead_std_px = 0.0;
   double slow_edge_lead_std_px = 0.0;
-  // Of the lens in use where this recording told it, in the order of IntrinsicsJacobian (camera_model.h); 0
-  // where a coefficient is held.
+  // Sigmas of the lens in use if this recording determined it, in the order of IntrinsicsJacobian
+  // (camera_model.h); 0 for fixed coefficients.
   std::optional<std::array<double, 9>> intrinsics_std = {};
   double time_offset_drift_std_ppm = 0.0;
   double line_delay_std_us = 0.0;
@@ -44,7 +44,7 @@ struct ImuUncertainty {
   Eigen::Vector3d accelerometer_bias_std_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping_std = Eigen::Matrix3d::Zero();  // upper triangle
   Eigen::Matrix3d accelerometer_mapping_std = Eigen::Matrix3d::Zero();
-  // Of the biases at the knots of their drift.
+  // Sigmas of the biases at the knots of their drift.
   std::vector<Eigen::Vector3d> gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2;
   Eigen::Vector3d gyroscope_rotation_std_rad = Eigen::Vector3d::Zero();  // about the accelerometer's axes
   double time_offset_drift_std_ppm = 0.0;
@@ -58,7 +58,7 @@ struct BoardUncertainty {
   double row_curvature_std_1_m = 0.0, column_curvature_std_1_m = 0.0, twist_std_1_m = 0.0;
 };
 
-// Over all calibrated quantities, in one order that `columns` gives. In SI units, as QuantityPart::unit says.
+// Uncertainty of all calibrated quantities, in the order of `columns`. In SI units, as in QuantityPart::unit.
 struct UncertaintyReport {
   std::vector<QuantityAddress> columns;
   Eigen::VectorXd standard_deviations;
@@ -67,28 +67,28 @@ struct UncertaintyReport {
   std::vector<ImuUncertainty> imus;
   BoardUncertainty board;
   std::vector<BoardUncertainty> further_boards;
-  std::vector<std::string> given;  // held at known values, not estimated: "left.time_offset"
+  std::vector<std::string> given;  // fixed at known values, not estimated: "left.time_offset"
   double gravity_direction_std_rad = 0.0;
-  double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is held
+  double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is fixed
 
-  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms), with the board and
-  // gravity known: below 1, the need is not met in that direction. Ascending.
+  // Eigenvalues of the information matrix in units of the required accuracy (0.1 deg, 1 mm, 0.1 ms), with the
+  // board and gravity known: below 1, the requirement is not met in that direction. Ascending.
   std::vector<double> observability;
-  std::string weakest;                  // in plain words: "translation along the camera's z axis"
-  std::vector<std::string> directions;  // each of `observability` in such words; older files have none
+  std::string weakest;                  // "translation along the camera's z axis"
+  std::vector<std::string> directions;  // description of each of `observability`; empty in older files
 
   Eigen::MatrixXd covariance() const {
     return standard_deviations.asDiagonal() * correlation * standard_deviations.asDiagonal();
   }
-  // 0: the world's.
+  // Index 0 is the world's board.
   BoardUncertainty& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }
   const BoardUncertainty& boardAt(std::size_t index) const {
     return index == 0 ? board : further_boards.at(index - 1);
   }
 };
 
-// Of two cameras that are one sensor: how much later the first stamps what both see (a DAVIS's events against its
-// frames), in the middle of the recording.
+// Latency between two cameras that share one sensor: how much later the first one stamps the same scene (a
+// DAVIS's events compared with its frames), in the middle of the recording.
 struct SensorLatency {
   std::size_t camera = 0, against = 0;
   double latency_s = 0.0, std_s = 0.0;
@@ -96,9 +96,9 @@ struct SensorLatency {
 
 struct CameraFit {
   double reprojection_rms_px = 0.0;
-  double normalised_rms = 0.0;  // of residuals divided by their sigma, as weighted
+  double normalised_rms = 0.0;  // of residuals divided by their sigmas, with weights
   int windows_total = 0, windows_complete = 0, windows_partial = 0, windows_used = 0;
-  int windows_rejected = 0;  // by hand
+  int windows_rejected = 0;  // by a user
   int circles_used = 0, circles_rejected = 0;
 };
 
@@ -107,13 +107,13 @@ struct ImuFit {
   double accelerometer_rms_m_s2 = 0.0;
 };
 
-// One line per optimiser iteration, for convergence curves.
+// One optimiser iteration, for convergence curves.
 struct IterationRecord {
   int stage = 0, iteration = 0;
   double cost = 0.0, gradient = 0.0, step = 0.0;
   std::vector<CameraState> cameras;
   std::vector<std::string> released =
-      {};  // of a stage's first: what it solves for and the one before did not
+      {};  // first iteration of a stage: quantities that were fixed in the stage before
 };
 
 // One residual of one circle, for plots and CSV.
@@ -124,16 +124,16 @@ struct CircleResidual {
   bool used = true;
 };
 
-// A window with the board that a person left out.
+// A window with the board that a user rejected.
 struct RejectedWindow {
   std::size_t camera = 0;
-  double time_s = 0.0;  // its middle, on the camera's clock since the recording's start
+  double time_s = 0.0;  // middle of the window, on the camera's clock since the recording's start
 
   bool operator==(const RejectedWindow&) const = default;
 };
 
-// One number of a quantity as one estimate has it, less what another says: half of a recording against the
-// other, or a result against the truth.
+// Difference of one number of a quantity between two estimates: the halves of a recording, or a result and
+// the truth.
 struct QuantityDifference {
   std::string name, unit;                // "left.rotation.x", "deg"
   double difference = 0.0, sigma = 0.0;  // sigma of the difference; 0: not estimated, or unknown
@@ -141,22 +141,22 @@ struct QuantityDifference {
   double normalised() const { return sigma > 0.0 ? difference / sigma : 0.0; }
 };
 
-// The estimate once more from every other block of the recording, and from the blocks between: where the
-// sigmas are honest the two differ by about one sigma.
+// Separate estimates from alternating blocks of the recording: if the sigmas are correct, they differ by
+// about one sigma.
 struct SplitHalfCheck {
   double block_s = 0.0;
-  std::array<int, 2> windows = {0, 0};  // with the board, in either half
+  std::array<int, 2> windows = {0, 0};  // with the board, per half
   std::vector<QuantityDifference> quantities;
   double rms_sigmas = 0.0;  // over the quantities that have a sigma
-  std::string failure;      // why a half could not be estimated; empty if both were
+  std::string failure;      // why a half could not be estimated; empty if there is no failure
 };
 
 struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
-  std::string reason;                    // why not ok, in plain words
-  std::optional<Repair> repair;          // of the first of the reasons
-  std::vector<QualityWarning> causes;    // the reasons one by one, the likeliest first
-  std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
+  std::string reason;                    // why not ok
+  std::optional<Repair> repair;          // of the first reason
+  std::vector<QualityWarning> causes;    // the separate reasons, the likeliest first
+  std::optional<std::int64_t> start_ns;  // of the recording: origin of times in seconds
   CalibrationState state;
   UncertaintyReport uncertainty;
   std::vector<SensorLatency> latencies;
@@ -164,9 +164,9 @@ struct CalibrationResult {
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
   std::vector<CircleResidual> circle_residuals;
-  std::vector<RejectedWindow> rejected_windows;    // by hand: camera by camera, in time order
-  std::optional<SplitHalfCheck> split_half_check;  // absent where it was not asked for
-  std::vector<std::string> notes;                  // what initialisation and data checks had to say
+  std::vector<RejectedWindow> rejected_windows;    // by a user: camera by camera, in time order
+  std::optional<SplitHalfCheck> split_half_check;  // absent if not requested
+  std::vector<std::string> notes;                  // messages of initialisation and data checks
   Timing timing;
   double memory_peak_mb = 0.0;
 };

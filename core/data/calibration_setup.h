@@ -1,5 +1,5 @@
-// What is known before a calibration: the sensors by name, the board, the noise. Lists
-// of cameras and IMUs throughout.
+// Input of a calibration: the sensors by name, the board, the noise. Several cameras and IMUs are always
+// supported.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -20,7 +20,7 @@ namespace evical {
 struct ImuNoise {
   double gyroscope_density = 1.87e-4;      // rad/s/sqrt(Hz)
   double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
-  double gyroscope_random_walk = 0.0;      // of the bias, rad/s^2/sqrt(Hz); 0: not known
+  double gyroscope_random_walk = 0.0;      // of the bias, rad/s^2/sqrt(Hz); 0: unknown
   double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
 
   bool operator==(const ImuNoise&) const = default;
@@ -32,10 +32,11 @@ struct ImuData {
   std::vector<ImuSample> samples;  // in time order
   ImuPrior prior = {};
 
-  // Sample rates of the two sensors. The gyroscope's rate is reported as the IMU's. They walk over all samples.
+  // Sample rates of the two sensors. The gyroscope's rate is reported as the IMU's. Linear in the number of
+  // samples.
   double rate_hz() const { return rateOf_hz(measuresRate<ImuSample>); }
   double accelerometerRate_hz() const { return rateOf_hz(measuresForce<ImuSample>); }
-  // The noise of one sample, per axis. They walk over all samples, too.
+  // Noise of one sample, per axis. Linear in the number of samples.
   double gyroscopeSigma_rad_s() const { return noise.gyroscope_density * std::sqrt(rate_hz()); }
   double accelerometerSigma_m_s2() const {
     return noise.accelerometer_density * std::sqrt(accelerometerRate_hz());
@@ -53,17 +54,17 @@ struct ImuData {
   }
 };
 
-// Whether a frame camera exposes all its rows at once, or one after the other.
+// Exposure of a frame camera: all rows at once, or one after the other.
 enum class Shutter { Global, Rolling };
 
-// Beside the board whose frame is the world: another one, that keeps its place before it.
+// A board in addition to the one whose frame is the world; it does not move relative to that one.
 struct AdditionalBoard {
   std::string name;
   Board board;
-  std::optional<double> spacing_std = {};  // relative; absent: as well known as the world's
+  std::optional<double> spacing_std = {};  // relative; absent: the same as the world board's
 };
 
-// The board that a camera sees: its index as in CalibrationState::boardAt.
+// The board in this camera's view: its index as in CalibrationState::boardAt.
 struct SeenBoard {
   Board board;
   std::size_t index = 0;
@@ -75,10 +76,10 @@ struct CameraData {
   BoardObservations observations;  // in the ideal pixels of lens.detection_intrinsics
   SensorPrior prior = {};
   Shutter shutter = Shutter::Global;
-  // Another camera whose chip gives these measurements, too (a DAVIS's events and frames): one pose, one lens, one
-  // clock, and a time offset of its own. That camera has none.
+  // Another camera on the same chip (a DAVIS's events and frames): one pose, one lens, one clock, but
+  // separate time offsets. Empty for that camera.
   std::optional<std::size_t> same_sensor_as = {};
-  std::size_t board = 0;  // that it sees: CalibrationInput::boardAt
+  std::size_t board = 0;  // in this camera's view: CalibrationInput::boardAt
 };
 
 // The estimator's input. Times of observations are seconds since start_ns;
@@ -91,12 +92,12 @@ struct CalibrationInput {
   std::vector<CameraData> cameras;
   std::vector<ImuData> imus;
   std::size_t reference_imu = 0;     // index into imus
-  std::size_t reference_camera = 0;  // index into cameras: the reference where there is no IMU
-  double gravity_norm_m_s2 = 9.81;   // where the batch is to find it: the middle of its prior
+  std::size_t reference_camera = 0;  // index into cameras: the reference if there is no IMU
+  double gravity_norm_m_s2 = 9.81;   // mean of its prior in the batch
 
-  // The camera that stands for this one's chip: itself, where it has a chip of its own.
+  // The camera that represents this camera's chip: itself, unless it shares the chip of another one.
   std::size_t sensorOf(std::size_t camera) const { return cameras[camera].same_sensor_as.value_or(camera); }
-  // 0: the world's.
+  // Index 0 is the world's board.
   const Board& boardAt(std::size_t board_index) const {
     return board_index == 0 ? board : further_boards.at(board_index - 1).board;
   }
@@ -104,22 +105,22 @@ struct CalibrationInput {
   const std::string& boardName(std::size_t board_index) const {
     return board_index == 0 ? board_name : further_boards.at(board_index - 1).name;
   }
-  // In a session's words: "board", or one of several.
+  // Key in a session: "board", or the name of one of several.
   std::string boardKey(std::size_t board_index) const {
     return further_boards.empty() ? "board" : "boards." + boardName(board_index);
   }
-  // In plain words: "board", "board tags".
+  // For messages: "board", "board tags".
   std::string boardWords(std::size_t board_index) const {
     return further_boards.empty() ? "board" : "board " + boardName(board_index);
   }
-  // How well its spacing is known, relative, where the world's is so well known.
+  // Relative sigma of a board's spacing, given that of the world's board.
   double spacingSigma(std::size_t board_index, double of_world) const {
     return board_index == 0 ? of_world : further_boards.at(board_index - 1).spacing_std.value_or(of_world);
   }
   std::size_t boardCount() const { return 1 + further_boards.size(); }
-  // The camera whose board is the world: the reference, or the first one where that is an IMU.
+  // The camera whose board is the world: the reference, or the first one if the reference is an IMU.
   std::size_t worldCamera() const { return imus.empty() ? reference_camera : 0; }
-  // Where all else is relative to this camera.
+  // True if this camera is the reference of the rig.
   bool isReferenceCamera(std::size_t camera) const { return imus.empty() && camera == reference_camera; }
 };
 

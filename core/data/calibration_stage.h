@@ -1,5 +1,5 @@
-// The stages of a calibration, one row each: what they are called in progress, logs and result.yaml, and how
-// much of a run's time they take. What they do is in core/pipeline/rig/calibration_pipeline.cpp.
+// The stages of a calibration, one row each: their names in progress, logs and result.yaml, and their share
+// of a run's time. They are implemented in core/pipeline/rig/calibration_pipeline.cpp.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -11,19 +11,19 @@ namespace evical {
 
 enum class CalibrationStage { FirstLook, Intrinsics, Detect, Initialise, Optimise, CompareHalves };
 
-// What a run starts from decides which stages it has.
+// Starting point of a run: determines its stages.
 enum class RunStart { KnownIntrinsics, UnknownIntrinsics, Detections };
 
 struct StageRow {
   CalibrationStage stage;
-  const char* name;   // as ProgressSink::stageStarted has it, and timing_s of result.yaml
+  const char* name;   // in ProgressSink::stageStarted, and in timing_s of result.yaml
   const char* title;  // for people
-  // By RunStart: of an everyday recording's time; 0 where such a run goes without the stage.
+  // By RunStart: typical share of a run's time; 0 if such a run does not have the stage.
   std::array<double, 3> shares;
-  double Timing::*duration_s;  // null: it counts in the total only
+  double Timing::*duration_s;  // null: included in the total only
 };
 
-// In the order in which they run.
+// In order of execution.
 inline constexpr std::array<StageRow, 6> kCalibrationStages = {{
     {CalibrationStage::FirstLook, "first look", "First look", {0.0, 0.05, 0.0}, nullptr},
     {CalibrationStage::Intrinsics, "intrinsics", "Intrinsics", {0.0, 0.4, 0.0}, nullptr},

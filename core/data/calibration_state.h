@@ -1,5 +1,5 @@
-// All that the estimator estimates, initial or final. Frames: world = board (the first of several); body = the reference IMU, or the
-// reference camera where there is no IMU.
+// All estimated quantities, initial or final. Frames: world = board (the first of several); body = the
+// reference IMU, or the reference camera if there is no IMU.
 #pragma once
 
 #include "core/data/bias_drift.h"
@@ -17,47 +17,46 @@ namespace evical {
 
 struct CameraState {
   RigidTransform reference_from_camera;
-  double time_offset_s = 0.0;          // see referenceTime_s
-  double edge_lead_px = 0.0;           // measured centres lie this far ahead along their image motion
-  double slow_edge_lead_px = 0.0;      // this much further, near standstill
-  CameraLens lens = {};                // `solved` where its intrinsics are estimated
-  double time_offset_drift_ppm = 0.0;  // where it is solved for
+  double time_offset_s = 0.0;  // see referenceTime_s
+  double edge_lead_px = 0.0;   // distance of measured centres ahead of their place, along their image motion
+  double slow_edge_lead_px = 0.0;      // additional lead near standstill
+  CameraLens lens = {};                // `solved` if its intrinsics are estimated
+  double time_offset_drift_ppm = 0.0;  // if it is estimated
   double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s
   double line_delay_us = 0.0;          // of frames: from one row's exposure to the next one's
-  double exposure_share =
-      0.0;  // of frames: how much of a longer exposure passes from the stamp to the middle
+  double exposure_share = 0.0;  // of frames: share of a longer exposure between the stamp and the middle
 };
 
 struct ImuState {
   RigidTransform reference_from_imu;                               // identity for the reference
   double time_offset_s = 0.0;                                      // see referenceTime_s
-  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();  // where they drift: the means over time
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();  // if they drift: the means over time
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping =
       Eigen::Matrix3d::Identity();  // upper triangular: measured = M true + bias
   Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();  // the same
-  // The IMU's frame is the accelerometer's; the gyroscope may be turned against it.
+  // The IMU's frame is the accelerometer's; the gyroscope may be misaligned with it.
   Eigen::Quaterniond gyroscope_from_accelerometer = Eigen::Quaterniond::Identity();
-  // The IMU's clock is the gyroscope's: the accelerometer's sample stamped t is of t less this.
+  // The IMU's clock is the gyroscope's: the accelerometer's sample stamped t was measured at t minus this.
   double accelerometer_delay_s = 0.0;
 
   BiasDrift bias_drift;                                        // without knots: biases are constant
   double time_offset_drift_ppm = 0.0, time_offset_at_s = 0.0;  // as a camera's
 
-  // At a time on the IMU's own clock.
+  // `t` is on the IMU's own clock.
   Eigen::Vector3d gyroscopeBiasAt_rad_s(double time_s) const {
     return gyroscope_bias_rad_s + bias_drift.of(bias_drift.gyroscope_rad_s, time_s);
   }
   Eigen::Vector3d accelerometerBiasAt_m_s2(double time_s) const {
     return accelerometer_bias_m_s2 + bias_drift.of(bias_drift.accelerometer_m_s2, time_s);
   }
-  // measured rate = this times the rate in the IMU's frame + bias.
+  // measured rate = (this matrix) * (rate in the IMU's frame) + bias.
   Eigen::Matrix3d gyroscopeMatrix() const {
     return gyroscope_mapping * gyroscope_from_accelerometer.toRotationMatrix();
   }
 };
 
-// A camera's or an IMU's clock runs evenly, but not quite at the reference's pace:
+// The clock of a camera or an IMU has a constant drift relative to the reference:
 //   reference_time = sensor_time + time_offset_s + 1e-6 time_offset_drift_ppm (sensor_time -
 //   time_offset_at_s).
 template <class Sensor>
@@ -75,20 +74,21 @@ double sensorTime_s(const Sensor& sensor, double reference_time_s) {
   return (reference_time_s - sensor.time_offset_s + pace * sensor.time_offset_at_s) / (1.0 + pace);
 }
 
-// When the accelerometer measured what is stamped so; the gyroscope at referenceTime_s.
+// Reference time at which the accelerometer measured a sample with this stamp; for the gyroscope:
+// referenceTime_s.
 inline double accelerometerTime_s(const ImuState& imu, double imu_time_s) {
   return referenceTime_s(imu, imu_time_s) - imu.accelerometer_delay_s;
 }
 
-// The board as it is, against what is said of it (board.h): a point (x, y) of it lies at
+// The true board relative to the specified one (board.h): its point (x, y) is at
 // scale ((1 + stretch / 2) x, (1 - stretch / 2) y), and behind the plane that touches it at its origin by
 // (row_curvature x^2 + column_curvature y^2) / 2 + twist x y: a sheet that is bent about any one axis.
 struct BoardState {
   double scale = 1.0, stretch = 0.0;
   double row_curvature_1_m = 0.0, column_curvature_1_m = 0.0, twist_1_m = 0.0;
-  RigidTransform world_from_board = {};  // identity for the one whose frame is the world
+  RigidTransform world_from_board = {};  // identity for the board whose frame is the world
 
-  // In the board's own frame, and in the world's.
+  // Position of a board point in the board's own frame, and in the world's.
   Eigen::Vector3d onSheet_m(const Eigen::Vector2d& on_board_m) const {
     const double x = on_board_m.x(), y = on_board_m.y();
     return {scale * (1.0 + 0.5 * stretch) * x, scale * (1.0 - 0.5 * stretch) * y,
@@ -110,7 +110,7 @@ struct CalibrationState {
   std::vector<BoardState> further_boards = {};
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.81);  // points down
 
-  // 0: the world's.
+  // Index 0 is the world's board.
   BoardState& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }
   const BoardState& boardAt(std::size_t index) const {
     return index == 0 ? board : further_boards.at(index - 1);

@@ -1,4 +1,4 @@
-// Whether what was calibrated can be relied on.
+// Status of a calibration: whether the result is reliable.
 #pragma once
 
 namespace evical {

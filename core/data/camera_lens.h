@@ -1,4 +1,4 @@
-// One camera's lens in a calibration, from what was known of it to what came out.
+// One camera's lens in a calibration, from the prior to the result.
 #pragma once
 
 #include "core/data/lens_uncertainty.h"
@@ -9,24 +9,23 @@
 namespace evical {
 
 struct CameraLens {
-  std::optional<CameraIntrinsics> given = {};  // by the session; absent: not known beforehand
+  std::optional<CameraIntrinsics> given = {};  // from the session; absent: unknown
   std::optional<CameraIntrinsics> detection_intrinsics =
-      {};                                       // by the front end: observations are in its ideal pixels
-  std::optional<CameraIntrinsics> solved = {};  // together with everything else, where it was free
-  std::optional<LensUncertainty> given_with =
-      {};  // how well the session knows what it gives; absent: not said
+      {};                                          // of the front end: observations are in its ideal pixels
+  std::optional<CameraIntrinsics> solved = {};     // from the joint estimate, if it was free
+  std::optional<LensUncertainty> given_with = {};  // of the given lens; absent: not specified
 
-  // Calibrated before everything else, from the same recording.
+  // Calibrated before the joint estimate, from the same recording.
   bool foundFirst() const { return detection_intrinsics && !given; }
-  // The best that is known: what projects points to where the camera sees them.
+  // The best estimate: use it to project points into the camera's image.
   const std::optional<CameraIntrinsics>& inUse() const { return solved ? solved : detection_intrinsics; }
-  // What the calibration itself found; nothing where the lens stayed as it was given.
+  // The result of the calibration; empty if the lens was fixed at the given one.
   std::optional<CameraIntrinsics> found() const { return solved || !given ? inUse() : std::nullopt; }
 
   bool operator==(const CameraLens&) const = default;
 };
 
-// A lens that is known beforehand, or is not.
+// A lens that is known beforehand, or unknown.
 inline CameraLens givenLens(const std::optional<CameraIntrinsics>& intrinsics,
                             const std::optional<LensUncertainty>& uncertainty = {}) {
   return {intrinsics, intrinsics, {}, intrinsics ? uncertainty : std::nullopt};

@@ -1,5 +1,5 @@
-// How the time at which an edge passes changes over the image: the slope of that time is one over the edge's speed,
-// along its normal. docs/maths.md, 16.1.
+// Slope of an edge's passing time over the image: the inverse of the edge's speed, along its normal.
+// docs/maths.md, 16.1.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@ struct EdgeSlope {
   std::int64_t time_ns;  // when the edge passed this pixel
   std::uint16_t x_px, y_px;
   Eigen::Vector2f slope_s_px;  // d(time) / d(pixel)
-  Eigen::Vector3f shape;  // xx, xy, yy of its covariance, were the times of its neighbourhood known to 1 s
+  Eigen::Vector3f shape;       // xx, xy, yy of its covariance for timing errors of 1 s
 
   Eigen::Matrix2d covarianceAt1s() const {
     Eigen::Matrix2d covariance;

@@ -1,4 +1,4 @@
-// What a state says that an IMU measures, without noise: for residuals, plots and outliers.
+// Predicted IMU measurement for a state, without noise: for residuals, plots and outliers.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -9,8 +9,8 @@
 
 namespace evical {
 
-// In the IMU's own frame, scale, misalignment and bias included, of a sample stamped so on the IMU's own clock.
-// Nothing outside the splines.
+// In the IMU's own frame, with scale, misalignment and bias, for a sample with this stamp on the IMU's own
+// clock. Empty outside the splines.
 std::optional<Eigen::Vector3d> predictedRate_rad_s(const CalibrationState& state, const ImuState& imu,
                                                    double stamp_s);
 std::optional<Eigen::Vector3d> predictedForce_m_s2(const CalibrationState& state, const ImuState& imu,

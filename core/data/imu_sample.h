@@ -7,8 +7,8 @@
 
 namespace evical {
 
-// Which of the two sensors measured this sample. If they are sampled separately, the values of the other sensor are
-// interpolated. They are for display only; no estimator uses them.
+// Which of the two sensors measured this sample. If they are sampled separately, the values of the other
+// sensor are interpolated. They are for display only; no estimator uses them.
 enum class MeasuredBy : std::uint8_t { Both, Gyroscope, Accelerometer };
 
 struct ImuSample {
@@ -18,7 +18,7 @@ struct ImuSample {
   MeasuredBy measured_by = MeasuredBy::Both;
 };
 
-// Whether the sample has the sensor's own measurement; also of RawImuSample.
+// True if the sample contains the sensor's own measurement; also for RawImuSample.
 template <class Sample>
 bool measuresRate(const Sample& sample) {
   return sample.measured_by != MeasuredBy::Accelerometer;

@@ -1,5 +1,4 @@
-// IMU samples as recordings have them, and what their units are in SI; -g for drivers that report the
-// direction of gravity.
+// IMU samples as recorded, and their units in SI; -g is for drivers that report the direction of gravity.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -17,7 +16,7 @@ namespace evical {
 enum class AccelerationUnit { MetresPerSecond2, Gravity, MinusGravity };
 enum class AngularRateUnit { RadiansPerSecond, DegreesPerSecond };
 
-// As sessions and `evical inspect` spell them, in the enumerations' order.
+// Names in sessions and in `evical inspect`, in the enumerations' order.
 inline constexpr std::array kAccelerationUnits{"m/s^2", "g", "-g"};
 inline constexpr std::array kAngularRateUnits{"rad/s", "deg/s"};
 
@@ -32,7 +31,7 @@ constexpr double radiansPerSecond(AngularRateUnit unit) {
   return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : kRadPerDeg;
 }
 
-// How a sensor's own axes are read as the IMU's x, y and z: 2 is its y, -2 the opposite of that.
+// Axes of a sensor as the IMU's x, y and z: 2 is the sensor's y, -2 its negative y.
 using AxesReading = std::array<int, 3>;
 inline constexpr AxesReading kIdentityAxes = {1, 2, 3};
 
@@ -43,7 +42,7 @@ inline Eigen::Vector3d readAs(const AxesReading& reading, const Eigen::Vector3d&
   return {axis(0), axis(1), axis(2)};
 }
 
-// What reading so is that has been read by `first` already.
+// Composition: these axes applied to samples that were already converted by `first`.
 inline AxesReading readAfter(const AxesReading& first, const AxesReading& then) {
   const auto axis = [&](std::size_t i) {
     const int own = first[static_cast<std::size_t>(then[i] < 0 ? -then[i] : then[i]) - 1];
@@ -52,11 +51,11 @@ inline AxesReading readAfter(const AxesReading& first, const AxesReading& then) 
   return {axis(0), axis(1), axis(2)};
 }
 
-// "y,x,-z", and back: nothing where that is not each axis once.
+// Conversion to and from "y,x,-z"; empty if an axis is missing or repeated.
 std::string axesText(const AxesReading& reading);
 std::optional<AxesReading> axesFrom(const std::string& text);
 
-// A sample before its units are known: the recording's own numbers, in the IMU's own frame.
+// A sample of unknown units: the recorded numbers, in the IMU's own frame.
 struct RawImuSample {
   std::int64_t time_ns = 0;
   Eigen::Vector3d angular_rate = Eigen::Vector3d::Zero();
@@ -64,7 +63,8 @@ struct RawImuSample {
   MeasuredBy measured_by = MeasuredBy::Both;
 };
 
-// Whether a sample has no measurement of one sensor: its format says so, or its values are all 0 or not finite.
+// True if a sample lacks the measurement of one sensor: because of its format, or since its values are all 0
+// or not finite.
 bool lacksRate(const RawImuSample& sample);
 bool lacksForce(const RawImuSample& sample);
 

@@ -1,5 +1,5 @@
-// Camera intrinsics as calibrated from board views, and how sure they are. Parameters in the order of
-// IntrinsicsJacobian (camera_model.h): fx fy cx cy d0 d1 d2 d3 d4.
+// Camera intrinsics from board views, and their uncertainty. Parameters in the order of IntrinsicsJacobian
+// (camera_model.h): fx fy cx cy d0 d1 d2 d3 d4.
 #pragma once
 
 #include "core/data/calibration_status.h"
@@ -17,11 +17,11 @@ inline constexpr int kIntrinsicsCount = 9;
 using IntrinsicsVector = Eigen::Matrix<double, kIntrinsicsCount, 1>;
 using IntrinsicsMatrix = Eigen::Matrix<double, kIntrinsicsCount, kIntrinsicsCount>;
 
-// A rectangle of the image.
+// A rectangular cell of the image.
 struct ImageCell {
   Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
-  int circles = 0;        // of the views used
-  double sigma_px = 0.0;  // of where a given ray is projected; infinite where there is no ray
+  int circles = 0;        // in the used views
+  double sigma_px = 0.0;  // of the projection of a given ray; infinite if there is no ray
 };
 
 struct ImageMap {
@@ -32,24 +32,24 @@ struct ImageMap {
 
 struct IntrinsicsResult {
   CalibrationStatus status = CalibrationStatus::Ok;
-  std::string reason;               // why not ok, in plain words
-  std::vector<std::string> advice;  // what more views would improve
+  std::string reason;               // why not ok
+  std::vector<std::string> advice;  // additional views that would improve the result
   CameraIntrinsics intrinsics;
-  IntrinsicsMatrix covariance = IntrinsicsMatrix::Zero();  // zero where a parameter is fixed
+  IntrinsicsMatrix covariance = IntrinsicsMatrix::Zero();  // zero for fixed parameters
   double edge_lead_px = 0.0, edge_lead_std_px = 0.0;
   ImageMap image;                    // coverage and projection uncertainty
   double reprojection_rms_px = 0.0;  // of distances, on the sensor
-  double normalised_rms = 0.0;       // of residuals divided by their sigma
-  double largest_tilt_deg = 0.0;     // of the board against the image, over the views used
+  double normalised_rms = 0.0;       // of residuals divided by their sigmas
+  double largest_tilt_deg = 0.0;     // of the board relative to the image plane, in the used views
   int views_found = 0, views_used = 0, circles_used = 0, circles_rejected = 0;
   int passes = 0;         // over the recording
-  double moved_px = 0.0;  // by the last refit, RMS over the image
+  double moved_px = 0.0;  // change of projections by the last refit, RMS over the image
   double elapsed_s = 0.0;
 
   IntrinsicsVector standardDeviations() const { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
 };
 
-// Coefficients in use: those of the model; of radtan 4, or 5 with k3.
+// Number of coefficients in use: all of the model; 4 for radtan, or 5 with k3.
 inline int distortionCount(const CameraIntrinsics& camera) {
   const bool without_k3 = camera.model == CameraModel::PinholeRadtan && camera.distortion[4] == 0.0;
   return coefficientCount(camera.model) - (without_k3 ? 1 : 0);

@@ -1,4 +1,4 @@
-// How well a lens is known beforehand, as the file says that gives it. Numbers in the order of intrinsics_result.h.
+// Uncertainty of a given lens, from its file. Numbers in the order of intrinsics_result.h.
 #pragma once
 
 #include "core/data/intrinsics_result.h"
@@ -10,13 +10,13 @@
 namespace evical {
 
 struct LensUncertainty {
-  IntrinsicsVector std = IntrinsicsVector::Zero();  // 0: not known any better than usual
+  IntrinsicsVector std = IntrinsicsVector::Zero();  // 0: not specified; the default applies
   std::optional<IntrinsicsMatrix> correlation = {};
 
   bool operator==(const LensUncertainty&) const = default;
 
-  // Without correlations sigmas count doubled: both focal lengths err together, and coefficients among each other, so
-  // that independent ones of that size would claim more than is known.
+  // Without correlations, sigmas are doubled: errors of the focal lengths are correlated, and those of the
+  // coefficients too, so that independent errors of that size would underestimate the uncertainty.
   IntrinsicsMatrix covariance() const {
     constexpr double kWithoutCorrelation = 2.0;
     if (correlation) return std.asDiagonal() * *correlation * std.asDiagonal();

@@ -1,5 +1,5 @@
-// What a log says of IMUs that were calibrated before: what of them has changed since, what changed on the way and when,
-// and how small a change would have shown.
+// Result of the maintenance of calibrated IMUs with a log: changes since the calibration, changes during the
+// log with their times, and the smallest detectable change.
 #pragma once
 
 #include "core/data/assessment.h"
@@ -12,7 +12,7 @@
 
 namespace evical {
 
-// Something that changed on the way; `against` is empty where several IMUs tell that it was this one.
+// A change during the log; `against` is empty if several IMUs identify the one that changed.
 struct MaintenanceStep : Finding {
   double at_s = 0.0, noticed_s = 0.0;  // since the log's start, on the reference IMU's clock
 };
@@ -21,23 +21,24 @@ struct MaintainedStop {
   double from_s = 0.0, to_s = 0.0;
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero(),
                   rate_rad_s = Eigen::Vector3d::Zero();  // means, as measured
-  double residual_m_s2 = 0.0, sigma_m_s2 = 0.0;  // of |M^-1 (f - b)| less gravity, with the numbers of now
+  double residual_m_s2 = 0.0,
+         sigma_m_s2 = 0.0;  // of |M^-1 (f - b)| minus gravity, with the current parameters
   bool used = true;
 };
 
-// Of one IMU alone.
+// Data of one IMU.
 struct MaintainedImu {
   std::string name, stream;
   double from_s = 0.0, to_s = 0.0, rate_hz = 0.0;
   std::vector<MaintainedStop> stops;
-  std::string weakest;  // what stops tell least, in words; empty without any
+  std::string weakest;  // the direction that stops constrain least; empty without stops
   double weakest_sigma = 0.0;
-  double misfit = 0.0;  // RMS of the stops' residuals over their sigmas; 0: too few to tell
+  double misfit = 0.0;  // RMS of the stops' normalised residuals; 0: too few stops
 };
 
-// How a quantity went over time, number by number.
+// A quantity over time, number by number.
 struct TrackedNumber {
-  std::string name;  // "x"; empty: the quantity's only one
+  std::string name;  // "x"; empty for scalar quantities
   std::vector<double> values, sigmas;
 };
 struct TrackedQuantity {
@@ -50,7 +51,7 @@ struct MaintenanceTrack {
   std::vector<TrackedQuantity> quantities;
 };
 
-// Whether it shows there: of the pair itself, or of the IMU that the pair is held against.
+// True if a step is visible in a track: a step of the same pair, or of the IMU that the track is relative to.
 inline bool isIn(const MaintenanceStep& step, const MaintenanceTrack& track) {
   return step.sensor == track.sensor ? step.against == track.against
                                      : step.against.empty() && step.sensor == track.against;

@@ -1,4 +1,4 @@
-// Whose time offsets are uncertain by what is not known of pixels' delay.
+// Uncertainty of time offsets due to the unknown delay of pixels.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -9,15 +9,16 @@
 
 namespace evical {
 
-// Events are late by their pixels' delay, and nothing in the recording tells by how much; so is an event camera's time
-// offset against sensors of other kinds. Where all is measured by such pixels, nothing is.
+// True if a time offset contains the pixels' delay: events are late by it, and the recording does not
+// determine it. It affects an event camera's offset relative to other kinds of sensors, and cancels if all
+// sensors have such pixels.
 inline bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t camera, bool has_imus) {
   const auto hasEvents = [](CameraKind kind) { return kind == CameraKind::Events; };
   return hasEvents(cameras[camera]) && (has_imus || !std::all_of(cameras.begin(), cameras.end(), hasEvents));
 }
 
-// What is left of such an offset's variance without a delay that is the same every time; never less than a tenth of it,
-// for the delay is not known so well.
+// Variance of such an offset without the delay, if the delay is the same every time; at least a tenth of the
+// variance, since the delay is uncertain.
 inline double withoutPixelDelay_s2(double variance_s2, double delay_s) {
   constexpr double kLeast = 0.1;
   return std::max(variance_s2 - delay_s * delay_s, kLeast * variance_s2);

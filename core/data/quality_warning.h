@@ -1,4 +1,4 @@
-// What makes a verdict doubtful.
+// Reasons for a doubtful verdict.
 #pragma once
 
 #include "core/base/repair.h"
@@ -10,14 +10,14 @@
 namespace evical {
 
 struct QualityWarning {
-  std::string text;  // empty: there is none
+  std::string text;  // may be empty
   std::optional<Repair> repair = {};
   std::string name = "other";  // one word for programs: "lens", "board_size"
-  double explains = 0.0;       // the share of the misfit that is gone where this is let free; 0: not tried
+  double explains = 0.0;       // share of the misfit that is removed if this is estimated; 0: not tested
 };
 
-// For what has a status and a reason. It comes first of the reasons: it is the one that people can mend; so is its
-// repair, where the verdict has a place for one.
+// Adds a reason to a verdict (a struct with status and reason). It becomes the first reason, since the user
+// can fix it; so does its repair, if the verdict has a member for it.
 template <class Verdict>
 void flagDoubtful(const QualityWarning& doubt, Verdict& verdict) {
   if (doubt.text.empty()) return;

@@ -24,7 +24,7 @@ std::vector<QuantityPart> namedParts(const QuantityInfo& info, const std::array<
   return parts;
 }
 
-// The first `count` coefficients of a lens, and what comes before them.
+// Names of the pixel intrinsics and of the first `count` coefficients of a lens.
 std::vector<QuantityPart> lensParts(const QuantityInfo& info, CameraModel model, std::size_t count) {
   std::vector<QuantityPart> parts;
   for (const char* name : kPixelIntrinsics) parts.push_back({name, name, info.unit, info.shown_unit});

@@ -1,8 +1,8 @@
-// One row per calibrated quantity, as option_field.h has one per option: the structs hold value, sigma
-// and prior, the row says where, and what is worth knowing of the quantity: its name, shape, units,
-// need, and keys in files. The comparison of results, the halves, result.yaml, priors, tables, the
-// report and the window all walk these rows; a new quantity is a row here, members in the structs, and a
-// parameter block in the batch.
+// One row per calibrated quantity, as option_field.h has one per option: the structs contain value, sigma and
+// prior; the row has their places and the quantity's properties: name, shape, units, required accuracy, keys
+// in files. The comparison of results, split halves, result.yaml, priors, tables, the report and the window
+// iterate over these rows. A new quantity needs a row here, members in the structs, and a parameter block in
+// the batch.
 #pragma once
 
 #include "core/data/calibration_priors.h"
@@ -23,17 +23,17 @@ namespace evical {
 enum class QuantityShape {
   Scalar,
   Vector3,
-  Rotation,       // its differences and sigmas are about the axes of the frame it turns into
-  LocalRotation,  // about those of the frame it turns from
+  Rotation,       // differences and sigmas are about the axes of the target frame
+  LocalRotation,  // about the axes of the source frame
   UpperTriangle,  // of a 3 x 3 matrix, row by row
   Intrinsics,     // in the order of intrinsics_numbers.h
-  Gravity,        // two tilts, and the norm where it is free
+  Gravity,        // two tilts, and the norm if it is estimated
 };
 
-// What is asked of its sigma (OptimisationOptions::needed_...).
+// The applicable accuracy requirement (OptimisationOptions::needed_...).
 enum class QuantityNeed { None, Rotation, Translation, TimeOffset };
 
-// Which option lets it be estimated, where not all runs do.
+// The option that enables its estimation, if it is not always estimated.
 enum class QuantityRelease {
   Always,
   TimeOffsets,
@@ -46,12 +46,12 @@ enum class QuantityRelease {
   ExposureShare
 };
 
-// When there is something to compare or to show.
+// When it is compared and shown.
 enum class QuantityPresence {
   Always,
-  WhereNotZero,        // zero is what it is where nobody asks for it
-  WhereEstimated,      // in the first of two
-  WhereBothEstimated,  // only an estimate knows it, the truth of a simulation does not
+  WhereNotZero,        // zero means: not estimated
+  WhereEstimated,      // in the first of the two compared
+  WhereBothEstimated,  // exists in estimates, but not in the truth of a simulation
 };
 
 enum class QuantityWriting { Always, WherePresent };  // in result.yaml
@@ -59,29 +59,29 @@ enum class QuantityWriting { Always, WherePresent };  // in result.yaml
 struct QuantityInfo {
   QuantityId id;
   const char* name;   // "time_offset"
-  const char* title;  // for people
+  const char* title;  // for display
   QuantityOwner owner;
   QuantityShape shape;
   const char* unit;  // SI
   const char* shown_unit = "";
   double shown_factor = 1.0;  // from SI
   int decimals = 5;           // in shown units
-  const char* remark = "";    // after the unit
+  const char* remark = "";    // printed after the unit
   QuantityNeed need = QuantityNeed::None;
-  // A size in SI units that makes all quantities comparable, so that "no information"
-  // means the same for each.
+  // A size in SI units that makes all quantities comparable, so that "no information" has the same meaning
+  // for each.
   double comparable_unit = 1e-3;
   QuantityRelease release = QuantityRelease::Always;
   QuantityPresence presence = QuantityPresence::Always;
   QuantityWriting written = QuantityWriting::Always;
-  bool relative = false;   // to the reference, which has none of its own
-  bool of_sensor = false;  // the same for cameras that are one sensor
+  bool relative = false;   // to the reference, which does not have this quantity
+  bool of_sensor = false;  // shared by cameras that are one sensor
 
-  // In result.yaml and in a session's prior; without a section the keys are the sensor's own.
+  // Keys in result.yaml and in a session's prior; without a section they are keys of the sensor.
   const char* section = "";
   const char* key = "";
   const char* std_key = "";
-  double largest = 1e6;  // beyond it a prior is a slip
+  double largest = 1e6;  // a larger prior is rejected as a mistake
 
   constexpr bool is(QuantityOwner of, QuantityId which) const { return owner == of && id == which; }
 };
@@ -98,7 +98,7 @@ struct MemberOf {
 template <class Outer, class Inner, class Value>
 MemberOf(Inner Outer::*, Value Inner::*) -> MemberOf<Outer, Inner, Value>;
 
-// A lens is read as it is in use, and written where it is solved for.
+// A lens: reads the one in use, writes the estimated one.
 struct LensIntrinsics {
   const std::optional<CameraIntrinsics>& operator()(const CameraState& camera) const {
     return camera.lens.inUse();
@@ -107,7 +107,7 @@ struct LensIntrinsics {
   bool operator==(const LensIntrinsics&) const = default;
 };
 
-// Where a quantity has no place in a session's prior.
+// Marks quantities without a place in a session's prior.
 struct NoPrior {};
 
 template <class ValueAt, class SigmaAt, class PriorAt>
@@ -137,7 +137,7 @@ QuantityRow(QuantityInfo, ValueAt, SigmaAt, PriorAt) -> QuantityRow<ValueAt, Sig
 
 namespace detail {
 
-inline constexpr double kLargestPlace_m = 100.0;  // millimetres written as metres are beyond it
+inline constexpr double kLargestPlace_m = 100.0;  // detects millimetres that were given as metres
 
 constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
   return {.id = QuantityId::Rotation,
@@ -242,7 +242,7 @@ constexpr QuantityInfo curvatureInfo(QuantityId id, const char* name, const char
           .std_key = std_key};
 }
 
-// The place of a further board in the world: nobody asks for it, but that it is known.
+// The pose of a further board in the world: estimated, without an accuracy requirement.
 constexpr QuantityInfo ofFurtherBoard(QuantityInfo info) {
   info.need = QuantityNeed::None;
   info.of_sensor = false;
@@ -387,7 +387,7 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .shown_unit = "ms",
                              .shown_factor = 1e3,
                              .decimals = 4,
-                             .remark = "against the gyroscope",
+                             .remark = "relative to the gyroscope",
                              .release = QuantityRelease::ImuIntrinsics,
                              .key = "accelerometer_delay_s",
                              .std_key = "accelerometer_delay_std_s",
@@ -402,7 +402,7 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .unit = "rad",
                              .shown_unit = "deg",
                              .shown_factor = kDegPerRad,
-                             .remark = "from the accelerometer",
+                             .remark = "relative to the accelerometer",
                              .release = QuantityRelease::GyroscopeRotation,
                              .presence = QuantityPresence::WhereNotZero,
                              .section = "gyroscope",
@@ -424,7 +424,7 @@ inline constexpr auto kBoardQuantities = std::tuple{
                              .owner = QuantityOwner::Board,
                              .shape = QuantityShape::Scalar,
                              .unit = "1",
-                             .remark = "times what the session says",
+                             .remark = "times the session's value",
                              .release = QuantityRelease::BoardSize,
                              .presence = QuantityPresence::WhereEstimated,
                              .written = QuantityWriting::WherePresent,
@@ -437,7 +437,7 @@ inline constexpr auto kBoardQuantities = std::tuple{
                              .owner = QuantityOwner::Board,
                              .shape = QuantityShape::Scalar,
                              .unit = "1",
-                             .remark = "of its rows against its columns",
+                             .remark = "of its rows relative to its columns",
                              .release = QuantityRelease::BoardSize,
                              .presence = QuantityPresence::WhereEstimated,
                              .written = QuantityWriting::WherePresent,
@@ -454,7 +454,8 @@ inline constexpr auto kBoardQuantities = std::tuple{
     QuantityRow{detail::curvatureInfo(QuantityId::Twist, "twist", "twist", "twist_1_m", "twist_std_1_m"),
                 &BoardState::twist_1_m, &BoardUncertainty::twist_std_1_m, NoPrior{}}};
 
-// The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
+// The only quantity of the rig as a whole. Its sigmas are of a different kind (UncertaintyReport), so it is
+// not a row.
 inline constexpr QuantityInfo kGravityQuantity = {.id = QuantityId::Gravity,
                                                   .name = "gravity",
                                                   .title = "gravity",
@@ -469,7 +470,7 @@ constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
 }
 
-// How a board's sheet is: all of it but its place.
+// The shape of a board's sheet: all its quantities except its pose.
 template <class Visitor>
 constexpr void forEachSheetQuantity(Visitor&& visit) {
   forEachQuantity(kBoardQuantities, [&](const auto& row) {
@@ -477,8 +478,8 @@ constexpr void forEachSheetQuantity(Visitor&& visit) {
   });
 }
 
-// visit(row, sensor...) of the number's quantity, with its owner in each of `in`: states or uncertainty reports, as
-// std::tie has them. Gravity has no row.
+// Calls visit(row, sensor...) for the number's quantity, with its owner in each of `in`, which std::tie makes
+// of states or uncertainty reports. Gravity has no row.
 template <class In, class Visitor>
 void visitQuantity(const QuantityAddress& number, const In& in, Visitor&& visit) {
   const auto among = [&](const auto& rows, auto&... sensors) {
@@ -494,10 +495,10 @@ void visitQuantity(const QuantityAddress& number, const In& in, Visitor&& visit)
   std::apply(of, in);
 }
 
-// Of a row, or gravity. Throws std::out_of_range where the owner has no such quantity.
+// Properties of a row, or of gravity. Throws std::out_of_range if the owner has no such quantity.
 const QuantityInfo& quantityInfo(QuantityOwner owner, QuantityId id);
 
-// Those with a place in a session's prior.
+// Iterates over the quantities with a place in a session's prior.
 template <class Rows, class Visitor>
 constexpr void forEachPriorQuantity(const Rows& rows, Visitor&& visit) {
   forEachQuantity(rows, [&](const auto& row) {
@@ -505,14 +506,15 @@ constexpr void forEachPriorQuantity(const Rows& rows, Visitor&& visit) {
   });
 }
 
-// One of a quantity's numbers.
+// One number of a quantity.
 struct QuantityPart {
-  std::string name;  // "rotation.x", "focal_length.y"; behind the sensor's and a dot it is unique in a rig
-  std::string component;  // "x", "focal_length.y"; empty where it is the only one
+  std::string
+      name;  // "rotation.x", "focal_length.y"; with the sensor's name and a dot in front, unique in a rig
+  std::string component;  // "x", "focal_length.y"; empty for scalars
   std::string unit, shown_unit;
 };
-std::vector<QuantityPart> quantityParts(const QuantityInfo& info);  // of all shapes but intrinsics
-// As many as the quantity has, `value` as in a state; of intrinsics as many as these need.
+std::vector<QuantityPart> quantityParts(const QuantityInfo& info);  // for all shapes except intrinsics
+// The parts of the quantity, for `value` as in a state; for intrinsics, the parts of their model.
 template <class Value>
 std::vector<QuantityPart> quantityParts(const QuantityInfo& info, const Value&) {
   return quantityParts(info);
@@ -522,7 +524,7 @@ std::vector<QuantityPart> quantityParts(const QuantityInfo& info,
 // Throws std::out_of_range if it does not exist.
 QuantityPart quantityPart(const QuantityAddress& number);
 
-// Of its first number, `value` as in a state.
+// Address of the quantity's first number, `value` as in a state.
 template <class Value>
 QuantityAddress quantityAddress(const QuantityInfo& info, std::size_t sensor, const Value& value) {
   QuantityAddress first{info.owner, sensor, info.id};
@@ -531,16 +533,17 @@ QuantityAddress quantityAddress(const QuantityInfo& info, std::size_t sensor, co
   return first;
 }
 
-// Of all numbers that the state has.
+// Addresses of all numbers of the state.
 std::vector<QuantityAddress> quantityAddresses(const CalibrationState& state);
 
-// Each quantity's own sigmas, from the standard deviations of its columns.
+// Sets each quantity's sigmas from the standard deviations of its columns.
 void setSigmas(UncertaintyReport& report);
 
-// Of a lens's numbers that are estimated; empty if none is.
+// Covariance of the estimated numbers of a lens; empty if none is estimated.
 Eigen::MatrixXd intrinsicsCovariance(const UncertaintyReport& report, std::size_t camera);
 
-// Those numbers, in SI units: rotations as vectors, upper triangles row by row; of intrinsics all nine.
+// The numbers of a value, in SI units: rotations as vectors, upper triangles row by row; all nine of
+// intrinsics.
 Eigen::VectorXd quantityNumbers(double value);
 Eigen::VectorXd quantityNumbers(const Eigen::Vector3d& value);
 Eigen::VectorXd quantityNumbers(const Eigen::Quaterniond& value);
@@ -548,13 +551,13 @@ Eigen::VectorXd quantityNumbers(const Eigen::Matrix3d& value);
 Eigen::VectorXd quantityNumbers(const std::optional<CameraIntrinsics>& value);
 Eigen::VectorXd quantityNumbers(const std::optional<std::array<double, 9>>& sigmas);
 
-// And back, for sigmas; of intrinsics those that are held stay 0.
+// The inverse, for sigmas; fixed numbers of intrinsics stay 0.
 void setQuantityNumbers(const Eigen::VectorXd& numbers, double& value);
 void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Vector3d& value);
 void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Matrix3d& value);
 void setQuantityNumbers(const Eigen::VectorXd& numbers, std::optional<std::array<double, 9>>& sigmas);
 
-// a - b, rotations about the axes that their shape says.
+// a - b, rotations about the axes of their shape.
 template <class Value>
 Eigen::VectorXd quantityDifference(const QuantityInfo&, const Value& a, const Value& b) {
   return quantityNumbers(a) - quantityNumbers(b);
@@ -562,7 +565,7 @@ Eigen::VectorXd quantityDifference(const QuantityInfo&, const Value& a, const Va
 Eigen::VectorXd quantityDifference(const QuantityInfo& info, const Eigen::Quaterniond& a,
                                    const Eigen::Quaterniond& b);
 
-// Whether there is something to show.
+// True if the quantity is compared and shown.
 template <class Row, class State, class Uncertainty>
 bool isPresent(const Row& row, const State& state, const Uncertainty& uncertainty) {
   switch (row.info.presence) {

@@ -1,4 +1,4 @@
-// Which of a rig's numbers one is: what the columns of a covariance are addressed by.
+// Addresses of a rig's numbers: they identify the columns of a covariance.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
@@ -14,7 +14,7 @@ namespace evical {
 
 enum class QuantityOwner { Camera, Imu, Board, Rig };
 
-// An owner has each of them once.
+// Unique within an owner.
 enum class QuantityId {
   Rotation,
   Translation,
@@ -37,20 +37,20 @@ enum class QuantityId {
   ColumnCurvature,
   Twist,
   Gravity,
-  Latency  // follows from two time offsets: no covariance has it
+  Latency  // follows from two time offsets: not in covariances
 };
 
 struct QuantityAddress {
   QuantityOwner owner = QuantityOwner::Rig;
-  std::size_t sensor = 0;  // among those of its kind; of boards 0 is the world's
+  std::size_t sensor = 0;  // index among those of its kind; board 0 is the world's
   QuantityId id = QuantityId::Gravity;
-  std::size_t component = 0;              // as quantityParts lists them
-  std::optional<CameraModel> model = {};  // of intrinsics: those of another model mean something else
+  std::size_t component = 0;              // in the order of quantityParts
+  std::optional<CameraModel> model = {};  // of intrinsics: numbers of different models are not comparable
 
   bool operator==(const QuantityAddress&) const = default;
 };
 
-// Nothing where the number is not estimated.
+// Empty if the number is not estimated.
 inline std::optional<Eigen::Index> columnOf(const QuantityAddress& number,
                                             const std::vector<QuantityAddress>& columns) {
   const auto found = std::find(columns.begin(), columns.end(), number);

@@ -14,7 +14,7 @@ namespace {
 
 class Differences {
  public:
-  // Without a sigma where `sigmas` is empty.
+  // Without sigmas if `sigmas` is empty.
   void add(const std::string& sensor, const QuantityInfo& info, const std::vector<QuantityPart>& parts,
            const Eigen::VectorXd& differences, const Eigen::VectorXd& sigmas) {
     for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -27,7 +27,7 @@ class Differences {
   std::vector<QuantityDifference> all;
 };
 
-// Another model's coefficients mean something else.
+// Coefficients of different models are not comparable.
 template <class Value>
 bool comparable(const Value&, const Value&) {
   return true;
@@ -40,7 +40,7 @@ bool isEstimated(const Eigen::VectorXd& sigmas) {
   return !sigmas.isZero(0.0);
 }
 
-// One sensor as one of the two has it.
+// One sensor in one of the two estimates.
 template <class State, class Uncertainty>
 struct Side {
   const State& state;
@@ -67,7 +67,7 @@ bool isCompared(const Row& row, const Sensor& a, const Sensor& b) {
   return in_a && isEstimated(quantityNumbers(row.sigma(b.uncertainty)));
 }
 
-// Clocks that drift are compared at one time.
+// Offsets of drifting clocks are compared at the same time.
 template <class Sensor>
 Sensor atTimeOf(const Sensor& other, Sensor sensor) {
   sensor.time_offset_s = timeOffsetAt_s(sensor, other.time_offset_at_s);
@@ -113,15 +113,15 @@ void addSensors(const Rows& rows, std::vector<Uncertainty>& sums, const std::vec
 std::size_t sensorIndex(const std::string& name, const std::vector<std::string>& names, const char* key) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw badInput(key, fmt::format("the truth has no '{}'", name), nameAdvice(name, names));
+    throw badInput(key, fmt::format("the truth does not contain '{}'", name), nameAdvice(name, names));
   return static_cast<std::size_t>(found - names.begin());
 }
 
 std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b) {
   if (a.reference != b.reference)
     throw badInput("reference",
-                   fmt::format("the result's is '{}', the truth's '{}'", a.reference, b.reference),
-                   "Compare a result with the truth of its own recording");
+                   fmt::format("the result has '{}', the truth has '{}'", a.reference, b.reference),
+                   "Compare the result with the truth of the same recording");
   Differences differences;
   for (std::size_t i = 0; i < a.camera_names.size(); ++i) {
     const std::size_t j = sensorIndex(a.camera_names[i], b.camera_names, "cameras");

@@ -1,4 +1,4 @@
-// A recording as the stages see it: named streams that go by once, in packets.
+// A recording for the stages: named streams that are read once, in packets.
 #pragma once
 
 #include "core/data/event.h"
@@ -20,25 +20,25 @@ enum class StreamType { Events, Imu, Frames, Points, Triggers, Other };
 struct StreamInfo {
   std::string name;  // topic, or the stream's name in the file
   StreamType type = StreamType::Other;
-  std::string message;            // what the file calls its content, e.g. dvs_msgs/EventArray
-  Resolution resolution_px;       // of events and frames, where the file says it
+  std::string message;            // type of the content in the file, e.g. dvs_msgs/EventArray
+  Resolution resolution_px;       // of events and frames, if the file specifies it
   std::uint64_t messages = 0;     // 0 if unknown
-  std::int64_t time_unit_ns = 1;  // the file's own
-  // What the format says the numbers of IMU samples are in.
+  std::int64_t time_unit_ns = 1;  // resolution of times in the file
+  // Units of IMU samples in this format.
   AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
   AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
-  // Where times are the sensor's own and the file also tells when the host received them: what to add to get
-  // the host's, as IMU samples from elsewhere have them. Better once all has been read.
+  // If times are the sensor's own and the file also has the host's reception times: what to add to get the
+  // host's clock, as used by IMU samples from other sources. More accurate after all has been read.
   std::optional<double> host_clock_offset_s = std::nullopt;
-  bool readable = true;     // false: it is only listed; a fault says why where that is not obvious
-  bool timed = true;        // false: pictures without times, numbered 1 s apart; they tell intrinsics only
-  std::string source = {};  // the device that gave it, where the file says so: "DAVIS346_00000002"
+  bool readable = true;     // false: only listed; a fault gives the reason unless it is obvious
+  bool timed = true;        // false: pictures without times, numbered 1 s apart, for intrinsics only
+  std::string source = {};  // the recording device, if the file specifies it: "DAVIS346_00000002"
 };
 
-// Largest side in pixels that a file may claim for a sensor: coordinates have 16 bits.
+// Largest sensor side in pixels that is accepted in a file: coordinates have 16 bits.
 inline constexpr int kLargestSide_px = 65536;
 
-// What one call of RecordingReader::read hands out, all of one stream: some events, some samples in the stream's
+// Result of one call of RecordingReader::read, all from one stream: some events, some samples in the stream's
 // units, a few frames, or the points of one time.
 struct Packet {
   std::size_t stream = 0;  // index into RecordingReader::streams()

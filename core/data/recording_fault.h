@@ -1,4 +1,4 @@
-// What goes wrong in recordings and is reported but not repaired.
+// Faults of recordings that are reported but not repaired.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ enum class FaultKind {
   Untimed,
 };
 
-// As reports and `evical inspect` spell them, in the enumeration's order.
+// Names in reports and in `evical inspect`, in the enumeration's order.
 inline constexpr std::array kFaultKinds{"backward_time", "board_size",     "corrupt",
                                         "empty",         "encoding",       "exposure_left_out",
                                         "gap",           "guess",          "held",
@@ -62,14 +62,14 @@ constexpr const char* nameOf(FaultKind kind) {
   return kFaultKinds[static_cast<std::size_t>(kind)];
 }
 
-// Faults of one kind that a reader reports of one stream: a broken file has thousands.
+// All faults of one kind that a reader found in one stream: a broken file has thousands.
 inline constexpr std::ptrdiff_t kMostAlikeFaults = 10;
 
 struct RecordingFault {
   std::string stream;  // empty: the file as a whole
   FaultKind kind = FaultKind::Corrupt;
-  double at_s = 0.0;  // since the stream's first time; 0 where it has no place
-  std::string text;   // one sentence for people
+  double at_s = 0.0;  // since the stream's first time; 0 if it has no time
+  std::string text;   // message: one sentence
 };
 
 }  // namespace evical

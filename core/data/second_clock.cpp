@@ -11,10 +11,10 @@
 namespace evical {
 namespace {
 
-constexpr double kJump_periods = 5.0;      // more than a few samples that were lost
-constexpr double kTolerance = 0.05;        // of the time that as many samples take
-constexpr double kSlack_periods = 2.0;     // besides
-constexpr std::size_t kFewestSamples = 3;  // around a stretch, and in it
+constexpr double kJump_periods = 5.0;      // longer than a gap of a few lost samples
+constexpr double kTolerance = 0.05;        // relative to the duration of as many samples
+constexpr double kSlack_periods = 2.0;     // in addition
+constexpr std::size_t kFewestSamples = 3;  // before a stretch, and in it
 
 double periodOf(std::span<const ImuSample> samples) {
   std::vector<double> steps_s;
@@ -29,7 +29,7 @@ std::vector<SecondClock> findSecondClocks(std::span<const ImuSample> samples) {
   std::vector<SecondClock> found;
   const double period_s = periodOf(samples);
   if (!(period_s > 0.0)) return found;
-  std::size_t jump = 0;  // the latest sample before which time jumped ahead; 0: none
+  std::size_t jump = 0;  // the latest sample after a forward jump of time; 0: none
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const double step_s = secondsSince(samples[i - 1].time_ns, samples[i].time_ns);
     if (step_s > kJump_periods * period_s) jump = i;
@@ -52,7 +52,7 @@ RecordingFault faultOf(const std::string& stream, std::span<const ImuSample> sam
   return {stream, FaultKind::SecondClock, at_s,
           fmt::format(
               "{} samples from {:.3f} s on are stamped by a second clock, which runs {:.2f} times as fast: "
-              "calibrations leave them out.",
+              "they are excluded from calibrations.",
               clock.end - clock.begin, at_s, clock.rate)};
 }
 

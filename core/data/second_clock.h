@@ -1,5 +1,6 @@
-// Stretches of an IMU's samples that another clock has stamped: some drivers double the time for a while. Where a stretch begins
-// the time jumps ahead, at its end it jumps back, and the samples around it go on as if nothing had been.
+// Stretches of an IMU's samples with stamps of another clock: some drivers double the time for a while. Time
+// jumps ahead at the beginning of a stretch, and back at its end; the samples before and after it are
+// consistent.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -14,10 +15,10 @@ namespace evical {
 
 struct SecondClock {
   std::size_t begin = 0, end = 0;  // samples, in the order in which they were recorded
-  double rate = 1.0;               // how many times as fast as the right clock it ran
+  double rate = 1.0;               // rate relative to the right clock
 };
 
-// In the order in which they were recorded, ascending; none where the samples around a stretch do not fit together.
+// In the order of recording, ascending; none if the samples before and after a stretch are not consistent.
 std::vector<SecondClock> findSecondClocks(std::span<const ImuSample> samples);
 
 RecordingFault faultOf(const std::string& stream, std::span<const ImuSample> samples,

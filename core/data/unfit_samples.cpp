@@ -13,19 +13,20 @@
 namespace evical {
 namespace {
 
-constexpr int kRunOfLimit_samples = 4;  // equal ones in a row at the extreme of an axis are a saturation
-// Below the smallest full scale that sensors have (125 deg/s, 2 g less a bias) such runs must be met so often,
-// or be so long.
+constexpr int kRunOfLimit_samples = 4;  // consecutive equal samples at an axis's extreme that mean saturation
+// Below the smallest full scale of sensors (125 deg/s, 2 g minus a bias), several such runs or a longer one
+// are required.
 constexpr double kFullScale_rad_s = 2.0, kFullScale_m_s2 = 15.0;
 constexpr int kRunsOfLimit = 3, kLongRunOfLimit_samples = 16;
-// Of samples, at most: more often than that they are the sensor's way (values held, a poor resolution).
+// Largest share of spikes among samples: a larger share is a property of the sensor (repeated values, low
+// resolution).
 constexpr double kMostSpikes = 0.02;
-// In medians of the errors of interpolation, ten sigmas of what is normally distributed.
+// Threshold in medians of the interpolation errors: ten sigmas of a normal distribution.
 constexpr double kSpike_medians = 15.0;
 constexpr std::ptrdiff_t kNeighbours = 16;  // on either side
 constexpr int kMostRounds = 8;
 
-// The extreme at which the axis stays for several samples in a row, as no motion does; nullopt if there is none.
+// The extreme at which the axis stays for several samples, which no motion causes; nullopt if there is none.
 std::optional<double> limitAt(std::span<const ImuSample> samples, const ImuAxis& axis, double extreme) {
   const double from = axis.rate ? kFullScale_rad_s : kFullScale_m_s2;
   int run = 0, runs = 0, longest = 0;
@@ -52,15 +53,15 @@ std::vector<std::size_t> saturatedAlong(std::span<const ImuSample> samples, cons
   return saturated;
 }
 
-// One axis's values, and how far each is from the cubic through the two on either side. An isolated error
-// stands out from its neighbours, however brisk the motion.
+// Interpolation errors of one axis: distance of each value from the cubic through the two values on either
+// side. An isolated error is large compared with its neighbours, even in fast motion.
 class SpikeSearch {
  public:
-  // `joined`: which values follow those around them without a gap.
+  // `joined`: which values have no gap to their neighbours.
   SpikeSearch(std::vector<double> values, const std::vector<bool>& joined)
       : values_(std::move(values)), joined_(joined) {
     for (std::ptrdiff_t i = 0; i < size(); ++i) errors_.push_back(errorAt(i));
-    std::vector<double> steps;  // the resolution is the smallest
+    std::vector<double> steps;  // the smallest step is the resolution
     for (std::size_t i = 1; i < values_.size(); ++i) {
       if (values_[i] != values_[i - 1]) steps.push_back(std::abs(values_[i] - values_[i - 1]));
     }
@@ -76,7 +77,7 @@ class SpikeSearch {
       if (worst.empty()) break;
       for (const std::ptrdiff_t i : worst) {
         found.push_back(static_cast<std::size_t>(i));
-        at(i) += signedErrorAt(i);  // the cubic's value: what is left beside it shows now
+        at(i) += signedErrorAt(i);  // the cubic's value: reveals errors next to it
         for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(i - 2, 0); k < std::min(i + 3, size()); ++k)
           errors_[static_cast<std::size_t>(k)] = errorAt(k);
       }
@@ -104,7 +105,7 @@ class SpikeSearch {
     return error > kSpike_medians * medianOf(std::vector<double>(first, last));
   }
 
-  // Of those that stand out within two of each other the one that does most: the others may owe it to that.
+  // The largest of outliers within two samples of each other: it may cause the others.
   std::vector<std::ptrdiff_t> worstOfEachPlace() const {
     std::vector<std::ptrdiff_t> worst;
     std::ptrdiff_t last = -kNeighbours;
@@ -125,9 +126,10 @@ class SpikeSearch {
   double least_ = 0.0;
 };
 
-// Whether the two samples on either side of each follow without a gap, across which no cubic tells anything.
+// True for each sample if the two samples on either side have no gap between them; across gaps, no cubic is
+// valid.
 std::vector<bool> joinedSamples(std::span<const ImuSample> samples) {
-  constexpr double kLongest_periods = 3.0;  // of four
+  constexpr double kLongest_periods = 3.0;  // mean of four
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < samples.size(); ++i)
     intervals_s.push_back(secondsSince(samples[i - 1].time_ns, samples[i].time_ns));
@@ -138,11 +140,11 @@ std::vector<bool> joinedSamples(std::span<const ImuSample> samples) {
   return joined;
 }
 
-// If a driver holds each sample of a slow sensor until the next, all three axes repeat for about the same number of samples.
-// A sensor at rest and a coarse sensor repeat too, but less regularly.
+// If a driver repeats each sample of a slow sensor until the next, all three axes repeat for about the same
+// number of samples. A sensor at rest and a coarse sensor repeat too, but less regularly.
 std::vector<std::size_t> repeatsOf(std::span<const ImuSample> samples, bool rate) {
   constexpr std::size_t kFewestRuns = 20;
-  constexpr double kRegular = 0.95;  // of the runs, that are as long as the median one, give or take a sample
+  constexpr double kRegular = 0.95;  // share of runs whose length is the median's within one sample
   const auto values = [rate](const ImuSample& sample) -> const Eigen::Vector3d& {
     return rate ? sample.angular_rate_rad_s : sample.specific_force_m_s2;
   };
@@ -189,7 +191,7 @@ void findUnfitOf(std::span<const ImuSample> samples, bool rate, UnfitSamples& un
   }
   std::vector<std::size_t>& found = rate ? unfit.gyroscope_spikes : unfit.accelerometer_spikes;
   found = spikes(samples, rate);
-  // The kink where a clip begins is no spike.
+  // The kink at the beginning of a saturation is not a spike.
   std::erase_if(found, [&](std::size_t i) {
     return std::any_of(clipped.begin(), clipped.end(),
                        [i](std::size_t k) { return k <= i + 1 && i <= k + 1; });
@@ -200,7 +202,7 @@ bool isMeasured(const ImuSample& sample, bool rate) {
   return rate ? measuresRate(sample) : measuresForce(sample);
 }
 
-// A selection of the samples and their places in the list. Nothing is copied if all are selected.
+// A subset of the samples and their indices in the list. Without a copy if all are selected.
 struct OwnSamples {
   std::span<const ImuSample> samples;
   std::vector<std::size_t> places, others;  // places: empty if all are selected
@@ -241,7 +243,7 @@ std::vector<ImuSample> those(std::span<const ImuSample> samples, const std::vect
 
 bool isMeasurable(const ImuSample& sample) {
   constexpr double kLargest_rad_s = 1e4, kLargest_m_s2 = 1e5;
-  // Not so of what is no number.
+  // False for NaN.
   return sample.angular_rate_rad_s.cwiseAbs().sum() <= kLargest_rad_s &&
          sample.specific_force_m_s2.cwiseAbs().sum() <= kLargest_m_s2;
 }
@@ -255,7 +257,7 @@ UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
     if (own.samples.empty()) continue;
     std::vector<std::size_t>& repeats = rate ? unfit.gyroscope_repeats : unfit.accelerometer_repeats;
     repeats = repeatsOf(own.samples, rate);
-    // A held sample looks like a limit that is reached: only the first of each counts.
+    // A repeated sample looks like saturation: only the first of each counts.
     const OwnSamples firsts(
         own.samples, [&](std::size_t i) { return !std::binary_search(repeats.begin(), repeats.end(), i); });
     findUnfitOf(firsts.samples, rate, unfit);
@@ -282,8 +284,8 @@ std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<cons
     const double own_hz = rate_hz - static_cast<double>(repeats.size()) / whole_s;
     faults.push_back(
         {stream, FaultKind::Held, 0.0,
-         fmt::format("The {} measures at {:.1f} Hz, and its samples are repeated at {:.1f} Hz: calibrations "
-                     "take each once.",
+         fmt::format("The {} measures at {:.1f} Hz, but its samples are repeated at {:.1f} Hz: calibrations "
+                     "use each of them once.",
                      sensor, own_hz, rate_hz)});
   };
   tell("gyroscope", unfit.gyroscope_repeats, unfit.without_rate.size());

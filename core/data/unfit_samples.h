@@ -1,5 +1,5 @@
-// IMU samples from which nothing can be estimated: where a sensor was at its limit, and isolated errors (a
-// flipped bit, a tap on the table) that their neighbours contradict.
+// IMU samples that are unusable for estimation: saturated ones, and isolated errors (a flipped bit, a tap on
+// the table) that contradict their neighbours.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -30,41 +30,41 @@ inline constexpr std::array<ImuAxis, 6> kImuAxes = {{{"angular rate x", true, 0}
                                                      {"specific force y", false, 1},
                                                      {"specific force z", false, 2}}};
 
-// Whether a sample's numbers can come from any sensor, in whatever unit they were mistaken: no motion is of
-// 10 000 rad/s (the fastest gyroscopes end at 70, 4000 in deg/s) or 10 000 g (16 g are 16 000 mg).
+// True if a sample's numbers are possible for any sensor, even in a wrong unit: no motion reaches 10 000
+// rad/s (the fastest gyroscopes reach 70, 4000 in deg/s) or 10 000 g (16 g are 16 000 mg).
 bool isMeasurable(const ImuSample& sample);
 
 // Indices of samples, ascending.
 struct UnfitSamples {
   std::array<std::vector<std::size_t>, kImuAxes.size()> saturated;
   std::vector<std::size_t> gyroscope_spikes, accelerometer_spikes;
-  // Repeats of the sample before, where a sensor is slower than its stream and each of its samples is held.
+  // Repeats of the sample before, if a sensor is slower than its stream.
   std::vector<std::size_t> gyroscope_repeats, accelerometer_repeats;
   std::vector<std::size_t> without_rate, without_force;  // only the other sensor measured these
 };
 
-// Of samples that are measurable.
+// Expects only measurable samples.
 UnfitSamples findUnfitSamples(std::span<const ImuSample> samples);
 
-// What is said of sensors whose samples are held.
+// Reports of sensors whose samples are repeated.
 std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<const ImuSample> samples,
                                        const UnfitSamples& unfit);
 
-// Which samples of the two sensors take part, in their order: 1 if one does.
+// Samples of the two sensors that are used, in their order: 1 if used.
 struct SampleSelection {
   std::vector<std::uint8_t> gyroscope, accelerometer;
 
   bool operator==(const SampleSelection&) const = default;
 };
 
-// All but the unfit ones and those beside a saturated one: a filter before the limit, or a mean over a
-// sampling period, takes part of it there.
+// All except the unfit ones and those next to a saturated one: a filter before the limit, or a mean over a
+// sampling period, is affected there.
 SampleSelection fitSamples(std::span<const ImuSample> samples);
 
-// For who integrates rates: of a saturated sample two axes are right, and the third is nearer to the truth
-// than nothing.
+// For the integration of rates: two axes of a saturated sample are correct, and the third is a better
+// estimate than none.
 std::vector<ImuSample> withoutRateSpikes(std::span<const ImuSample> samples);
-// Takes only valid samples that the accelerometer measured.
+// Only valid samples that the accelerometer measured.
 std::vector<ImuSample> withFitForces(std::span<const ImuSample> samples);
 
 }  // namespace evical

@@ -11,8 +11,8 @@ Eigen::Quaterniond unitQuaternion(const YamlNode& node, const Eigen::Vector4d& x
   Eigen::Quaterniond rotation(xyzw);
   const double norm = rotation.norm();
   if (!(std::abs(norm - 1.0) < 1e-3))
-    throw node.error(fmt::format("is no unit quaternion: its norm is {:.6g}", norm), advice);
-  // Dividing only where it matters leaves what we wrote ourselves as it was, to the last bit.
+    throw node.error(fmt::format("is not a unit quaternion: its norm is {:.6g}", norm), advice);
+  // Normalised only if necessary, so that the values of our own files stay bit-identical.
   if (std::abs(norm - 1.0) > 1e-12) rotation.normalize();
   return rotation;
 }

@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// From the node's numbers, which may be off by rounding. Throws CalibrationError (BadInput) at the node.
+// From the node's numbers; rounding errors are accepted. Throws CalibrationError (BadInput) at the node.
 Eigen::Quaterniond unitQuaternion(const YamlNode& node, const Eigen::Vector4d& xyzw,
                                   const std::string& advice = {});
 

@@ -13,7 +13,8 @@ namespace evical {
 namespace {
 
 constexpr double kMedianOfChi2With3 = 2.3659738843753377;
-constexpr double kCauchySquares = 9.0;  // three numbers of one sigma each are well within
+constexpr double kCauchySquares =
+    9.0;  // squared scale; errors of one sigma in three numbers are far below it
 
 }  // namespace
 
@@ -61,7 +62,7 @@ Eigen::Matrix3d AlignmentFit::weightOf(std::size_t k, const Eigen::Vector3d& err
   return cauchyWeight(size / kCauchySquares) * information;
 }
 
-// The windows' own sigmas are valid if their edges are few; if they are many, model errors count.
+// The windows' own sigmas are valid for few edges; for many edges, model errors dominate.
 void AlignmentFit::findScales(const AlignmentState& state) {
   std::vector<double> sizes, squares;
   std::vector<Eigen::Vector3d> errors;

@@ -1,4 +1,4 @@
-// The least squares of rotation_alignment.h; not for other folders.
+// The least squares problem of rotation_alignment.h; internal to this folder.
 #pragma once
 
 #include "core/egomotion/integrated_rates.h"
@@ -29,11 +29,12 @@ struct AlignmentState {
 
 class AlignmentFit {
  public:
-  // `windows`: those that are used.
+  // `windows`: the used ones.
   AlignmentFit(std::vector<const WindowMotion*> windows, const SummedRates& rates,
                const Eigen::Matrix3d& gyroscope_matrix);
 
-  // Mean rate of the IMU in the window, in its frame, weighed as the window's parts; what changes by a later time.
+  // Mean rate of the IMU in the window, in its frame, with the weights of the window's parts; and its
+  // derivative by time.
   Eigen::Vector3d imuRate_rad_s(const WindowMotion& window, const AlignmentState& state,
                                 Eigen::Vector3d* by_time = nullptr) const;
 

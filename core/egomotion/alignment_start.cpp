@@ -15,7 +15,7 @@ struct Correlation {
   double offset_s = 0.0, value = -1.0;
 };
 
-// Correlation of both rates, over the windows that the gyroscope covers at this offset.
+// Correlation of the magnitudes of both rates, over the windows that the gyroscope covers at this offset.
 Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*>& windows,
                           const SummedRates& rates, const AlignmentState& start,
                           const Eigen::Matrix3d& imu_from_measured) {

@@ -1,4 +1,4 @@
-// One camera's part of a recording: the motion of every window, and edges for the joint fit.
+// One camera's data from a recording: the motion of every window, and edges for the joint fit.
 #pragma once
 
 #include "core/data/edge_slope.h"
@@ -11,8 +11,8 @@
 
 namespace evical {
 
-// Slopes of windows. Memory is bounded: of more than options.kept_slopes in a window every second, third ... is kept, and
-// of more than options.kept_windows windows every second, fourth ...
+// Slopes of windows, in bounded memory: if a window has more than options.kept_slopes, every second, third,
+// ... is kept; with more than options.kept_windows windows, every second, fourth, ... window.
 class KeptSlopes {
  public:
   struct Window {

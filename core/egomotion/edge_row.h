@@ -1,5 +1,5 @@
-// One edge's equation for a camera's motion (docs/maths.md, 16.2): g . (A w + B v / Z) = 1. Not for other
-// folders.
+// One edge's equation for a camera's motion (docs/maths.md, 16.2): g . (A w + B v / Z) = 1. Internal to this
+// folder.
 #pragma once
 
 #include "core/data/edge_slope.h"

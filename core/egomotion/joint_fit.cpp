@@ -37,7 +37,7 @@ JointFit::JointFit(const JointInput& input, const EgomotionOptions& options, boo
   parts_.resize(windows_.size());
 }
 
-// The window's velocity and depths, with the camera's rotation from `model`.
+// Estimates the window's velocity and depths, with the camera's rotation from `model`.
 std::optional<WindowFit> JointFit::fitWindow(std::size_t k, const TurningModel& model,
                                              const WindowRates& rates) {
   const KeptSlopes::Window& window = *windows_[k];
@@ -73,7 +73,7 @@ void JointFit::findPart(std::size_t k, const AlignmentState& state) {
                           row.by_rotation.transpose() * residual.by_flow),
         nearness * (row.by_translation.transpose() * residual.by_flow);
     const double weight = fit->weightOf(residual);
-    // Without translation much is misfit, and curvatures would come out below 0.
+    // Without translation, residuals are large, and curvatures would be negative.
     normal.add(unit * (still_ ? weight : fit->curvatureOf(residual)), unit * weight * residual.value, j,
                row.patch, residual.translational.dot(residual.by_flow));
   }
@@ -86,8 +86,9 @@ void JointFit::findPart(std::size_t k, const AlignmentState& state) {
   parts_[k].right = right.head<kJointNumbers>() - shared.transpose() * right.tail<3>();
 }
 
-// Velocities are as large as those of all windows are. Where the rig does not translate slopes' small errors in common, which no
-// number of edges averages away, would pass for velocity otherwise, and take rotation with them.
+// Sets the prior that velocities are as large as those of all windows. If the rig does not translate, common
+// errors of the slopes, which many edges do not average out, would otherwise be explained by velocity and
+// bias the rotation.
 void JointFit::expectVelocities() {
   if (still_) return;
   double squares = 0.0;
@@ -97,7 +98,7 @@ void JointFit::expectVelocities() {
   velocity_information_ = options_.velocity_weight / (squares / windows + kLeast);
 }
 
-// All windows' parts, and the weak prior of lever_left.
+// Sum of all windows' parts, and the weak prior of lever_left.
 JointVector JointFit::sumParts(const AlignmentState& state) {
   constexpr std::size_t kPartsATask = 8;
   inParallel(input_.threads, (windows_.size() + kPartsATask - 1) / kPartsATask, [&](std::size_t task) {
@@ -120,7 +121,7 @@ JointVector JointFit::sumParts(const AlignmentState& state) {
 bool JointFit::solve(AlignmentState& state, double from, double to) {
   constexpr int kIterations = 15;
   constexpr double kLargestTurn_rad = 0.2, kLargestDelay_s = 0.01;
-  // Limits in sigmas from the noise of edges alone: for the results, and for the others.
+  // Convergence limits in sigmas due to the noise of edges: for the results, and for the other numbers.
   constexpr double kDone = 0.1, kOthersDone = 1.0, kNearlyDone = 1.0;
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterations; ++iteration) {

@@ -1,6 +1,6 @@
 // Rotation and time offset from all kept edges of all windows at once (docs/maths.md, 16.4). In each window
-// the gyroscope gives the camera's rotation, and only its velocity and the depths are free. Not for other
-// folders.
+// the gyroscope gives the camera's rotation, and only its velocity and the depths are estimated. Internal to
+// this folder.
 #pragma once
 
 #include "core/base/progress.h"
@@ -21,7 +21,7 @@
 namespace evical {
 
 struct JointInput {
-  const CameraRecord& record;  // windows that are used, and that the gyroscope covers
+  const CameraRecord& record;  // used windows covered by the gyroscope
   const LensRays& lens;
   const SummedRates& rates;
   Eigen::Matrix3d imu_from_measured;
@@ -32,13 +32,14 @@ struct JointInput {
 
 class JointFit {
  public:
-  // `still`: without translation, as if all that moves were turning.
+  // `still`: without translation, as if all image motion were rotation.
   JointFit(const JointInput& input, const EgomotionOptions& options, bool still = false);
 
-  // Gauss-Newton from `state`. False where it comes to no end. Progress goes from `from` to `to`. Throws Cancelled.
+  // Gauss-Newton from `state`. False if it does not converge. Progress goes from `from` to `to`. Throws
+  // Cancelled.
   bool solve(AlignmentState& state, double from, double to);
 
-  // A window's part in the normal equations at the last solution: velocity and depths are eliminated.
+  // A window's part of the normal equations at the last solution: velocity and depths are eliminated.
   struct Part {
     JointMatrix normal = JointMatrix::Zero();
     JointVector right = JointVector::Zero();

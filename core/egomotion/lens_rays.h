@@ -1,4 +1,4 @@
-// The lens, pixel by pixel, as motion needs it.
+// Ray of every pixel, and its derivative, for motion estimation.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"

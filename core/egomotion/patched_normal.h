@@ -1,5 +1,5 @@
-// Normal equations of N numbers and of one depth for each patch of the image; no two depths meet, so each is eliminated for
-// itself. Not for other folders.
+// Normal equations of N numbers and of one depth per patch of the image; no equation contains two depths, so
+// each depth is eliminated separately. Internal to this folder.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ class PatchedNormal {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  // Depths are logarithms about 0, with a sigma of `spread`.
+  // Depths are logarithms with prior 0 and sigma `spread`.
   void begin(const std::vector<double>& log_nearness, double spread) {
     normal_.setZero();
     right_.setZero();
@@ -27,8 +27,8 @@ class PatchedNormal {
     for (std::size_t k = 0; k < log_nearness.size(); ++k) depth_right_[k] = -prior * log_nearness[k];
   }
 
-  // An error that pulls by `pull`, which changes by `curvature` where the error does by 1; its derivatives by the numbers and by
-  // the depth of its patch.
+  // Adds an error with gradient `pull` and second derivative `curvature` of its cost; with its derivatives by
+  // the numbers and by the depth of its patch.
   void add(double curvature, double pull, const Vector& by_numbers, std::size_t patch, double by_depth) {
     normal_.template selfadjointView<Eigen::Lower>().rankUpdate(by_numbers, curvature);
     right_ -= pull * by_numbers;
@@ -37,7 +37,7 @@ class PatchedNormal {
     depth_right_[patch] -= pull * by_depth;
   }
 
-  // The last three numbers are expected to be 0, with so much information.
+  // Adds a prior of 0 for the last three numbers, with this information.
   void expectNone(double information, const Eigen::Vector3d& value) {
     normal_.diagonal().template tail<3>().array() += information;
     right_.template tail<3>() -= information * value;
@@ -58,7 +58,7 @@ class PatchedNormal {
   }
   Vector diagonal() const { return normal_.diagonal(); }
 
-  // Changes the depths according to a change of the numbers by `step`, by at most a factor of e.
+  // Updates the depths for a change of the numbers by `step`, by at most a factor of e.
   void moveDepths(const Vector& step, double damping, std::vector<double>& log_nearness) const {
     for (std::size_t k = 0; k < log_nearness.size(); ++k) {
       const double own = std::max(depth_normal_[k], prior_) * (1.0 + damping);

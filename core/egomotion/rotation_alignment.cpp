@@ -22,8 +22,8 @@ namespace evical {
 namespace {
 
 constexpr const char* kWalkLess =
-    "Stay further from walls and furniture, walk slower, and turn more: what is near moves in the image as "
-    "you walk";
+    "Stay further away from walls and furniture, walk more slowly, and rotate more: near objects move in "
+    "the image while you walk";
 
 RotationAlignment failed(std::string reason, std::vector<std::string> advice = {}) {
   RotationAlignment out;
@@ -33,15 +33,15 @@ RotationAlignment failed(std::string reason, std::vector<std::string> advice = {
 }
 
 RotationAlignment noSolution() {
-  return failed("no rotation and no time offset makes the camera turn as the gyroscope does",
-                {kWalkLess, "Check that camera, lens and IMU are those of one rig"});
+  return failed("no rotation and time offset aligns the camera's motion with the gyroscope's",
+                {kWalkLess, "Check that camera, lens and IMU belong to one rig"});
 }
 
 bool isUsed(const WindowMotion& window) {
   return window.use == WindowUse::Used;
 }
 
-// Used windows whose time the gyroscope covers, with what the offset may yet move.
+// Used windows that the gyroscope covers, with a margin for later changes of the offset.
 std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                 double offset_s) {
   constexpr double kMargin_s = 0.05;
@@ -58,9 +58,9 @@ std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windo
   return covered;
 }
 
-// The delete-a-block jackknife, to first order: how much each block moves the estimate. With few blocks their
-// scatter is uncertain itself, which Student's distribution describes. The noise of edges is added for
-// numbers that hardly count in any block.
+// The delete-a-block jackknife, to first order: the change of the estimate without each block. With few
+// blocks, their scatter itself is uncertain, which Student's distribution describes. The noise of edges is
+// added for numbers that no block determines well.
 std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionOptions& options,
                                            int& blocks) {
   std::map<double, JointFit::Part> sums;
@@ -85,7 +85,7 @@ std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionO
   return covariance;
 }
 
-// The numbers that another fit comes to, less those of `state`.
+// Result of another fit, minus the numbers of `state`.
 std::optional<Eigen::Vector4d> shiftBy(JointFit fit, const AlignmentState& state, double from, double to) {
   AlignmentState there = state;
   if (!fit.solve(there, from, to)) return std::nullopt;
@@ -137,7 +137,7 @@ void describe(const AlignmentFit& fit, const AlignmentState& state, RotationAlig
   out.misfit_rms_rad_s = std::sqrt(misfits / n);
 }
 
-// The numbers, and their covariance: by blocks, and by what depths and translation may have left.
+// The numbers, and their covariance: from blocks, and from the remaining errors of depths and translation.
 void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const EgomotionOptions& options,
           RotationAlignment& out) {
   out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();
@@ -151,11 +151,12 @@ void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const E
   out.weakest_in_camera = state.imu_from_camera.transpose() * eigen.vectors.col(2);
 }
 
-// From the windows' own rates: where all edges start from, and which windows contradict the others.
+// Solution from the windows' own rates: the start value of the joint fit. Marks windows that contradict the
+// others.
 std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                const Eigen::Matrix3d& matrix, const AlignmentState& before,
                                                const EgomotionOptions& options, RotationAlignment& out) {
-  // Windows at the ends are lost if the offset may be anything; only then the solution asks for all.
+  // The search range of the offset excludes windows at the ends; the final solution uses them again.
   std::vector<WindowMotion> searched = windows;
   std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, before.time_offset_s);
   std::erase_if(inside, [&](const WindowMotion* window) {
@@ -163,7 +164,7 @@ std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& window
                          window->end_s + before.time_offset_s + options.search_s);
   });
   if (inside.size() < static_cast<std::size_t>(kAlignmentNumbers)) {
-    out = failed("camera and gyroscope have too little time in common");
+    out = failed("the recordings of camera and gyroscope overlap too little in time");
     return std::nullopt;
   }
   std::optional<AlignmentState> state = bestSolution(inside, rates, matrix, before, options.search_s);
@@ -187,7 +188,7 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
   const Eigen::Matrix3d matrix = gyroscope.imu.gyroscopeMatrix();
   std::vector<WindowMotion>& windows = record.windows;
   if (std::count_if(windows.begin(), windows.end(), isUsed) < kAlignmentNumbers)
-    return failed("too few windows tell how the camera turns");
+    return failed("too few windows determine the camera's rotation");
   const AlignmentState before{start.imu_from_camera.toRotationMatrix(), start.time_offset_s,
                               gyroscope.imu.gyroscope_bias_rad_s};
   RotationAlignment out;
@@ -199,13 +200,13 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
   if (!fit.solve(state, 0.0, 0.4)) return noSolution();
   const std::optional<JointMatrix> covariance = blockCovariance(fit, options, out.blocks);
   if (!covariance)
-    return failed("too little of the recording tells how the camera turns",
-                  {"Record for a minute, and turn about all axes", kWalkLess});
+    return failed("too little of the recording determines the camera's rotation",
+                  {"Record for a minute, and rotate about all axes", kWalkLess});
   const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state,
                                                          0.4, 0.7),
                                        still = shiftBy(JointFit(input, options, true), state, 0.7, 1.0);
   if (!coarser || !still)
-    return failed("what translation does to the image cannot be told from rotation", {kWalkLess});
+    return failed("rotation cannot be separated from translation in the image", {kWalkLess});
   out.by_coarser_depths = *coarser;
   out.by_turning_alone = *still;
   take(state, covariance->topLeftCorner<4, 4>(), options, out);

@@ -2,7 +2,7 @@
 // 16.4):
 //   scale * camera_from_imu * M^-1 (rate_measured(t + time_offset) - bias) = rate_of_camera(t).
 // First from the windows' rates, then from all edges at once. The scale is that of the image's motion. It is
-// not a result, and absorbs all that would shrink the rates alike.
+// not a result, and absorbs any common scale error of the rates.
 #pragma once
 
 #include "core/base/progress.h"
@@ -25,7 +25,7 @@ namespace evical {
 struct GyroscopeRecord {
   std::span<const ImuSample> samples;
   std::int64_t start_ns = 0;  // of the recording
-  const ImuState& imu;        // its matrix is used unchanged, its bias as a start
+  const ImuState& imu;        // its matrix is used unchanged, its bias as start value
 };
 
 struct AlignmentStart {
@@ -34,7 +34,7 @@ struct AlignmentStart {
 };
 
 struct RotationAlignment {
-  std::string failure;              // why there is none; empty where there is one
+  std::string failure;              // reason for a missing result; empty if there is one
   std::vector<std::string> advice;  // by the reasons for unused windows; empty if the windows suffice
   Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
@@ -47,14 +47,13 @@ struct RotationAlignment {
   // Changes of the same numbers with half as many depths across and down, and with all motion taken as
   // rotation: the dependence on depths and on translation.
   Eigen::Vector4d by_coarser_depths = Eigen::Vector4d::Zero(), by_turning_alone = Eigen::Vector4d::Zero();
-  double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's turning, and of what is left of it
-  Eigen::Vector3d weakest_in_camera =
-      Eigen::Vector3d::Zero();  // axis about which the rotation is known least
+  double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's rotation, and of its residuals
+  Eigen::Vector3d weakest_in_camera = Eigen::Vector3d::Zero();  // axis of the least certain rotation
 
   bool found() const { return failure.empty(); }
 };
 
-// Windows that the gyroscope does not cover, or that contradict the others, are marked. Throws Cancelled.
+// Marks windows that the gyroscope does not cover, or that contradict the others. Throws Cancelled.
 RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, const GyroscopeRecord& gyroscope,
                                 const AlignmentStart& start, const EgomotionOptions& options, int threads,
                                 const RunContext& context = {});

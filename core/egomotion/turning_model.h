@@ -1,4 +1,4 @@
-// A camera's rotation during a window, from the gyroscope's measurements. Not for other folders.
+// A camera's rotation during a window, from the gyroscope's measurements. Internal to this folder.
 #pragma once
 
 #include "core/egomotion/alignment_fit.h"
@@ -12,13 +12,13 @@
 
 namespace evical {
 
-// The numbers of AlignmentState, and lever_left.
+// The numbers of AlignmentState, including lever_left.
 inline constexpr int kJointNumbers = kAlignmentNumbers + 3;
 using JointVector = Eigen::Matrix<double, kJointNumbers, 1>;
 using JointMatrix = Eigen::Matrix<double, kJointNumbers, kJointNumbers>;
 
-// Gyroscope rates during a window: means over its parts, and lines between them. Their change is the
-// difference between the window's halves; that of neighbouring parts would be mostly noise.
+// Gyroscope rates during a window: means over its parts, and linear functions between them. Their slope is
+// the difference between the window's halves; that of neighbouring parts would be mostly noise.
 class WindowRates {
  public:
   WindowRates(const SummedRates& rates, double begin_s, double duration_s) : part_s_(duration_s / kParts) {
@@ -44,7 +44,7 @@ class WindowRates {
   Eigen::Vector3d change_rad_s2_;
 };
 
-// Camera rate that follows from a gyroscope rate, and its derivatives by each number.
+// Camera rate for a gyroscope rate, and its derivatives by each number.
 class TurningModel {
  public:
   TurningModel(const AlignmentState& state, const Eigen::Matrix3d& imu_from_measured)
@@ -60,7 +60,7 @@ class TurningModel {
     return seen_ * camera_from_imu_ * inImu(measured_rad_s);
   }
 
-  // Derivative of an error that has this derivative by the camera's rate.
+  // Derivative of an error by the numbers, from its derivative by the camera's rate.
   JointVector derivative(const Eigen::Vector3d& measured_rad_s, const Eigen::Vector3d& change_rad_s2,
                          const Eigen::Vector3d& by_rate) const {
     const Eigen::Vector3d in_imu = inImu(measured_rad_s), turned = camera_from_imu_ * in_imu;

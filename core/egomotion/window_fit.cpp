@@ -12,8 +12,9 @@
 namespace evical {
 namespace {
 
-constexpr double kCauchySigmas = 2.385;                    // 95 % of least squares' efficiency
-constexpr double kInlierSigmas = 3.0, kInlierError = 0.3;  // of the speed, or so many sigmas
+constexpr double kCauchySigmas = 2.385;  // 95 % of least squares' efficiency
+constexpr double kInlierSigmas = 3.0,
+                 kInlierError = 0.3;  // limits of inliers: sigmas, or relative to the speed
 constexpr double kHeldDepth = 1e9;
 
 }  // namespace
@@ -53,7 +54,7 @@ void WindowFit::startFrom(WindowState state, WindowUnknowns unknowns) {
 
 void WindowFit::refine() {
   constexpr int kIterations = 8;
-  constexpr double kEnough = 1e-5;  // of the cost
+  constexpr double kEnough = 1e-5;  // relative change of the cost
   rescale();
   double cost = costOf(state_);
   for (int k = 0; k < kIterations; ++k) {

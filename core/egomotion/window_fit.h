@@ -1,5 +1,5 @@
-// The robust least squares of one window's edges; not for other folders. Unknown are rate and velocity of the camera, and the
-// depths of the image's patches.
+// Robust least squares fit of one window's edges; internal to this folder. Unknown are the camera's rate and
+// velocity, and the depths of the image's patches.
 #pragma once
 
 #include "core/egomotion/edge_row.h"
@@ -14,8 +14,8 @@ namespace evical {
 
 struct WindowState {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();    // in addition to the rows' known rates
-  Eigen::Vector3d velocity_1_s = Eigen::Vector3d::Zero();  // by the mean depth
-  std::vector<double> log_nearness;                        // by patch: of the mean depth by its own
+  Eigen::Vector3d velocity_1_s = Eigen::Vector3d::Zero();  // in mean depths per second
+  std::vector<double> log_nearness;  // by patch: log of the mean depth over the patch's depth
 };
 
 enum class WindowUnknowns { Rotation, Translation, Both };
@@ -25,14 +25,14 @@ class WindowFit {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-  // `velocity_information`: of a velocity of 0, in squares of sigmas of edges by (1/s)^2.
+  // `velocity_information`: information of the prior velocity 0, for edges of unit sigma and in (1/s)^-2.
   WindowFit(std::vector<EdgeRow> rows, const EgomotionOptions& options, double velocity_information = 0.0);
 
-  // Least squares of g . u - 1, robust: a start that needs none. False where it has no solution.
+  // Robust least squares of g . u - 1, which needs no start value. False if it has no solution.
   bool start(WindowUnknowns unknowns);
-  // From a state of before, such as an earlier refine() has left it.
+  // Starts from an earlier state, such as the result of refine().
   void startFrom(WindowState state, WindowUnknowns unknowns);
-  // Gauss-Newton from there.
+  // Gauss-Newton from the start.
   void refine();
 
   const WindowState& state() const { return state_; }
@@ -47,7 +47,7 @@ class WindowFit {
   // Change of the weighted residual with the residual: the weight, minus the weight's own change. Below 0 for
   // large residuals.
   double curvatureOf(const EdgeResidual& residual) const;
-  double scale() const { return scale_; }  // of the residuals' values, robust
+  double scale() const { return scale_; }  // robust scale of the residuals' values
 
   // With the depths eliminated; slopes that share their neighbourhood count little more than one.
   Matrix6d covariance(double shared) const;

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// Times in the window at which the motion was determined.
+// Weights of the parts of the window in the estimated motion.
 void weighParts(const WindowFit& fit, double window_s, WindowMotion& out) {
   double sum = 0.0;
   for (const EdgeRow& row : fit.rows()) {
@@ -40,8 +40,8 @@ const char* windowUseWords(WindowUse use) {
       "used",
       "too few edges with a speed",
       "the image hardly moves",
-      "most edges do not move as in a scene that stands still",
-      "the rotation is not told",
+      "most edges do not move as in a static scene",
+      "the rotation is not determined",
       "no gyroscope samples at that time",
       "contradicts the other windows"};
   return kWords.at(static_cast<std::size_t>(use));
@@ -61,7 +61,7 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   const double alone = fit.medianSquare();
   if (!fit.start(WindowUnknowns::Both)) return out;
   fit.refine();
-  // Equally good, up to what three numbers more explain by chance.
+  // Equally good, apart from the chance improvement by three more numbers.
   constexpr double kAsWell = 1.05, kNegligible = 0.01;  // squares of sigmas
   out.rotation_alone = alone <= kAsWell * fit.medianSquare() + kNegligible;
   out.inliers = fit.inlierShare();

@@ -1,6 +1,7 @@
 // The camera's motion in a short window of time, from the speed of edges along their normals
-// (docs/maths.md, 16.2). The image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at
-// which an edge passes has the slope g with g . (A w + B v / Z) = 1. This holds for any scene at rest.
+// (docs/maths.md, 16.2). The image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and
+// the time at which an edge passes has the slope g with g . (A w + B v / Z) = 1. This is valid for any static
+// scene.
 #pragma once
 
 #include "core/data/edge_slope.h"
@@ -17,15 +18,15 @@
 
 namespace evical {
 
-// Outcome of a window. The rows of windowUseWords.
+// Outcome of a window. In the order of windowUseWords.
 enum class WindowUse {
   Used,
   FewEdges,      // too few with a speed
   HardlyMoving,  // the image is nearly at rest
-  NotExplained,  // most edges do not move as in a scene at rest
+  NotExplained,  // most edges do not move as in a static scene
   Uncertain,     // no direction of the rotation is determined
   NoGyroscope,   // the IMU has no samples at that time
-  OutOfLine,     // it contradicts the others: by more than they scatter
+  OutOfLine,     // contradicts the other windows by more than their scatter
 };
 inline constexpr std::size_t kWindowUses = 7;
 const char* windowUseWords(WindowUse use);
@@ -37,10 +38,10 @@ struct WindowMotion {
   double begin_s = 0.0, end_s = 0.0;             // on the camera's clock since the recording's start
   std::array<double, kParts> part_weights = {};  // of equal parts of the window; their sum is 1
   std::size_t slopes = 0;
-  double inliers = 0.0;                                  // share of them that the motion explains
+  double inliers = 0.0;                                  // share of slopes that the motion explains
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in its frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  bool rotation_alone = false;  // which explains the edges as well as rotation and translation do
+  bool rotation_alone = false;  // rotation alone explains the edges equally well
 
   double middle_s() const { return 0.5 * (begin_s + end_s); }
 };
@@ -50,7 +51,7 @@ struct WindowTime {
   std::int64_t begin_ns = 0;  // of the window
 };
 
-// `use` is Used, or the reason against it.
+// `use` is Used, or the reason why it is not used.
 WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensRays& lens, WindowTime time,
                                   const EgomotionOptions& options);
 

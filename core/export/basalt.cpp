@@ -46,7 +46,7 @@ std::string perCamera(const Rig& rig, Text&& text_of) {
   return fmt::format("[{}\n    ]", text);
 }
 
-// Basalt corrects raw samples, a = (I + S) a_raw - b, where we describe measuring: I + S =
+// Basalt corrects raw samples, a = (I + S) a_raw - b; Evical models the measurement: I + S =
 // M^-1, b = M^-1 bias.
 std::string correctionText(const RigImu& imu, const LowerTriangularImu& lower) {
   const Eigen::Matrix3d accelerometer = lower.accelerometer.inverse();
@@ -98,13 +98,12 @@ std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& 
 
 std::vector<std::string> basaltMeanings(const RigImu& imu) {
   std::vector<std::string> lines{
-      "T_imu_cam takes points of the camera to the IMU; t_imu = t_cam + cam_time_offset_ns.",
+      "T_imu_cam transforms points of the camera to the IMU; t_imu = t_cam + cam_time_offset_ns.",
       "corrected force = (I + S) raw - b, with S and b of calib_accel_bias; the same for calib_gyro_bias."};
   if (hasMapping(imu.state))
     lines.emplace_back(
-        "The IMU's frame is Basalt's, in which S of the accelerometer is lower triangular: it is turned "
-        "against "
-        "Evical's.");
+        "The IMU's frame is Basalt's, in which S of the accelerometer is lower triangular: it is rotated "
+        "relative to Evical's.");
   return lines;
 }
 

@@ -1,4 +1,4 @@
-// Basalt's calibration.json, which TUM-VIE has too.
+// Basalt's calibration.json, which TUM-VIE also uses.
 #pragma once
 
 #include "core/export/rig.h"
@@ -8,12 +8,12 @@
 
 namespace evical {
 
-// Of all cameras, in this order; their lenses are such as the program takes. `more` are further members, each after a
-// comma. Throws CalibrationError (BadInput) where there is no IMU.
+// Text for all cameras, in this order, with supported lens models. `more`: further members, each after a
+// comma. Throws CalibrationError (BadInput) without an IMU.
 std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes,
                               const std::string& more = {});
 
-// What its keys mean.
+// Explanations of its keys.
 std::vector<std::string> basaltMeanings(const RigImu& imu);
 
 }  // namespace evical

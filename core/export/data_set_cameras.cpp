@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// Cameras of one kind, as a rig of their own.
+// Cameras of one kind, as a separate rig.
 Rig rigOfKind(const Rig& rig, bool frames) {
   Rig own = rig;
   std::erase_if(own.cameras,
@@ -34,12 +34,12 @@ std::string placeDataSetCamerasText(const char* name, const std::optional<RigCam
 DataSetCameras dataSetCameras(const Rig& rig, const char* program, ExportNotes& notes) {
   const Rig events = rigOfKind(rig, false), frames = rigOfKind(rig, true);
   if (events.cameras.empty())
-    throw badInput("result", fmt::format("has no event camera, and {} is of event cameras", program),
+    throw badInput("result", fmt::format("has no event camera, which {} requires", program),
                    fmt::format("Leave {} out", program));
   DataSetCameras placed;
   dataSetCamerasPlace(events, program, placed.left_event, placed.right_event);
   dataSetCamerasPlace(frames, program, placed.left_frame, placed.right_frame);
-  notes.push_back(fmt::format("{} names cameras by their places; {}, {}, {}, {}", program,
+  notes.push_back(fmt::format("{} identifies cameras by their places: {}, {}, {}, {}", program,
                               placeDataSetCamerasText("left event camera", placed.left_event),
                               placeDataSetCamerasText("right event camera", placed.right_event),
                               placeDataSetCamerasText("left frame camera", placed.left_frame),
@@ -48,7 +48,7 @@ DataSetCameras dataSetCameras(const Rig& rig, const char* program, ExportNotes& 
   for (const Rig* const kind : {&events, &frames})
     for (std::size_t i = kMostOfAKind; i < kind->cameras.size(); ++i)
       notes.push_back(
-          fmt::format("{} has two cameras of a kind: {} is left out", program, kind->cameras[i].name));
+          fmt::format("{} has two cameras per kind: {} is left out", program, kind->cameras[i].name));
   return placed;
 }
 

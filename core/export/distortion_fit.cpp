@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLargestError_px = 2.0;  // such errors are in the corners: RMS is a fifth of them
+constexpr double kLargestError_px = 2.0;  // largest errors are in the corners; RMS is a fifth of them
 
 bool hasThirdRadial(const CameraIntrinsics& camera) {
   return camera.model == CameraModel::PinholeRadtan && camera.distortion[4] != 0.0;
@@ -42,7 +42,7 @@ std::string lensName(const CameraIntrinsics& camera) {
   }
 }
 
-// Wide lenses come nearest to equidistant ones.
+// Equidistant models approximate wide lenses best.
 LensFit nearestLens(const CameraIntrinsics& own, const KnownModels& known) {
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const CameraModel model = known.radtan && (radtan || !known.equidistant) ? CameraModel::PinholeRadtan
@@ -62,16 +62,15 @@ CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, Ex
         fmt::format("result: cameras.{}.intrinsics", camera.name),
         std::isfinite(fit.worst_px)
             ? fmt::format(
-                  "{} has no place for {}, and the nearest lens that it knows is off by up to {:.3g} px",
+                  "{} does not support {}, and its closest lens model has an error of up to {:.3g} px",
                   known.program, have, fit.worst_px)
-            : fmt::format("{} has no place for {}, and no lens that it knows sees so wide", known.program,
-                          have),
-        "Calibrate the intrinsics with a model that it knows");
+            : fmt::format("{} does not support {}, and none of its lens models covers this field of view",
+                          known.program, have),
+        "Calibrate the intrinsics with a model that it supports");
   const bool to_radtan = fit.camera.model == CameraModel::PinholeRadtan;
   notes.push_back(fmt::format(
-      "{}: {} has no place for {}: refitted over the {} as {} with {} coefficients, off "
-      "by {:.2g} px RMS, "
-      "{:.2g} px at most",
+      "{}: {} does not support {}: refitted over the {} as {} with {} coefficients, error "
+      "{:.2g} px RMS, {:.2g} px at most",
       camera.name, known.program, have, fit.whole_image ? "whole image" : "image up to 85 deg off the axis",
       to_radtan ? "radial-tangential" : "equidistant", to_radtan && known.third_radial ? 5 : 4, fit.rms_px,
       fit.worst_px));

@@ -1,4 +1,4 @@
-// Cameras in the models that other programs know.
+// Cameras in the lens models of other programs.
 #pragma once
 
 #include "core/export/rig.h"
@@ -9,18 +9,18 @@
 
 namespace evical {
 
-// What a program can hold; one of radtan and equidistant at least.
+// Lens models of a program; at least one of radtan and equidistant.
 struct KnownModels {
   const char* program;
   bool radtan = true, third_radial = false, equidistant = true;
   bool double_sphere = false, eucm = false, omni = false;
 };
 
-// The camera as it is where the program can hold it; else refitted (lens_fit.h), with a note of the error; where that is
-// more than 2 px anywhere in the image, throws CalibrationError (BadInput).
+// The camera unchanged if the program supports it; otherwise refitted (lens_fit.h), with a note of the error.
+// Throws CalibrationError (BadInput) if the error exceeds 2 px anywhere in the image.
 CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, ExportNotes& notes);
 
-// In the program's words, 4 or 5 numbers: OpenCV's order, k3 (`coefficients` = 5) last.
+// In the order of the program, 4 or 5 numbers: OpenCV's order, k3 (`coefficients` = 5) last.
 std::vector<double> distortionOf(const CameraIntrinsics& camera, int coefficients);
 
 }  // namespace evical

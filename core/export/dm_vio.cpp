@@ -14,13 +14,13 @@ namespace {
 constexpr const char* kDmVioProgram = "DM-VIO";
 constexpr KnownModels kDmVioModels{kDmVioProgram, true, false, true};
 
-// The image that DSO makes of each: a pinhole's, without distortion.
+// Rectified image that DSO creates: a pinhole's, without distortion.
 struct Rectified {
   Resolution size_px;
   Eigen::Vector2d least, most;  // x/z and y/z at the middles of its outer pixels
 };
 
-// Pyramids end where a size is odd, and with less than 3 levels it "will probably segfault": whole sixteenths.
+// Pyramids end at odd sizes, and with less than 3 levels it "will probably segfault": multiples of 16.
 Resolution pyramidSize(const Resolution& sensor) {
   constexpr int kPyramid_px = 16;
   const auto whole = [](int size_px) {
@@ -29,10 +29,10 @@ Resolution pyramidSize(const Resolution& sensor) {
   return {whole(sensor.width_px), whole(sensor.height_px)};
 }
 
-// How many of the rays on one side of the rectified image the camera sees outside of its own image, or not at all.
+// Number of rays on one side of the rectified image that are outside of the camera's image, or not visible.
 int outsideOnSide(const CameraIntrinsics& camera, const Rectified& image, int axis, bool most) {
   constexpr int kSteps = 100;
-  constexpr double kMargin_px = 0.1;  // for what is between the steps
+  constexpr double kMargin_px = 0.1;  // for rays between the steps
   int outside = 0;
   for (int i = 0; i <= kSteps; ++i) {
     Eigen::Vector3d ray(0.0, 0.0, 1.0);
@@ -48,8 +48,9 @@ int outsideOnSide(const CameraIntrinsics& camera, const Rectified& image, int ax
   return outside;
 }
 
-// As large as fits into what the camera sees: from the middles of its image's edges, the worst side goes in until all
-// sides are inside. DSO's own "crop" looks for them along x/z up to 5, where polynomials come back into the image.
+// Largest rectified image within the camera's: it starts at the middles of the image's edges, and its worst
+// side is moved inwards until all sides are inside. DSO's "crop" searches along x/z up to 5, where
+// polynomials fold back into the image.
 Rectified rectifiedImage(const CameraIntrinsics& camera) {
   constexpr double kWithin = 4.0;  // of x/z: 76 degrees
   const Eigen::Vector2d last(camera.resolution_px.width_px - 1.0, camera.resolution_px.height_px - 1.0);
@@ -63,7 +64,7 @@ Rectified rectifiedImage(const CameraIntrinsics& camera) {
     const auto high = unproject(camera, edge);
     image.most[axis] = high ? std::min((*high)[axis], kWithin) : kWithin;
   }
-  constexpr int kSteps = 2000;  // of half a percent each: never so many
+  constexpr int kSteps = 2000;  // of half a percent each; an upper limit
   for (int step = 0; step < kSteps; ++step) {
     int worst = 0, worst_axis = 0;
     bool worst_most = false;
@@ -81,7 +82,7 @@ Rectified rectifiedImage(const CameraIntrinsics& camera) {
   return image;
 }
 
-// Four lines, which DSO reads too: lens, size, the rectified camera in shares of its image's size, that size.
+// Four lines, which DSO also reads: lens, size, the rectified camera relative to its image's size, that size.
 std::string dmVioCameraText(const CameraIntrinsics& own) {
   const Rectified image = rectifiedImage(own);
   const Eigen::Vector2d size(image.size_px.width_px, image.size_px.height_px);
@@ -100,10 +101,10 @@ std::string dmVioCameraText(const CameraIntrinsics& own) {
 
 std::string dmVioNoiseText(const Rig& rig, ExportNotes& notes) {
   const ImuNoise noise = statedNoise(rig.imus[0], notes);
-  return headerComment(rig,
-                       {"Noise densities and random walks for DM-VIO: settingsFile=noise.yaml, or pasted "
-                        "into your own settings. The program's own configurations have values far above "
-                        "their sensors': scale these up where it diverges."}) +
+  return headerComment(
+             rig, {"Noise densities and random walks for DM-VIO: use settingsFile=noise.yaml, or copy them "
+                   "into your own settings. The program's own configurations have values far above "
+                   "their sensors': increase these if it diverges."}) +
          fmt::format(
              "accelerometer_noise_density: {}\ngyroscope_noise_density: {}\n"
              "accelerometer_random_walk: {}\ngyroscope_random_walk: {}\n",
@@ -120,8 +121,7 @@ ExportedFiles exportDmVio(const NamedResult& result) {
   noteLostCameras(rig, 1, kDmVioProgram, exported.notes);
   exported.files.push_back({"camera.txt", dmVioCameraText(cameraFor(camera, kDmVioModels, exported.notes))});
   std::vector<std::string> lines{
-      "camera.txt (calib=) is read by DM-VIO and by DSO: lens, size of the images, then the rectified camera "
-      "in "
+      "camera.txt (calib=) is for DM-VIO and DSO: lens, size of the images, then the rectified camera in "
       "shares of its size, and that size. Its third line may be crop or none instead.",
       "There is no photometric calibration (gamma=, vignette=) here: without one, mode=1."};
   if (!rig.imus.empty()) {
@@ -129,9 +129,9 @@ ExportedFiles exportDmVio(const NamedResult& result) {
     noteLostMapping(rig.imus[0], kDmVioProgram, exported.notes);
     exported.files.push_back(
         {"camchain.yaml",
-         headerComment(rig,
-                       {"DM-VIO: imuCalib=camchain.yaml. T_cam_imu takes points of the IMU to the camera.",
-                        stampShifts(rig)}) +
+         headerComment(
+             rig, {"DM-VIO: imuCalib=camchain.yaml. T_cam_imu transforms points of the IMU to the camera.",
+                   stampShifts(rig)}) +
              fmt::format("cam0:  # {}\n  T_cam_imu:\n{}", camera.file_name,
                          rowsYaml(matrixOf(inverse(camera.reference_from_camera)), 4))});
     exported.files.push_back({"noise.yaml", dmVioNoiseText(rig, exported.notes)});

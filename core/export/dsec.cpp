@@ -18,12 +18,12 @@ namespace {
 constexpr const char* kDsecProgram = "DSEC";
 constexpr KnownModels kDsecModels{kDsecProgram, true, false, false};
 
-// DSEC's places: 0 and 3 are the event cameras, left and right, 1 and 2 the frame cameras.
+// DSEC's cameras: 0 and 3 are the event cameras, left and right, 1 and 2 the frame cameras.
 struct Place {
   const char* type;
   const char* location;
   std::optional<RigCamera> camera = {};
-  CameraIntrinsics lens = {};  // as DSEC can hold it
+  CameraIntrinsics lens = {};  // in a model that DSEC supports
   Eigen::Matrix3d rectified_from_camera = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d rectified = Eigen::Matrix3d::Identity();  // camera matrix
 };
@@ -41,7 +41,7 @@ RigidTransform fromTo(const RigCamera& from, const RigCamera& to) {
   return inverse(to.reference_from_camera) * from.reference_from_camera;
 }
 
-// Pairs are rectified; a camera by itself stays as it is, without its distortion.
+// Rectifies pairs; for a single camera only the distortion is removed.
 void rectifyPair(Place& left, Place& right) {
   if (!left.camera) return;
   left.rectified = cameraMatrix(left.lens);
@@ -66,7 +66,7 @@ std::string headText(const Place& place, std::size_t i, bool rectified) {
       place.lens.resolution_px.height_px);
 }
 
-// Of a place that has no camera, and of a first one, there is none.
+// Empty for the first camera, and if the previous one is missing.
 std::string dsecChainText(const Places& places, std::size_t i) {
   if (i == 0 || !places[i - 1].camera) return "";
   return "    T_cn_cnm1:\n" + rowsYaml(matrixOf(fromTo(*places[i - 1].camera, *places[i].camera)), 4);
@@ -81,7 +81,7 @@ std::string dsecCameraText(const Places& places, std::size_t i) {
          headText(place, i, true) + fmt::format("    camera_matrix: [{}]\n", matrixList(place.rectified));
 }
 
-// Programs go from camera to camera, T_32 T_21 T_10: where a place has no camera, the one before it stands there.
+// Programs chain the transforms, T_32 T_21 T_10: a missing camera is replaced by the one before it.
 std::string extrinsicsText(const Places& places) {
   std::string text = "extrinsics:\n", skipped;
   const RigCamera* before = &*places[0].camera;
@@ -99,7 +99,7 @@ std::string extrinsicsText(const Places& places) {
   return text;
 }
 
-// (column, row, disparity, 1) of the left rectified image to a point before it, times its fourth element.
+// Matrix from (column, row, disparity, 1) in the left rectified image to a point in homogeneous coordinates.
 std::string disparityText(const char* key, const Place& left, const Place& right) {
   if (!left.camera || !right.camera) return "";
   const double baseline_m = fromTo(*left.camera, *right.camera).translation_m.norm();
@@ -122,10 +122,10 @@ ExportedFiles exportDsec(const NamedResult& result) {
   rectifyPair(places[1], places[2]);
   noteNoOffsets(rig, kDsecProgram, exported.notes);
   if (!rig.imus.empty())
-    exported.notes.push_back(fmt::format("{} says nothing of IMUs: {} is in other targets' files",
-                                         kDsecProgram, rig.imus.front().name));
+    exported.notes.push_back(
+        fmt::format("{} has no IMUs: {} is in other targets' files", kDsecProgram, rig.imus.front().name));
   std::vector<std::string> comment{
-      "DSEC's cam_to_cam.yaml. T_XY takes points of camera Y to camera X, R_rectX points of camera X to "
+      "DSEC's cam_to_cam.yaml. T_XY transforms points of camera Y to camera X, R_rectX points of camera X to "
       "camRectX.",
       "There is no cam_to_lidar.yaml: Evical calibrates no LiDAR."};
   comment.insert(comment.end(), exported.notes.begin(), exported.notes.end());

@@ -30,7 +30,7 @@ std::string field(const char* key, const std::string& value, int indent) {
   return fmt::format("{:{}}\"{}\": {},\n", "", indent, key, value);
 }
 
-// The program reads it of IMUs; a camera's would have to tell of the pattern, too, and may be left out.
+// The program reads it for IMUs; for cameras it would require the pattern, and is optional.
 std::string metadata(const std::string& comment) {
   return fmt::format("      \"metadata\": {{\"calibrationTime\": \"\", \"comment\": {}}}\n    }}",
                      jsonText(comment));
@@ -60,7 +60,8 @@ std::string dvProcessingCameraText(const Rig& rig, std::size_t i, ExportNotes& n
          lastField("transformationToC0", quotedList(matrixOf(this_from_first)));
 }
 
-// It is looked up by its camera's name. The sensor's limits are on its data sheet, not in a calibration: 0 means not known.
+// It is looked up by its camera's name. The sensor's limits are on its data sheet, not in a calibration: 0
+// means unknown.
 std::string dvProcessingImuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const ImuNoise noise = statedNoise(imu, notes);
   const auto number = [](const char* key, double value) { return field(key, quoted(value), 6); };
@@ -76,7 +77,8 @@ std::string dvProcessingImuText(const Rig& rig, const RigImu& imu, ExportNotes& 
                6) +
          field("transformationToC0", quotedList(matrixOf(inverse(rig.cameras[0].reference_from_camera))), 6) +
          metadata(
-             "transformationToC0 takes points of the IMU to camera C0; t_C0 = t_imu - timeOffsetMicros. " +
+             "transformationToC0 transforms points of the IMU to camera C0; t_C0 = t_imu - "
+             "timeOffsetMicros. " +
              rig.program + ", " + rig.status);
 }
 
@@ -112,13 +114,13 @@ ExportedFiles exportDvProcessing(const NamedResult& result) {
   if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + dvProcessingStereoText(rig) + "\n  }";
   exported.files.push_back({"calibration.json", text + "\n}\n"});
   exported.notes.emplace_back(
-      "the cameras' names must be the devices' (DAVIS346_00000002, as a recording says), and the IMU's that "
-      "of "
-      "its camera, by which it is looked up: change them where they are not");
+      "rename the cameras to their devices' names (DAVIS346_00000002, as in a recording), and the IMU to its "
+      "camera's name, by which it is looked up");
   if (!rig.imus.empty())
-    exported.notes.emplace_back("omegaMax and accMax are 0: put the sensor's limits from its data sheet");
+    exported.notes.emplace_back("omegaMax and accMax are 0: set the sensor's limits from its data sheet");
   std::vector<std::string> lines{
-      "transformationToC0 of a camera takes points of C0 to that camera, of the IMU points of the IMU to C0.",
+      "transformationToC0 of a camera transforms points of C0 to that camera, of the IMU points of the IMU "
+      "to C0.",
       "t_C0 = t_imu - timeOffsetMicros."};
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
   exported.files.push_back({"README.txt", readMe(rig, lines)});

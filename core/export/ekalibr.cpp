@@ -39,7 +39,8 @@ std::string mapText(const char* name, const std::vector<Sensor>& sensors, Value&
   return text;
 }
 
-// Its order of radial-tangential coefficients: k1 k2 k3 t1 t2. Since the end of 2024 it refuses a camera without notes.
+// Order of radial-tangential coefficients: k1 k2 k3 t1 t2. Since the end of 2024 cameras without notes are
+// refused.
 std::string ekalibrCameraText(const CameraIntrinsics& camera, unsigned pointer_id,
                               const std::string& polymorphic, const std::string& blanks) {
   const auto& d = camera.distortion;
@@ -66,7 +67,7 @@ std::string firstOfType(unsigned type_id, CameraModel model, const std::string& 
                      polymorphicName(model));
 }
 
-// The upper triangle as eKalibr orders it: diagonal first, then 01, 02, 12.
+// Upper triangle in eKalibr's order: diagonal first, then 01, 02, 12.
 std::string sensorText(const char* name, const Eigen::Vector3d& bias, const Eigen::Matrix3d& m,
                        const std::string& blanks) {
   Eigen::Matrix<double, 6, 1> coefficients;
@@ -96,7 +97,7 @@ std::string intrinsicsText(const Rig& rig) {
   unsigned pointer_id = 0, types = 0;
   for (const RigImu& imu : rig.imus) text += ekalibrImuText(imu, ++pointer_id);
   text += "    Camera:\n";
-  std::vector<unsigned> type_ids(2, 0);  // by model; 0: not met yet
+  std::vector<unsigned> type_ids(2, 0);  // by model; 0: not used yet
   for (const RigCamera& camera : rig.cameras) {
     const CameraModel model = camera.intrinsics.model;
     unsigned& type_id = type_ids[static_cast<std::size_t>(model)];
@@ -124,9 +125,10 @@ std::string parameterFile(const Rig& rig) {
   };
   const auto imu_time = [](const RigImu& i) { return real(i.state.time_offset_s); };
   return headerComment(
-             rig, {"eKalibr parameters. ...ToBr and ...InBr take points of that sensor to the reference IMU; "
-                   "t_Br = t_sensor + TO.",
-                   "measured = MAP true + BIAS, MAP upper triangular. GRAVITY is in the board's frame."}) +
+             rig,
+             {"eKalibr parameters. ...ToBr and ...InBr transform points of that sensor to the reference IMU; "
+              "t_Br = t_sensor + TO.",
+              "measured = MAP true + BIAS, MAP upper triangular. GRAVITY is in the board's frame."}) +
          fmt::format(
              "CalibParam:\n  Header:\n    Software: Evical\n    Version: {}\n    Address: \"\"\n  EXTRI:\n",
              yamlText(rig.program)) +
@@ -146,16 +148,17 @@ ExportedFiles exportEkalibr(const NamedResult& result) {
   exported.files.push_back({"ekalibr_param.yaml", parameterFile(rig)});
   for (const RigCamera& camera : rig.cameras)
     if (camera.intrinsics.model == CameraModel::PinholeEquidistant)
-      exported.notes.push_back(
-          fmt::format("{}: eKalibr reads equidistant lenses in ekalibr_param.yaml, but takes none as input "
-                      "(PinholeIntrinsicBrownT2 only)",
-                      camera.name));
+      exported.notes.push_back(fmt::format(
+          "{}: eKalibr reads equidistant lenses in ekalibr_param.yaml, but does not accept them as input "
+          "(PinholeIntrinsicBrownT2 only)",
+          camera.name));
   for (const RigCamera& camera : rig.cameras)
     exported.files.push_back(
         {fmt::format("intrinsics-{}.yaml", camera.file_name),
          headerComment(
-             rig, {"Intrinsics as eKalibr's configuration takes them. Distortion: k1 k2 k3 t1 t2, or fisheye "
-                   "k1..k4."}) +
+             rig,
+             {"Intrinsics in the format of eKalibr's configuration. Distortion: k1 k2 k3 t1 t2, or fisheye "
+              "k1..k4."}) +
              "Intrinsics:\n" +
              ekalibrCameraText(camera.intrinsics, 1, firstOfType(1, camera.intrinsics.model, "  "), "  ")});
   return exported;

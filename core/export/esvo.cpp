@@ -15,13 +15,13 @@ CameraIntrinsics leftCamera(const RigCamera& camera, const char* program, Export
   return cameraFor(camera, {program, true, false, true}, notes);
 }
 
-// The program takes size and distortion model of both cameras from the left one's file.
+// The program uses size and distortion model of the left camera's file for both cameras.
 CameraIntrinsics rightCamera(const RigCamera& camera, const CameraIntrinsics& left, const char* program,
                              ExportNotes& notes) {
   if (camera.intrinsics.resolution_px != left.resolution_px)
     throw badInput(
         fmt::format("result: cameras.{}", camera.name),
-        fmt::format("has another resolution than the left camera, and {} takes one for both", program),
+        fmt::format("has another resolution than the left camera, and {} supports one for both", program),
         fmt::format("Leave {} out", program));
   const bool radtan = left.model == CameraModel::PinholeRadtan;
   return cameraFor(camera, {program, radtan, false, !radtan}, notes);
@@ -50,12 +50,12 @@ ExportedFiles exportPair(const NamedResult& result, const char* program, bool wi
   const CameraIntrinsics right = rightCamera(pair.right, left, program, exported.notes);
   const Rectification rectified = rectify(left, right, pair.right_from_left);
   std::string offsets = fmt::format(
-      "{} takes no time offset: add {} s to the stamps of {} and {} s to those of {}, so that t_reference "
-      "= t_cam + that",
+      "{} does not support time offsets: add {} s to the stamps of {} and {} s to those of {}, so that "
+      "t_reference = t_cam + offset",
       program, real(pair.left.time_offset_s), pair.left.file_name, real(pair.right.time_offset_s),
       pair.right.file_name);
   std::vector<std::string> comment{
-      fmt::format("{} stereo pair. T_right_left takes points of the left camera to the "
+      fmt::format("{} stereo pair. T_right_left transforms points of the left camera to the "
                   "right{}.",
                   program, with_imu ? ", T_b_c points of the left camera to the IMU" : ""),
       offsets + "."};

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kEvimo2Program = "EVIMO2";
 constexpr KnownModels kEvimo2Models{kEvimo2Program, true, false, true};
 
-// res_x is the number of rows there, res_y that of columns.
+// res_x is the number of rows, res_y that of columns.
 std::string parametersText(const RigCamera& camera, const CameraIntrinsics& own) {
   const std::string stream = camera.stream.empty() ? "/" + camera.file_name : camera.stream;
   return fmt::format("res_x: {}\nres_y: {}\ndist_model: {}\nros_{}_topic: {}\n", own.resolution_px.height_px,
@@ -33,8 +33,8 @@ std::string evimo2LensText(const CameraIntrinsics& own) {
   return numbersLine(numbers);
 }
 
-// The camera in the rig; a scan of the room, of which there is none; what takes times of the rig to those of the camera;
-// what takes times of images to those of events, which are one here.
+// The camera in the rig; a room scan, which does not exist here; the offset from times of the rig to those of
+// the camera; the offset from times of images to those of events, which are equal here.
 std::string placeEvimo2Text(const RigCamera& camera) {
   const RigidTransform& place = camera.reference_from_camera;
   const Eigen::Vector3d rpy = rollPitchYaw(place.rotation.toRotationMatrix());
@@ -61,13 +61,12 @@ ExportedFiles exportEvimo2(const NamedResult& result) {
   noteLostImus(rig, kEvimo2Program, exported.notes);
   for (const RigImu& imu : rig.imus) noteLostMapping(imu, kEvimo2Program, exported.notes);
   exported.notes.push_back(fmt::format(
-      "{}'s rig has the frame of its motion capture markers; here it is {}: put the markers' pose before it",
+      "{}'s rig has the frame of its motion capture markers; here it is {}: multiply it by the markers' pose",
       kEvimo2Program, reference));
   std::vector<std::string> lines{
-      "A folder each camera. extrinsics.txt: x y z roll pitch yaw take points of the camera to the rig; its "
-      "third "
-      "line is t_camera - t_rig.",
-      "params.txt: res_x is the number of rows. ros_pos_topic, the markers' poses, is yours."};
+      "One folder per camera. extrinsics.txt: x y z roll pitch yaw transform points of the camera to the "
+      "rig; its third line is t_camera - t_rig.",
+      "params.txt: res_x is the number of rows. ros_pos_topic, the markers' poses, must be set by the user."};
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
   exported.files.push_back({"README.txt", readMe(rig, lines)});
   return exported;

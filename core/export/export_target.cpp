@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array kTargets{
     ExportTarget{"kalibr", "Kalibr", "camchain-imucam.yaml, camchain.yaml, imu.yaml",
-                 "What most visual-inertial programs read, or convert from", true, exportKalibr, readKalibr},
+                 "Read or converted by most visual-inertial programs", true, exportKalibr, readKalibr},
     ExportTarget{"openvins", "OpenVINS", "kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml",
                  "Visual-inertial odometry; several cameras", true, exportOpenVins, readOpenVins},
     ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO", "vins.yaml and a camera file each",
@@ -55,15 +55,14 @@ constexpr std::array kTargets{
                  "SLAM with two cameras", false, exportRtabmap, readRtabmap},
     ExportTarget{"opencv", "OpenCV", "cameras and stereo pair (FileStorage)",
                  "Your own programs in C++ or Python", false, exportOpenCv, readOpenCv},
-    ExportTarget{"matlab", "MATLAB, Octave", "a function that makes all of it",
+    ExportTarget{"matlab", "MATLAB, Octave", "a function that creates all of it",
                  "Your own programs in MATLAB or Octave", false, exportMatlab, readMatlab},
-    ExportTarget{"dsec", "DSEC", "cam_to_cam.yaml", "Programs made for that data set; two cameras", false,
+    ExportTarget{"dsec", "DSEC", "cam_to_cam.yaml", "Programs for this data set; two cameras", false,
                  exportDsec, readDsec},
-    ExportTarget{"m3ed", "M3ED", "calibration.h5", "Programs made for that data set", false, exportM3ed,
-                 readM3ed},
+    ExportTarget{"m3ed", "M3ED", "calibration.h5", "Programs for this data set", false, exportM3ed, readM3ed},
     ExportTarget{"evimo2", "EVIMO, EVIMO2", "params.txt, calib.txt, extrinsics.txt of each camera",
-                 "Programs made for those data sets", false, exportEvimo2, readEvimo2},
-    ExportTarget{"tum-vie", "TUM-VIE", "camera-calibrationA.json", "Programs made for that data set", false,
+                 "Programs for these data sets", false, exportEvimo2, readEvimo2},
+    ExportTarget{"tum-vie", "TUM-VIE", "camera-calibrationA.json", "Programs for this data set", false,
                  exportTumVie, readTumVie},
     ExportTarget{"numpy", "NumPy", "calibration.npz", "Your own programs in Python", false, exportNumpy,
                  readNumpy},
@@ -73,7 +72,7 @@ void checkResult(const NamedResult& result) {
   if (result.result->status == CalibrationStatus::Failed)
     throw badInput("result", fmt::format("is of a failed calibration: {}", result.result->reason),
                    "Calibrate again; there is nothing to export");
-  if (result.cameras.empty()) throw badInput("result", "has no camera", "There is nothing to export");
+  if (result.cameras.empty()) throw badInput("result", "has no camera", "Export a result with cameras");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Numbers and matrices as the YAML and JSON readers of other programs take them.
+// Numbers and matrices in a form that YAML and JSON readers of other programs accept.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace evical {
 
-// The shortest text that reads back as the same number, always with a decimal point: YAML 1.1 takes 1e-05 for
-// a string, and OpenCV takes 0 for an integer.
+// Shortest text that reads back as the same number, always with a decimal point: YAML 1.1 reads 1e-05 as
+// a string, and OpenCV reads 0 as an integer.
 std::string real(double value);
 
 std::string realList(const std::vector<double>& values);  // "1.0, 2.0"
@@ -18,7 +18,7 @@ std::string realList(const Eigen::VectorXd& values);
 // All elements row by row: "1.0, 0.0, ..."
 std::string rowMajor(const Eigen::MatrixXd& matrix);
 
-// One line a row, each indented by `indent` blanks: "- [1.0, 0.0]"
+// One line per row, each indented by `indent` blanks: "- [1.0, 0.0]"
 std::string rowsYaml(const Eigen::MatrixXd& matrix, int indent);
 
 // OpenCV FileStorage's matrix in YAML; dt "d" (double) or "f".

@@ -1,4 +1,4 @@
-// One function a target, for the table of targets. Paths are relative to the target's folder.
+// One function per target, for the table of targets. Paths are relative to the target's folder.
 #pragma once
 
 #include "core/export/export_target.h"

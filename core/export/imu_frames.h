@@ -1,6 +1,6 @@
-// IMU scales and misalignment in other programs' conventions. Ours: measured = M true + bias, M of the
-// accelerometer upper triangular, which defines the IMU's frame. A program whose M is lower triangular means
-// another frame, turned by `other_from_imu`, and all that refers to the IMU turns with it.
+// IMU scales and misalignment in other programs' conventions. Evical: measured = M true + bias, M of the
+// accelerometer upper triangular, which defines the IMU's frame. A lower triangular M in another program
+// defines another frame, rotated by `other_from_imu`, and everything in the IMU's frame rotates with it.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -27,7 +27,7 @@ struct LowerTriangularImu {
 };
 LowerTriangularImu lowerTriangular(const ImuState& imu);
 
-bool hasMapping(const ImuState& imu);  // scales or misalignment other than none
+bool hasMapping(const ImuState& imu);  // true unless both matrices are the identity
 
 // p_other = ... * p_imu, as a rigid transform without translation.
 RigidTransform turnOf(const Eigen::Matrix3d& other_from_imu);

@@ -23,8 +23,8 @@ std::string kalibrCameraText(const Rig& rig, std::size_t i, const CameraIntrinsi
                      yamlText(camera.stream.empty() ? fmt::format("/{}", camera.file_name) : camera.stream));
 }
 
-// Rows are indented further than their key, or OpenCV's parser (OpenVINS) fails.
-// What camera N - 1 sees at p, camera N sees at T_cn_cnm1 p.
+// Rows need more indentation than their key, or OpenCV's parser (OpenVINS) fails.
+// A point p in camera N - 1 is T_cn_cnm1 p in camera N.
 std::string kalibrChainText(const Rig& rig, std::size_t i) {
   const RigidTransform step =
       inverse(rig.cameras[i].reference_from_camera) * rig.cameras[i - 1].reference_from_camera;
@@ -32,8 +32,9 @@ std::string kalibrChainText(const Rig& rig, std::size_t i) {
 }
 
 std::string camchain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses) {
-  std::string text = headerComment(rig, {"Kalibr camera chain. T_cn_cnm1 takes points of the camera before "
-                                         "to this camera."});
+  std::string text =
+      headerComment(rig, {"Kalibr camera chain. T_cn_cnm1 transforms points of the camera before "
+                          "to this camera."});
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     text += fmt::format("cam{}:  # {}\n", i, rig.cameras[i].file_name);
     if (i > 0) text += kalibrChainText(rig, i);
@@ -54,7 +55,7 @@ std::string kalibrLensText(const CameraIntrinsics& camera) {
   const bool spheres = camera.model == CameraModel::DoubleSphere || camera.model == CameraModel::Eucm;
   const bool omni = camera.model == CameraModel::OmniRadtan;
   const auto* const coefficients = camera.distortion.data();
-  const std::ptrdiff_t own = spheres ? 2 : omni ? 1 : 0;  // of them are among the intrinsics, first
+  const std::ptrdiff_t own = spheres ? 2 : omni ? 1 : 0;  // number of them that precede the intrinsics
   std::vector<double> intrinsics(coefficients, coefficients + own);
   intrinsics.insert(intrinsics.end(), camera.focal_length_px.begin(), camera.focal_length_px.end());
   intrinsics.insert(intrinsics.end(), camera.principal_point_px.begin(), camera.principal_point_px.end());
@@ -74,7 +75,7 @@ std::string kalibrLensText(const CameraIntrinsics& camera) {
 std::string camchainYaml(const std::string& stream, const CameraIntrinsics& c) {
   std::string text;
   if (c.model == CameraModel::PinholeRadtan && distortionCount(c) == 5)
-    text += fmt::format("# k3 = {} is left out: Kalibr's radtan has no such coefficient\n", c.distortion[4]);
+    text += fmt::format("# k3 = {} is left out: Kalibr's radtan does not support it\n", c.distortion[4]);
   return text + fmt::format("cam0:\n{}  resolution: [{}, {}]\n  rostopic: {}\n  cam_overlaps: []\n",
                             kalibrLensText(c), c.resolution_px.width_px, c.resolution_px.height_px,
                             yamlText(stream));
@@ -139,7 +140,7 @@ std::string kalibrMappingText(const RigImu& imu) {
 std::string kalibrImuFile(const Rig& rig, ExportNotes& notes) {
   std::string text = headerComment(
       rig,
-      {"Kalibr IMU chain. T_i_b takes points of imu0 to this IMU; time of imu0 = time of this IMU + "
+      {"Kalibr IMU chain. T_i_b transforms points of imu0 to this IMU; time of imu0 = time of this IMU + "
        "time_offset.",
        "measured force = accelerometers.M f + bias, measured rate = gyroscopes.M C_gyro_i w + bias, M lower "
        "triangular."});
@@ -164,21 +165,20 @@ ExportedFiles exportKalibr(const NamedResult& result) {
   }
   const Eigen::Matrix3d turn = lowerTriangular(rig.imus.front().state).other_from_imu;
   std::vector<std::string> comment{
-      "Kalibr camera-IMU chain. T_cam_imu takes points of the IMU to the camera; t_imu = t_cam + "
+      "Kalibr camera-IMU chain. T_cam_imu transforms points of the IMU to the camera; t_imu = t_cam + "
       "timeshift_cam_imu."};
   if (turn != Eigen::Matrix3d::Identity())
     comment.emplace_back(
-        "The IMU's frame is Kalibr's, in which the accelerometer's M is lower triangular: it is turned "
-        "against "
-        "Evical's.");
+        "The IMU's frame is Kalibr's, in which the accelerometer's M is lower triangular: it is rotated "
+        "relative to Evical's.");
   exported.files.push_back({"camchain-imucam.yaml", kalibrChain(rig, lenses, turn, comment)});
   exported.files.push_back({"imu.yaml", kalibrImuFile(rig, exported.notes)});
-  ExportNotes said;  // with imu.yaml
+  ExportNotes said;  // already reported with imu.yaml
   for (const RigImu& imu : rig.imus)
     exported.files.push_back(
         {fmt::format("input-{}.yaml", imu.file_name),
-         headerComment(rig, {"For kalibr_calibrate_imu_camera --imu, which takes no imu.yaml: "
-                             "that is laid out as Kalibr's own results are."}) +
+         headerComment(rig, {"For kalibr_calibrate_imu_camera --imu, which does not accept imu.yaml: "
+                             "that has the format of Kalibr's results."}) +
              kalibrNoise(imu, 0, said)});
   return exported;
 }

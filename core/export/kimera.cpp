@@ -13,15 +13,15 @@ namespace {
 
 constexpr const char* kKimeraProgram = "Kimera-VIO";
 
-// Its YamlParser demands each of them, or says nothing of the calibration; values are those of its EuRoC parameters.
-// Later versions align clocks by rotation rates where --do_fine_imu_camera_temporal_sync asks for it.
+// Keys that its YamlParser requires, but that are not part of a calibration; values of its EuRoC parameters.
+// Later versions align clocks by rotation rates if --do_fine_imu_camera_temporal_sync is set.
 constexpr const char* kOwnImuKeys =
     "imu_preintegration_type: 1\nimu_integration_sigma: 1.0e-08\nimu_bias_init_sigma: 1.0e-03\n"
     "do_imu_rate_time_alignment: 1\ntime_alignment_window_size_s: 10.0\n"
     "time_alignment_variance_threshold_scaling: 30.0\n";
-constexpr int kFrameRate_hz = 20;  // an integer above 0, as its EuRoC parameters have it
+constexpr int kFrameRate_hz = 20;  // an integer above 0, as in its EuRoC parameters
 
-// A map, which its parser insists on.
+// A map, which its parser requires.
 std::string kimeraPoseText(const Eigen::Matrix4d& pose) {
   return "T_BS:\n" + dataMatrix(pose, 2);
 }
@@ -31,8 +31,9 @@ std::string kimeraCameraFile(const Rig& rig, const RigCamera& camera, const Came
   const int coefficients = radtan && own.distortion[4] != 0.0 ? 5 : 4;
   return "%YAML:1.0\n---\n" +
          headerComment(
-             rig, {"Camera of Kimera-VIO. T_BS takes points of the camera to the IMU, which is the body.",
-                   "rate_hz is that of your images: put it."}) +
+             rig,
+             {"Camera of Kimera-VIO. T_BS transforms points of the camera to the IMU, which is the body.",
+              "rate_hz is the rate of your images: set it."}) +
          fmt::format("camera_id: \"{}\"\n", camera.file_name) +
          kimeraPoseText(matrixOf(camera.reference_from_camera)) +
          fmt::format(
@@ -47,8 +48,8 @@ std::string kimeraCameraFile(const Rig& rig, const RigCamera& camera, const Came
 std::string kimeraImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const ImuNoise noise = statedNoise(imu, notes);
   return "%YAML:1.0\n---\n" +
-         headerComment(rig, {"IMU of Kimera-VIO. It is the body, which T_BS must say.",
-                             "t_imu = t_cam + imu_time_shift; n_gravity is in a world whose z is up."}) +
+         headerComment(rig, {"IMU of Kimera-VIO. It is the body, so T_BS is the identity.",
+                             "t_imu = t_cam + imu_time_shift; n_gravity is in a world frame with z up."}) +
          kimeraPoseText(Eigen::Matrix4d::Identity()) +
          fmt::format(
              "rate_hz: {}\ngyroscope_noise_density: {}\ngyroscope_random_walk: {}\n"
@@ -61,7 +62,7 @@ std::string kimeraImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes)
          kOwnImuKeys;
 }
 
-// FrontendType and BackendType of its own: 0 and 1 are one camera and two.
+// Its FrontendType and BackendType: 0 is one camera, 1 two.
 std::string pipelineFile(const Rig& rig, std::size_t cameras) {
   return "%YAML:1.0\n---\n" +
          headerComment(rig,
@@ -70,14 +71,14 @@ std::string pipelineFile(const Rig& rig, std::size_t cameras) {
          fmt::format("frontend_type: {}\nbackend_type: 1\ndisplay_type: 0\nparallel_run: 1\n", cameras - 1);
 }
 
-// The left camera first; of cameras that do not sit side by side the first one only, for the mono pipeline.
+// The left camera first; only the first one if the cameras are not side by side, for the mono pipeline.
 std::size_t sortCameras(Rig& rig, ExportNotes& notes) {
   const std::optional<StereoPair> pair = sideBySide(rig);
   if (pair && pair->left.name != rig.cameras[0].name) std::swap(rig.cameras[0], rig.cameras[1]);
   if (pair) return 2;
   if (rig.cameras.size() > 1)
     notes.push_back(
-        fmt::format("{} and {} do not sit side by side, as Kimera-VIO's stereo asks for: {} alone is "
+        fmt::format("{} and {} are not side by side, as Kimera-VIO's stereo pipeline requires: only {} is "
                     "written, for its mono pipeline",
                     rig.cameras[0].name, rig.cameras[1].name, rig.cameras[0].name));
   return 1;
@@ -94,7 +95,7 @@ ExportedFiles exportKimera(const NamedResult& result) {
   noteLostCameras(rig, count, kKimeraProgram, exported.notes);
   noteLostOffsets(rig, kKimeraProgram, exported.notes);
   noteLostMapping(imu, kKimeraProgram, exported.notes);
-  // It rectifies both as the left one's distortion_model says.
+  // It rectifies both with the left one's distortion_model.
   const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
   const KnownModels models{kKimeraProgram, radtan, true, !radtan};
   constexpr const char* kNames[] = {"LeftCameraParams.yaml", "RightCameraParams.yaml"};

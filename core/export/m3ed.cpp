@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kM3edProgram = "M3ED";
 constexpr KnownModels kM3edModels{kM3edProgram, true, false,
-                                  false};  // its tools take the coefficients for OpenCV's
+                                  false};  // its tools interpret the coefficients as OpenCV's
 
 std::vector<double> rowsOf(const Eigen::Matrix4d& matrix) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = matrix;
@@ -45,7 +45,7 @@ void addM3edCamera(const std::string& group, const RigCamera& camera, const RigC
 }
 
 void noteOffsets(const Rig& rig, ExportNotes& notes) {
-  std::string text = fmt::format("{} has one clock for all: add to the stamps of", kM3edProgram);
+  std::string text = fmt::format("{} has one clock for all sensors: add to the stamps of", kM3edProgram);
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format("{} {} {} s", &camera == &rig.cameras.front() ? "" : ",", camera.name,
                         real(camera.time_offset_s));
@@ -75,8 +75,8 @@ ExportedFiles exportM3ed(const NamedResult& result) {
   }
   noteOffsets(rig, notes);
   std::vector<std::string> lines{
-      "The calibration's groups of an M3ED file; T_to_prophesee_left takes points of the sensor to the left "
-      "event camera.",
+      "The calibration's groups of an M3ED file; T_to_prophesee_left transforms points of the sensor to "
+      "the left event camera.",
       "To copy into a file of events: for each group, h5copy -p -i calibration.h5 -s GROUP/calib -o FILE -d "
       "GROUP/calib."};
   lines.insert(lines.end(), notes.begin(), notes.end());

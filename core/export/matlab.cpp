@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// Its objects hold radial-tangential distortion only; equidistant coefficients are numbers there.
+// Its objects support radial-tangential distortion only; equidistant coefficients are plain numbers.
 constexpr KnownModels kMatlabModels{"MATLAB", true, true, true};
 
 std::string matlabMatrixText(const Eigen::MatrixXd& matrix) {
@@ -68,7 +68,7 @@ std::string matlabImuText(const RigImu& imu, std::size_t number, ExportNotes& no
          line(owner, "GyroscopeRandomWalk", real(noise.gyroscope_random_walk));
 }
 
-// stereoParameters wants the rotation of row vectors: the transpose of what takes columns.
+// stereoParameters requires the rotation of row vectors: the transpose of that of columns.
 std::string matlabStereoText(const Rig& rig) {
   const std::optional<StereoPair> level = sideBySide(rig);
   const bool swapped = level && level->left.name != rig.cameras[0].name;
@@ -83,7 +83,7 @@ std::string matlabStereoText(const Rig& rig) {
               matlabMatrixText(second_from_first.translation_m.transpose()));
 }
 
-// Objects of the Computer Vision Toolbox where it is there; Octave has none of them.
+// Objects of the Computer Vision Toolbox if it is installed; Octave does not have them.
 constexpr const char* kCameraObjects =
     "if exist('cameraIntrinsics') > 0\n"
     "  for k = 1:numel(rig.cameras)\n"
@@ -107,13 +107,13 @@ constexpr const char* kStereoObject =
     "end\n";
 
 const std::vector<std::string> kHelp{
-    "rig = evical_rig() returns cameras, IMUs and, of two cameras, a stereo pair: numbers, and objects "
-    "(Intrinsics, Parameters) where the Computer Vision Toolbox is there. Runs in Octave, too.",
-    "Pixels are MATLAB's: the middle of the first one is (1, 1), so PrincipalPoint is OpenCV's + 1.",
-    "4x4 matrices take columns: [p_reference; 1] = ReferenceFromCamera * [p_camera; 1], in metres. "
-    "RotationOfCamera2 takes rows, as stereoParameters does: p_2 = p_1 * RotationOfCamera2 + "
+    "rig = evical_rig() returns cameras, IMUs and, for two cameras, a stereo pair: numbers, and objects "
+    "(Intrinsics, Parameters) if the Computer Vision Toolbox is installed. It also runs in Octave.",
+    "Pixels are MATLAB's: the centre of the first one is (1, 1), so PrincipalPoint is OpenCV's + 1.",
+    "4x4 matrices apply to columns: [p_reference; 1] = ReferenceFromCamera * [p_camera; 1], in metres. "
+    "RotationOfCamera2 applies to rows, as in stereoParameters: p_2 = p_1 * RotationOfCamera2 + "
     "TranslationOfCamera2.",
-    "t_reference = t_camera + TimeOffset, in seconds; the same of IMUs.",
+    "t_reference = t_camera + TimeOffset, in seconds; the same for IMUs.",
     "measured force = AccelerometerMatrix * f + AccelerometerBias, measured rate = GyroscopeMatrix * w + "
     "GyroscopeBias (SI units)."};
 
@@ -129,11 +129,13 @@ ExportedFiles exportMatlab(const NamedResult& result) {
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const CameraIntrinsics own = cameraFor(rig.cameras[i], kMatlabModels, exported.notes);
     if (own.model != CameraModel::PinholeRadtan)
-      exported.notes.push_back(fmt::format(
-          "{}: cameraParameters and cameraIntrinsics have no place for equidistant distortion: its "
-          "numbers are there without an object (cameraIntrinsicsKB is made by cameraIntrinsicsFromOpenCV, "
-          "from R2024a on, of the principal point - 1)",
-          rig.cameras[i].name));
+      exported.notes.push_back(
+          fmt::format("{}: cameraParameters and cameraIntrinsics do not support equidistant distortion: its "
+                      "numbers are written "
+                      "without an object (create cameraIntrinsicsKB by cameraIntrinsicsFromOpenCV, from "
+                      "R2024a on, with the "
+                      "principal point - 1)",
+                      rig.cameras[i].name));
     text += matlabCameraText(rig.cameras[i], own, i + 1);
   }
   for (std::size_t i = 0; i < rig.imus.size(); ++i) text += matlabImuText(rig.imus[i], i + 1, exported.notes);

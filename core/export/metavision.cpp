@@ -39,7 +39,7 @@ ExportedFiles exportMetavision(const NamedResult& result) {
   }
   std::vector<std::string> lines{
       "Intrinsics for Metavision SDK 4 and before: pinhole, distortion k1 k2 p1 p2 k3 as OpenCV's.",
-      "These files hold neither poses nor time offsets."};
+      "These files contain neither poses nor time offsets."};
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
   exported.files.push_back({"README.txt", readMe(rig, lines)});
   return exported;

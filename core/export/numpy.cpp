@@ -16,14 +16,14 @@ namespace {
 
 class Arrays {
  public:
-  // Keys are `sensor`.key, or the key alone where there is no sensor.
+  // Keys are `sensor`.key, or only the key without a sensor.
   void setSensor(const std::string& sensor) { prefix_ = sensor.empty() ? "" : sensor + "."; }
 
   void add(const std::string& key, std::string npy) { arrays_.push_back({prefix_ + key, std::move(npy)}); }
   void add(const std::string& key, const Eigen::Vector3d& vector) {
     add(key, npyList(std::span<const double>(vector.data(), 3)));
   }
-  void addKnown(const std::string& key, double number) {  // 0: not known
+  void addKnown(const std::string& key, double number) {  // 0: unknown
     if (number != 0.0) add(key, npyNumber(number));
   }
 
@@ -34,7 +34,7 @@ class Arrays {
   std::vector<NpzArray> arrays_;
 };
 
-// SI units, one array a quantity; those that were not estimated have none.
+// SI units, one array per quantity; quantities that were not estimated are omitted.
 template <class Rows, class Uncertainty>
 void addSigmas(const Rows& rows, const Uncertainty& uncertainty, Arrays& arrays) {
   forEachQuantity(rows, [&](const auto& row) {
@@ -130,11 +130,12 @@ ExportedFiles exportNumpy(const NamedResult& result) {
   ExportedFiles exported;
   exported.files.push_back({"calibration.npz", arrays.file()});
   exported.files.push_back(
-      {"README.txt", readMe(rig, {"calibration.npz is for numpy.load, without pickles; docs/exports.md of "
-                                  "Evical explains its keys.",
-                                  "T_ref_cam takes points of the camera to the sensor `reference`; t_ref = "
-                                  "t_sensor + time_offset_s.",
-                                  "measured = M true + bias, of accelerometer and gyroscope."})});
+      {"README.txt",
+       readMe(rig, {"calibration.npz is for numpy.load, without pickles; docs/exports.md of "
+                    "Evical explains its keys.",
+                    "T_ref_cam transforms points of the camera to the sensor `reference`; t_ref = "
+                    "t_sensor + time_offset_s.",
+                    "measured = M true + bias, for accelerometer and gyroscope."})});
   return exported;
 }
 

@@ -9,10 +9,11 @@
 namespace evical {
 namespace {
 
-// Fisheyes are cv::fisheye's, omni is cv::omnidir's (opencv_contrib).
+// Fisheye lenses are those of cv::fisheye, omni is that of cv::omnidir (opencv_contrib).
 constexpr KnownModels kOpencvModels{"OpenCV", true, true, true, false, false, true};
 
-// In the order of OpenCV's functions for the model, as a column: k1 k2 p1 p2 k3, k1 k2 k3 k4, or k1 k2 p1 p2 beside xi.
+// Order of OpenCV's functions for the model, as a column: k1 k2 p1 p2 k3, k1 k2 k3 k4, or k1 k2 p1 p2 with
+// separate xi.
 Eigen::VectorXd opencvCoefficients(const CameraIntrinsics& own) {
   const auto& d = own.distortion;
   switch (own.model) {
@@ -38,18 +39,19 @@ std::string opencvLensText(const std::string& k_key, const std::string& d_key, c
   return text;
 }
 
-// What its calibration samples write, and where the camera is.
+// The keys of its calibration samples, and the camera's pose.
 std::string opencvCameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
   const std::string reference = rig.imus.empty() ? rig.cameras[0].file_name : rig.imus[0].file_name;
   return "%YAML:1.0\n---\n" +
          headerComment(
-             rig, {fmt::format("Camera {} for OpenCV: cv::{}.", camera.name,
-                               own.model == CameraModel::PinholeRadtan ? "projectPoints"
-                               : own.model == CameraModel::OmniRadtan  ? "omnidir::projectPoints"
-                                                                       : "fisheye::projectPoints"),
-                   fmt::format("reference_from_camera takes points of the camera to {0}; t_{0} = t_camera + "
-                               "time_offset_s.",
-                               reference)}) +
+             rig,
+             {fmt::format("Camera {} for OpenCV: cv::{}.", camera.name,
+                          own.model == CameraModel::PinholeRadtan ? "projectPoints"
+                          : own.model == CameraModel::OmniRadtan  ? "omnidir::projectPoints"
+                                                                  : "fisheye::projectPoints"),
+              fmt::format("reference_from_camera transforms points of the camera to {0}; t_{0} = t_camera + "
+                          "time_offset_s.",
+                          reference)}) +
          fmt::format("image_width: {}\nimage_height: {}\nfisheye_model: {}\n", own.resolution_px.width_px,
                      own.resolution_px.height_px, own.model == CameraModel::PinholeEquidistant ? 1 : 0) +
          opencvLensText("camera_matrix", "distortion_coefficients", "xi", own) +
@@ -62,7 +64,7 @@ std::string opencvImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes)
   const ImuNoise noise = statedNoise(imu, notes);
   return "%YAML:1.0\n---\n" +
          headerComment(
-             rig, {fmt::format("reference_from_imu takes points of {} to {}; t_reference = t_imu + "
+             rig, {fmt::format("reference_from_imu transforms points of {} to {}; t_reference = t_imu + "
                                "time_offset_s.",
                                imu.name, rig.imus[0].name),
                    "measured force = accelerometer_matrix f + accelerometer_bias [m/s^2], measured rate = "
@@ -81,7 +83,7 @@ std::string opencvImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes)
              real(noise.gyroscope_random_walk));
 }
 
-// As cv::stereoRectify's: (x, y, disparity, 1) to a point in the left rectified frame.
+// Q of cv::stereoRectify: (x, y, disparity, 1) to a point in the left rectified frame.
 Eigen::Matrix4d depthFromDisparity(const Rectification& rectified) {
   const double f = rectified.left_projection(0, 0);
   Eigen::Matrix4d q = Eigen::Matrix4d::Zero();
@@ -98,7 +100,7 @@ void addOpencvPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsic
   const std::vector<std::string> comment{
       fmt::format(
           "Camera 1 is {} (left), camera 2 {} (right), as OpenCV's stereo_calib sample writes them. R and T "
-          "take points of camera 1 to camera 2 [m]; R1, R2, P1, P2 and Q rectify (Bouguet).",
+          "transform points of camera 1 to camera 2 [m]; R1, R2, P1, P2 and Q rectify (Bouguet).",
           pair.left.name, pair.right.name),
       "x2^T E x1 = 0 in normalised coordinates, x2^T F x1 = 0 in undistorted pixels."};
   const std::string beginning = "%YAML:1.0\n---\n" + headerComment(rig, comment);
@@ -132,7 +134,7 @@ ExportedFiles exportOpenCv(const NamedResult& result) {
     addOpencvPair(rig, *pair, lenses[swapped ? 1 : 0], lenses[swapped ? 0 : 1], exported.files);
   } else if (rig.cameras.size() > 1) {
     exported.notes.push_back(fmt::format(
-        "{} and {} do not sit side by side: there are no intrinsics.yml and extrinsics.yml of a pair",
+        "{} and {} are not side by side: intrinsics.yml and extrinsics.yml of a pair are not written",
         rig.cameras[0].name, rig.cameras[1].name));
   }
   for (const RigImu& imu : rig.imus)

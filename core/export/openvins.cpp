@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// `rpng` takes upper triangular matrices, as ours are, so no frame has to turn.
+// `rpng` uses upper triangular matrices like Evical, so no frame is rotated.
 std::string openvinsMappingText(const RigImu& imu) {
   const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscopeMatrix());
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
@@ -31,10 +31,10 @@ ExportedFiles exportOpenVins(const NamedResult& result) {
   const std::string first_line = "%YAML:1.0\n";
   exported.files.push_back(
       {"kalibr_imucam_chain.yaml",
-       first_line + kalibrChain(rig, lensesFor({"OpenVINS"}, rig, exported.notes),
-                                Eigen::Matrix3d::Identity(),
-                                {"OpenVINS. T_cam_imu takes points of the IMU to the camera; t_imu = t_cam + "
-                                 "timeshift_cam_imu (that of cam0 is used)."})});
+       first_line +
+           kalibrChain(rig, lensesFor({"OpenVINS"}, rig, exported.notes), Eigen::Matrix3d::Identity(),
+                       {"OpenVINS. T_cam_imu transforms points of the IMU to the camera; t_imu = t_cam + "
+                        "timeshift_cam_imu (that of cam0 is used)."})});
   exported.files.push_back(
       {"kalibr_imu_chain.yaml",
        first_line +

@@ -14,7 +14,8 @@ namespace {
 constexpr const char* kOrbSlam3Program = "ORB-SLAM3";
 constexpr std::size_t kOrbSlam3MostCameras = 2;
 
-// Keys that say nothing of a calibration, without which the program does not start (Settings.cc); real ones must look so.
+// Keys that are not part of a calibration, but without which the program does not start (Settings.cc); reals
+// need a point.
 constexpr const char* kOrbSlam3OwnKeys =
     "Camera.fps: 20\nCamera.RGB: 1\n"
     "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
@@ -51,7 +52,7 @@ std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
     cameras.push_back(cameraFor(rig.cameras[i], {kOrbSlam3Program, radtan, true, !radtan}, notes));
     if (cameras[i].resolution_px != cameras[0].resolution_px)
       throw badInput(fmt::format("result: cameras.{}", rig.cameras[i].name),
-                     "has another resolution than the first camera, and ORB-SLAM3 takes one for both",
+                     "has another resolution than the first camera, and ORB-SLAM3 supports one for both",
                      "Leave out orb-slam3");
   }
   return cameras;
@@ -69,15 +70,14 @@ std::string orbSlam3ImuText(const Rig& rig, const RigImu& imu, ExportNotes& note
              real(statedRate_hz(imu, notes)));
 }
 
-// Its Settings.h hands camera 1's distortion out for camera 2, and its Settings.cc reads that one's.
+// Its Settings.h returns camera 1's distortion for camera 2, although its Settings.cc reads that of camera 2.
 std::string secondLensNote(const std::vector<CameraIntrinsics>& cameras) {
   CameraIntrinsics as_read = cameras[1];
   as_read.distortion = cameras[0].distortion;
   const ProjectionDifference wrong = projectionDifference(cameras[1], as_read);
   return fmt::format(
-      "ORB-SLAM3 itself takes camera 1's distortion for camera 2: {:.2f} px RMS, {:.2f} px at most; rectify "
-      "the images "
-      "before where that is too much",
+      "ORB-SLAM3 uses camera 1's distortion for camera 2, an error of {:.2f} px RMS, {:.2f} px at most; "
+      "rectify the images first if that is too large",
       wrong.rms_px, wrong.max_px);
 }
 
@@ -91,12 +91,12 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
   const bool stereo = cameras.size() > 1;
   std::string text =
       "%YAML:1.0\n---\n" +
-      headerComment(rig,
-                    {"ORB-SLAM3 settings. Camera.fps, Camera.RGB, ORBextractor and Viewer say nothing of the "
-                     "calibration: adjust them.",
-                     "IMU.T_b_c1 takes points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
-                     "camera 2 to camera 1.",
-                     stampShifts(rig)}) +
+      headerComment(
+          rig, {"ORB-SLAM3 settings. Camera.fps, Camera.RGB, ORBextractor and Viewer are not part of the "
+                "calibration: adjust them.",
+                "IMU.T_b_c1 transforms points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
+                "camera 2 to camera 1.",
+                stampShifts(rig)}) +
       fmt::format("File.version: \"1.0\"\nCamera.type: \"{}\"\n",
                   cameras[0].model == CameraModel::PinholeRadtan ? "PinHole" : "KannalaBrandt8");
   for (std::size_t i = 0; i < cameras.size(); ++i) text += orbSlam3CameraText(cameras[i], i + 1, stereo);

@@ -25,7 +25,7 @@ std::vector<double> xyzw(const SensorPose& pose) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-// As a variable: letters, digits and underscores, no digit first.
+// A variable's name: letters, digits and underscores, no leading digit.
 std::string identifier(const std::string& name) {
   std::string text;
   for (const char letter : name) text += std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
@@ -60,7 +60,7 @@ std::string plainText(const SensorPose& pose) {
       matrixRows(matrixOf(place), "  ", ""), offsetWords(pose));
 }
 
-// Keys as in result.yaml.
+// Keys of result.yaml.
 std::string yaml(const SensorPose& pose) {
   return fmt::format(
       "{}:  # {}\n  reference: {}\n  rotation_xyzw: [{}]\n  translation_m: [{}]\n  matrix:\n{}"
@@ -88,7 +88,7 @@ std::string eigen(const SensorPose& pose) {
       real(pose.time_offset_s));
 }
 
-// As the exported files have it. ROS calls a camera's frame optical where z is forward and x to the right.
+// Frame names of the exported files. ROS calls a camera's frame optical if z is forward and x to the right.
 std::string rosFrame(const std::string& sensor, SensorPose::Kind kind) {
   std::string frame = sensor;
   for (char& letter : frame) {
@@ -122,7 +122,7 @@ std::string rosMessage(const SensorPose& pose) {
       real(q[2]), real(q[3]));
 }
 
-// Kalibr's direction is the other one, and its keys differ from one kind of sensor to the next.
+// Kalibr's direction is the opposite, and its keys depend on the kind of sensor.
 struct KalibrPart {
   const char *sensor, *key, *time_key;  // no time key: its cameras share their clock
   std::string from;
@@ -141,10 +141,11 @@ KalibrPart kalibrPart(const SensorPose& pose) {
 
 std::string kalibr(const SensorPose& pose) {
   const KalibrPart part = kalibrPart(pose);
-  std::string text = fmt::format("# {0}: {1} takes points of {2} to {0}. {3}\n", pose.sensor, part.key,
+  std::string text = fmt::format("# {0}: {1} transforms points of {2} to {0}. {3}\n", pose.sensor, part.key,
                                  part.from, offsetWords(pose));
   if (pose.reference_kind == SensorPose::Kind::Imu)
-    text += "# IMU frames are those of the result; in exported files Kalibr's may be turned against them.\n";
+    text +=
+        "# IMU frames are those of the result; in exported files Kalibr's may be rotated relative to them.\n";
   text += fmt::format("{}{}:\n  {}:\n{}", part.sensor, pose.number, part.key,
                       rowsYaml(matrixOf(part.sensor_from_other), 4));
   if (*part.time_key != '\0') text += fmt::format("  {}: {}\n", part.time_key, real(pose.time_offset_s));

@@ -1,5 +1,5 @@
-// A sensor's pose as text to be put elsewhere: into a document, a program or another program's file. Numbers are the
-// shortest that read back as the same; quaternions are unit ones, in the order that each form says.
+// A sensor's pose as text for a document, a program or another program's file. Numbers are the
+// shortest that read back exactly; quaternions are unit quaternions, in the order that each form states.
 #pragma once
 
 #include "core/report/sensor_pose.h"
@@ -12,13 +12,13 @@ namespace evical {
 struct PoseForm {
   const char* name;   // "yaml"
   const char* title;  // "YAML"
-  const char* use;    // what it is good for, in a line
+  const char* use;    // one-line description of its use
   std::string (*write)(const SensorPose& pose);
 };
 
 std::span<const PoseForm> poseForms();
 
-// Of several sensors, one after the other.
+// Text of several sensors, one after the other.
 std::string poseText(const PoseForm& form, std::span<const SensorPose> poses);
 
 }  // namespace evical

@@ -18,7 +18,7 @@
 namespace evical {
 namespace {
 
-// How much of the relative rounding of single numbers may come together; in lenses, numbers of thousands of pixels.
+// Tolerated sum of relative rounding errors of single numbers; in lenses, of numbers of thousands of pixels.
 constexpr double kSumOfRoundings = 10.0, kPixels = 1e4;
 
 bool isCalled(const std::string& name, const std::string& sensor, const std::string& file_name,
@@ -40,7 +40,7 @@ void raise(std::optional<double>& largest, double value) {
   largest = largest && !(value > *largest) && !std::isnan(value) ? *largest : value;
 }
 
-// The lens that an exporter writes where the program does not know the camera's own model.
+// The lens that an exporter writes if the program does not support the camera's own model.
 std::optional<LensFit> refitOf(const CameraIntrinsics& own, const CameraIntrinsics& read) {
   const bool radtan = read.model == CameraModel::PinholeRadtan;
   const bool lost_third = radtan && own.distortion[4] != 0.0 && read.distortion[4] == 0.0;
@@ -48,7 +48,8 @@ std::optional<LensFit> refitOf(const CameraIntrinsics& own, const CameraIntrinsi
   return fitLens(own, read.model, radtan && read.distortion[4] == 0.0 ? 4 : coefficientCount(read.model));
 }
 
-// How far apart both see the same ray, over the image, as lens_fit.h compares them; infinite where one sees nothing.
+// Largest distance between the pixels of the same ray, over the image, as in lens_fit.h; infinite if one is
+// undefined.
 double lensDifference_px(const CameraIntrinsics& own, const CameraIntrinsics& read) {
   constexpr int kColumns = 41, kRows = 31;
   const double least_z =
@@ -85,7 +86,8 @@ class Comparison {
     difference_.problems.push_back(fmt::format("{}: {}: {}", file.path.string(), sensor, what));
   }
 
-  // A program's M of another shape means another frame of the IMU; M of both times that turn must be the same.
+  // A program's M of another shape defines another frame of the IMU; M of both times this rotation must be
+  // equal.
   void findTurns() {
     turns_.assign(rig_.imus.size(), Eigen::Matrix3d::Identity());
     for (const ReadFile& file : read_.files)
@@ -99,7 +101,7 @@ class Comparison {
           turns_[*i] = turn;
         else
           problem(file, rig_.imus[*i].name,
-                  fmt::format("the accelerometer's scales and misalignment are off by {:.2g}", off));
+                  fmt::format("the accelerometer's scales and misalignment differ by {:.2g}", off));
       }
   }
 
@@ -108,14 +110,15 @@ class Comparison {
       if (const auto i = indexOf(file.cameras[k].name, k, rig_.cameras))
         compareCamera(file, file.cameras[k], *i);
       else if (file.cameras[k].name.empty())
-        difference_.problems.push_back(fmt::format("{}: has {} cameras, the result {}", file.path.string(),
-                                                   file.cameras.size(), rig_.cameras.size()));
+        difference_.problems.push_back(fmt::format("{}: has {} cameras, the result has {}",
+                                                   file.path.string(), file.cameras.size(),
+                                                   rig_.cameras.size()));
     }
     for (std::size_t k = 0; k < file.imus.size(); ++k) {
       if (const auto i = indexOf(file.imus[k].name, k, rig_.imus))
         compareImu(file, file.imus[k], *i);
       else if (file.imus[k].name.empty())
-        difference_.problems.push_back(fmt::format("{}: has {} IMUs, the result {}", file.path.string(),
+        difference_.problems.push_back(fmt::format("{}: has {} IMUs, the result has {}", file.path.string(),
                                                    file.imus.size(), rig_.imus.size()));
     }
     if (file.gravity_m_s2) compareNumber(file, "gravity", *file.gravity_m_s2, rig_.gravity_m_s2.norm());
@@ -132,7 +135,7 @@ class Comparison {
     if (read.time_offset_s) compareTime(file, own.name, *read.time_offset_s, own.time_offset_s);
   }
 
-  // The frame in which the file has its poses, from our reference.
+  // Transform from Evical's reference to the frame of the file's poses.
   RigidTransform frameOf(const ReadFile& file) const {
     if (!file.about_first_camera) return rig_.imus.empty() ? RigidTransform{} : turnOf(turns_[0]);
     const auto first = indexOf(file.cameras.front().name, 0, rig_.cameras);
@@ -152,7 +155,7 @@ class Comparison {
     const double most_px = rounding_px + (refit ? refit->worst_px : 0.0);
     if (!(off_px <= most_px))
       problem(file, own.name,
-              fmt::format("the lens is off by up to {:.3g} px{}", off_px,
+              fmt::format("the lens differs by up to {:.3g} px{}", off_px,
                           refit ? fmt::format(", its refit by {:.3g} px", refit->worst_px) : ""));
   }
 
@@ -166,17 +169,17 @@ class Comparison {
     if (!(turn_rad <= rounding) || !(shift_m <= rounding * std::max(1.0, own.translation_m.norm())))
       problem(
           file, sensor,
-          fmt::format("the pose is off by {:.3g} deg and {:.3g} mm", turn_rad * kDegPerRad, 1e3 * shift_m));
+          fmt::format("the pose differs by {:.3g} deg and {:.3g} mm", turn_rad * kDegPerRad, 1e3 * shift_m));
   }
 
   void compareTime(const ReadFile& file, const std::string& sensor, double read_s, double own_s) {
     const double off_s = std::abs(read_s - own_s);
     raise(difference_.time_ms, 1e3 * off_s);
     if (!(off_s <= 0.5 * file.time_step_s + kSumOfRoundings * file.rounding * std::max(1.0, std::abs(own_s))))
-      problem(file, sensor, fmt::format("the time offset is off by {:.3g} ms", 1e3 * off_s));
+      problem(file, sensor, fmt::format("the time offset differs by {:.3g} ms", 1e3 * off_s));
   }
 
-  // Relative, but to numbers near 0.
+  // Relative, except for numbers near 0.
   void compareNumbers(const ReadFile& file, const std::string& what, const Eigen::MatrixXd& read,
                       const Eigen::MatrixXd& own) {
     constexpr double kNearZero = 1e-6;
@@ -184,7 +187,7 @@ class Comparison {
     raise(difference_.numbers, off);
     if (!(off <= kSumOfRoundings * file.rounding))
       difference_.problems.push_back(
-          fmt::format("{}: {} is off by {:.3g} of it", file.path.string(), what, off));
+          fmt::format("{}: {} has a relative difference of {:.3g}", file.path.string(), what, off));
   }
   void compareNumber(const ReadFile& file, const std::string& what, double read, double own) {
     compareNumbers(file, what, Eigen::Matrix<double, 1, 1>(read), Eigen::Matrix<double, 1, 1>(own));
@@ -210,17 +213,17 @@ class Comparison {
     if (read.gyroscope_bias_rad_s)
       compareNumbers(file, called("the gyroscope's bias"), *read.gyroscope_bias_rad_s,
                      own.state.gyroscope_bias_rad_s);
-    ExportNotes said;  // by the exporter
+    ExportNotes said;  // already reported by the exporter
     const double rate_hz = statedRate_hz(own, said);
     if (read.rate_hz) compareNumber(file, called("the rate"), *read.rate_hz, rate_hz);
     if (read.noise) compareNoise(file, own, *read.noise, read.noise_of_samples ? std::sqrt(rate_hz) : 1.0);
   }
 
   void compareNoise(const ReadFile& file, const RigImu& own, const ImuNoise& read, double of_density) {
-    ExportNotes said;  // by the exporter
+    ExportNotes said;  // already reported by the exporter
     const ImuNoise noise = statedNoise(own, said);
     const auto compare = [&](const char* what, double ImuNoise::*number) {
-      // Numbers this small are near zero by nature: as a share of their own.
+      // Numbers this small are compared relative to their own values.
       compareNumber(file, fmt::format("{}: {}", own.name, what), read.*number / (of_density * noise.*number),
                     1.0);
     };
@@ -242,7 +245,7 @@ class Comparison {
 
   Rig rig_;
   const ReadBack& read_;
-  std::vector<Eigen::Matrix3d> turns_;  // of IMUs: the files' frame from ours
+  std::vector<Eigen::Matrix3d> turns_;  // of IMUs: file's frame from Evical's
   std::set<std::size_t> cameras_, imus_;
   ReadBackDifference difference_;
 };
@@ -255,7 +258,7 @@ std::string checkTextOf(const ReadBackDifference& difference) {
   std::string cameras = plural(difference.cameras, "camera");
   if (difference.lens_px) cameras += fmt::format(" within {:.1g} px", *difference.lens_px);
   if (difference.refitted_px)
-    cameras += fmt::format("{} {:.2g} px as refitted", difference.lens_px ? "," : " within",
+    cameras += fmt::format("{} {:.2g} px after refitting", difference.lens_px ? "," : " within",
                            *difference.refitted_px);
   parts.push_back(cameras);
   if (difference.imus > 0) parts.push_back(plural(difference.imus, "IMU"));

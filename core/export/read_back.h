@@ -1,4 +1,4 @@
-// How far exported files, read as their programs read them (core/foreign/readers.h), are from the result.
+// Difference between a result and its exported files, read like their programs do (core/foreign/readers.h).
 #pragma once
 
 #include "core/export/export_target.h"
@@ -12,19 +12,17 @@
 
 namespace evical {
 
-// The largest differences of what was read from the result; those of which nothing was read are empty.
+// Largest differences from the result; empty for data that were not read.
 struct ReadBackDifference {
   std::size_t cameras = 0, imus = 0;
   std::optional<double> lens_px = {};  // of the same ray, over the image
   std::optional<double> rotation_deg = {}, translation_mm = {}, time_ms = {};
   std::optional<double> numbers = {};  // relative, of scales, biases, noise, rates and gravity
-  std::optional<double>
-      refitted_px;  // of lenses that the program has no place for; as far as their refit is off
-  std::vector<std::string>
-      problems;  // more than rounding explains, or sensors that are nowhere; each names the file
+  std::optional<double> refitted_px;   // of lenses with unsupported models; the error of their refit
+  std::vector<std::string> problems;   // above rounding errors, or missing sensors; each names the file
 };
 
-// Sensors that the result does not have are left aside where the file names them.
+// Sensors that the result does not have are ignored if the file names them.
 ReadBackDifference differenceOf(const NamedResult& result, const ReadBack& read);
 
 struct ExportCheck {
@@ -32,7 +30,7 @@ struct ExportCheck {
   std::string text;  // one line for people: "kalibr: reads back: ..."
 };
 
-// Of the files below folder / target.name.
+// Checks the files below folder / target.name.
 ExportCheck checkExport(const NamedResult& result, const ExportTarget& target,
                         const std::filesystem::path& folder);
 

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-// Two names may become one ("a b", "a/b"): then the later one gets a number.
+// Two names may become equal ("a b", "a/b"): then the later one gets a number.
 std::string fileName(const std::string& name, std::set<std::string>& taken) {
   std::string text;
   for (const char letter : name) {
@@ -33,7 +33,7 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
   throw badInput(place, "has values that are not finite (NaN or infinity)", "Calibrate again");
 }
 
-// Of all that exports may say of a sensor.
+// Checks all numbers of a sensor that exports may contain.
 template <class Rows, class State>
 void checkNumbers(const std::string& place, const Rows& rows, const State& state) {
   bool finite = true;
@@ -72,7 +72,7 @@ RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>&
   return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
 }
 
-// An estimate of 0 is within its sigma of it, or nearly.
+// True if the estimate differs significantly from 0.
 bool isThere(double value, double sigma) {
   constexpr double kChance_sigmas = 3.0;
   return value != 0.0 && std::abs(value) >= kChance_sigmas * sigma;
@@ -83,8 +83,8 @@ void remarkDrift(const std::string& name, const State& state, const Uncertainty&
                  std::vector<std::string>& remarks) {
   if (!isThere(state.time_offset_drift_ppm, sigma.time_offset_drift_std_ppm)) return;
   remarks.push_back(fmt::format(
-      "{}: its clock drifts by {:.3g} ppm against the reference's; the time offset is that at {:.2f} "
-      "s of its own clock, stamps at other times need more",
+      "{}: its clock drifts by {:.3g} ppm relative to the reference's; the time offset is that at {:.2f} "
+      "s of its clock, other stamps need the drift, too",
       name, state.time_offset_drift_ppm, state.time_offset_at_s));
 }
 
@@ -93,7 +93,7 @@ void remarkDelay(const std::string& name, const ImuState& state, const ImuUncert
   if (!isThere(state.accelerometer_delay_s, sigma.accelerometer_delay_std_s)) return;
   remarks.push_back(
       fmt::format("{}: the accelerometer's samples are {:.3g} ms later than the gyroscope's of the "
-                  "same stamp; take that from their stamps before",
+                  "same stamp; subtract this from their stamps first",
                   name, 1e3 * state.accelerometer_delay_s));
 }
 
@@ -101,12 +101,12 @@ void remarkRollingShutter(const std::string& name, const CameraState& state, con
                           std::vector<std::string>& remarks) {
   if (!isThere(state.line_delay_us, sigma.line_delay_std_us)) return;
   remarks.push_back(
-      fmt::format("{}: rows are exposed one after the other, {:.4g} us apart; the time offset is that of "
-                  "the middle one",
+      fmt::format("{}: rolling shutter, {:.4g} us from row to row; the time offset is that of "
+                  "the middle row",
                   name, state.line_delay_us));
 }
 
-// Between the first camera and the others.
+// Largest difference between the first camera and the others.
 double largestOffset_s(const Rig& rig) {
   double largest_s = 0.0;
   for (const RigCamera& camera : rig.cameras)
@@ -158,7 +158,7 @@ Rig rigOf(const NamedResult& result) {
 
 const RigImu& neededImu(const Rig& rig, const char* program) {
   if (!rig.imus.empty()) return rig.imus.front();
-  throw badInput("result", fmt::format("has no IMU, and {} asks for one", program),
+  throw badInput("result", fmt::format("has no IMU, which {} requires", program),
                  "Calibrate with an IMU, or export to ros, metavision or kalibr");
 }
 
@@ -173,16 +173,17 @@ ImuNoise statedNoise(const RigImu& imu, ExportNotes& notes) {
   const bool known = imu.noise.gyroscope_density > 0.0 && imu.noise.accelerometer_density > 0.0;
   if (!known)
     notes.push_back(fmt::format(
-        "{}: the result does not say the noise densities; Evical's defaults are written, put your own",
+        "{}: the result has no noise densities; Evical's defaults are written, replace them by your own",
         imu.name));
   const ImuNoise noise = known ? imu.noise : ImuNoise{};
   ImuNoise stated{noise.gyroscope_density, noise.accelerometer_density, imu.noise.gyroscope_random_walk,
                   imu.noise.accelerometer_random_walk};
   if (stated.gyroscope_random_walk > 0.0 && stated.accelerometer_random_walk > 0.0) return stated;
   // Programs refuse 0.
-  notes.push_back(fmt::format(
-      "{}: random walks are not measured: a tenth of the noise densities is written, put your own",
-      imu.name));
+  notes.push_back(
+      fmt::format("{}: random walks are not measured: a tenth of the noise densities is written, replace "
+                  "them by your own",
+                  imu.name));
   if (stated.gyroscope_random_walk <= 0.0) stated.gyroscope_random_walk = noise.gyroscope_density / 10.0;
   if (stated.accelerometer_random_walk <= 0.0)
     stated.accelerometer_random_walk = noise.accelerometer_density / 10.0;
@@ -192,7 +193,7 @@ ImuNoise statedNoise(const RigImu& imu, ExportNotes& notes) {
 double statedRate_hz(const RigImu& imu, ExportNotes& notes) {
   if (imu.rate_hz > 0.0) return imu.rate_hz;
   constexpr double kUsualRate_hz = 200.0;
-  notes.push_back(fmt::format("{}: the result does not say the rate; {} Hz is written, put your own",
+  notes.push_back(fmt::format("{}: the result has no rate; {} Hz is written, replace it by your own",
                               imu.name, kUsualRate_hz));
   return kUsualRate_hz;
 }
@@ -204,31 +205,29 @@ void noteLostMapping(const RigImu& imu, const char* program, ExportNotes& notes)
   const double largest = std::max(off(imu.state.gyroscopeMatrix()), off(imu.state.accelerometer_mapping));
   if (largest == 0.0) return;
   notes.push_back(
-      fmt::format("{}: {} has no place for scales and misalignment, which are up to {:.2g} % here; correct "
-                  "the samples before "
-                  "({}'s mapping in result.yaml)",
+      fmt::format("{}: {} does not support scales and misalignment, which are up to {:.2g} % here; correct "
+                  "the samples first ({}'s mapping in result.yaml)",
                   imu.name, program, 100.0 * largest, imu.name));
 }
 
 void noteLostImus(const Rig& rig, const char* program, ExportNotes& notes) {
   if (rig.imus.size() > 1)
-    notes.push_back(fmt::format("{} takes one IMU: only {} is written", program, rig.imus[0].name));
+    notes.push_back(fmt::format("{} supports one IMU: only {} is written", program, rig.imus[0].name));
 }
 
 void noteLostOffsets(const Rig& rig, const char* program, ExportNotes& notes) {
   const double largest_s = largestOffset_s(rig);
   if (largest_s == 0.0) return;
-  notes.push_back(
-      fmt::format("{} takes one time offset for all cameras: that of {} is written, others differ by up to "
-                  "{:.4g} ms; shift "
-                  "their stamps before",
-                  program, rig.cameras[0].name, 1e3 * largest_s));
+  notes.push_back(fmt::format(
+      "{} supports one time offset for all cameras: that of {} is written, others differ by up to "
+      "{:.4g} ms; shift their stamps first",
+      program, rig.cameras[0].name, 1e3 * largest_s));
 }
 
 void noteNoOffsets(const Rig& rig, const char* program, ExportNotes& notes) {
   if (largestOffset_s(rig) == 0.0) return;
   std::string text =
-      fmt::format("{} has no place for the cameras' time offsets: add to the stamps of", program);
+      fmt::format("{} does not support the cameras' time offsets: add to the stamps of", program);
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format("{} {} {} s", &camera == &rig.cameras.front() ? "" : ",", camera.name,
                         camera.time_offset_s);
@@ -240,15 +239,15 @@ void noteLostCameras(const Rig& rig, std::size_t most, const char* program, Expo
   std::string left_out;
   for (std::size_t i = most; i < rig.cameras.size(); ++i)
     left_out += (left_out.empty() ? "" : ", ") + rig.cameras[i].name;
-  notes.push_back(fmt::format("{} takes {} cameras: {} is left out", program, most, left_out));
+  notes.push_back(fmt::format("{} supports {} cameras: {} is left out", program, most, left_out));
 }
 
 std::string stampShifts(const Rig& rig) {
-  std::string text = "No time offset has a place here: add to the stamps of the images";
+  std::string text = "Time offsets are not supported here: add to the stamps of the images";
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format(" {} s ({})", real(camera.time_offset_s), camera.file_name);
   return text +
-         fmt::format(" so that t_{} = t_cam + that.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
+         fmt::format(" so that t_{} = t_cam + offset.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
 }
 
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines) {

@@ -41,7 +41,7 @@ Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
 
 namespace {
 
-// A placed sensor: `child` in the frame `parent`.
+// A placed sensor: the frame `child` in the frame `parent`.
 struct Joint {
   std::string parent, child;
   RigidTransform parent_from_child;
@@ -65,7 +65,7 @@ std::vector<Joint> jointsOf(const Rig& rig) {
 }
 
 std::string offsetsComment(const Rig& rig) {
-  std::string text = "Time offsets have no place in ROS messages; t_reference = t_sensor + offset:";
+  std::string text = "ROS messages do not contain time offsets; t_reference = t_sensor + offset:";
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format(" {} {} s", camera.file_name, real(camera.time_offset_s));
   for (std::size_t i = 1; i < rig.imus.size(); ++i)
@@ -73,11 +73,11 @@ std::string offsetsComment(const Rig& rig) {
   return text;
 }
 
-// As ROS 2 names them since Humble; ROS 1 takes them in this order without names.
+// Flags of ROS 2 since Humble; ROS 1 expects the values in this order without flags.
 constexpr std::array kRos2Flags{
     "--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw", "--frame-id", "--child-frame-id"};
 
-// x y z qx qy qz qw frame child, each after its flag where there are flags.
+// x y z qx qy qz qw frame child, each after its flag if there are flags.
 std::vector<std::string> poseArguments(const Joint& joint, std::span<const char* const> flags) {
   const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
   const Eigen::Quaterniond& q = joint.parent_from_child.rotation;
@@ -95,7 +95,7 @@ std::vector<std::string> poseArguments(const Joint& joint, std::span<const char*
 
 std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
   std::string text =
-      "#!/bin/sh\n" + headerComment(rig, {"The pose of the child in the frame: takes points of the "
+      "#!/bin/sh\n" + headerComment(rig, {"The pose of the child in the frame: transforms points of the "
                                           "child to the frame. z of optical frames is forward.",
                                           offsetsComment(rig)});
   for (const Joint& joint : joints)
@@ -104,7 +104,7 @@ std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
   return text + "wait\n";
 }
 
-// Comments of XML may not hold two hyphens.
+// XML comments must not contain two hyphens.
 std::string xmlComment(const std::string& text) {
   std::string comment = "<!-- ";
   for (const char letter : text) {
@@ -117,7 +117,7 @@ std::string xmlComment(const std::string& text) {
 std::string launchRos1(const Rig& rig, const std::vector<Joint>& joints) {
   std::string text =
       "<?xml version=\"1.0\"?>\n" +
-      xmlComment(readMe(rig, {"ROS 1, tf2_ros: x y z qx qy qz qw frame child. The pose takes points of "
+      xmlComment(readMe(rig, {"ROS 1, tf2_ros: x y z qx qy qz qw frame child. The pose transforms points of "
                               "the child to the frame.",
                               offsetsComment(rig)})) +
       "<launch>\n";
@@ -130,10 +130,11 @@ std::string launchRos1(const Rig& rig, const std::vector<Joint>& joints) {
 }
 
 std::string launchRos2(const Rig& rig, const std::vector<Joint>& joints) {
-  std::string text = headerComment(rig, {"ROS 2, tf2_ros. The pose takes points of the child to the frame.",
-                                         offsetsComment(rig)}) +
-                     "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
-                     "def generate_launch_description():\n    return LaunchDescription([\n";
+  std::string text =
+      headerComment(rig, {"ROS 2, tf2_ros. The pose transforms points of the child to the frame.",
+                          offsetsComment(rig)}) +
+      "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+      "def generate_launch_description():\n    return LaunchDescription([\n";
   for (std::size_t i = 0; i < joints.size(); ++i)
     text += fmt::format(
         "        Node(package='tf2_ros', executable='static_transform_publisher',\n"
@@ -143,10 +144,11 @@ std::string launchRos2(const Rig& rig, const std::vector<Joint>& joints) {
 }
 
 std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
-  std::string text = xmlComment(readMe(rig, {"The origin of a joint takes points of the child to the parent. "
-                                             "Whole as it is, or to be pasted into a robot's "
-                                             "description.",
-                                             offsetsComment(rig)}));
+  std::string text =
+      xmlComment(readMe(rig, {"The origin of a joint transforms points of the child to the parent. "
+                              "Use it alone, or copy it into a robot's "
+                              "description.",
+                              offsetsComment(rig)}));
   text = "<?xml version=\"1.0\"?>\n" + text + "<robot name=\"rig\">\n" +
          fmt::format("<link name=\"{}\"/>\n", joints.front().parent);
   for (const Joint& joint : joints) {
@@ -162,7 +164,7 @@ std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
   return text + "</robot>\n";
 }
 
-// What ROS knows of a lens that is no pinhole, and a comment that says so.
+// ROS's model of a lens that is not a pinhole, with a comment that states it.
 struct RosLens {
   CameraIntrinsics camera;
   std::string comment;
@@ -171,7 +173,7 @@ RosLens rosLens(const CameraIntrinsics& camera) {
   if (!isSphereModel(camera.model)) return {camera, {}};
   const LensFit fit = fitLens(camera, CameraModel::PinholeEquidistant, 4);
   return {fit.camera,
-          fmt::format("# ROS has no place for the model {}: refitted as equidistant{}, off by {:.2g} px "
+          fmt::format("# ROS does not support the model {}: refitted as equidistant{}, error {:.2g} px "
                       "RMS, {:.2g} px at most\n",
                       cameraModelName(camera.model), fit.whole_image ? "" : " up to 85 deg off the axis",
                       fit.rms_px, fit.worst_px)};
@@ -198,7 +200,7 @@ ExportedFiles exportRos(const NamedResult& result) {
   for (const RigCamera& camera : rig.cameras)
     exported.files.push_back(
         {camera.file_name + ".yaml",
-         headerComment(rig, {"ROS camera_info of one camera. Where it sits and its time offset: see "
+         headerComment(rig, {"ROS camera_info of one camera. Its pose and its time offset: see "
                              "static_transforms.sh."}) +
              cameraInfo(camera.file_name, cameraFor(camera, kModels, exported.notes))});
   const std::vector<Joint> joints = jointsOf(rig);

@@ -15,14 +15,15 @@ constexpr KnownModels kRtabmapModels{kRtabmapProgram, true, true, true};
 
 using Projection = Eigen::Matrix<double, 3, 4>;
 
-// Its base looks along x with z up, and a camera of its own sits in it like this (CameraModel::opticalRotation).
+// The base frame has x forward and z up, and a single camera has this pose in it
+// (CameraModel::opticalRotation).
 RigidTransform baseFromOptical() {
   Eigen::Matrix3d turn;
   turn << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
   return {Eigen::Quaterniond(turn), Eigen::Vector3d::Zero()};
 }
 
-// The base sits in `first`, so that local_transform of that camera is what the program takes where it is told nothing.
+// The base is at `first`, so that this camera's local_transform is the program's default.
 RigidTransform baseFrom(const RigCamera& first) {
   return baseFromOptical() * inverse(first.reference_from_camera);
 }
@@ -36,9 +37,10 @@ std::string rtabmapCameraFile(const Rig& rig, const std::string& name, const Cam
                               const RigidTransform& base_from_camera) {
   return "%YAML:1.0\n---\n" +
          headerComment(
-             rig, {"Camera of RTAB-Map. local_transform takes points of the camera to the base, which sits "
-                   "in the first (left) camera, x forward, z up.",
-                   stampShifts(rig)}) +
+             rig,
+             {"Camera of RTAB-Map. local_transform transforms points of the camera to the base, which is at "
+              "the first (left) camera, x forward, z up.",
+              stampShifts(rig)}) +
          cameraInfoBody(name, own, 5) + rtabmapMatrixText("rectification_matrix", rectification) +
          rtabmapMatrixText("projection_matrix", projection) +
          rtabmapMatrixText("local_transform", matrixOf(base_from_camera).topRows<3>());
@@ -48,8 +50,9 @@ std::string poseFile(const Rig& rig, const std::string& name, const CameraIntrin
                      const CameraIntrinsics& right, const RigidTransform& right_from_left) {
   return "%YAML:1.0\n---\n" +
          headerComment(
-             rig, {"Stereo pair of RTAB-Map. rotation_matrix and translation_matrix take points of the left "
-                   "camera to the right one."}) +
+             rig,
+             {"Stereo pair of RTAB-Map. rotation_matrix and translation_matrix transform points of the left "
+              "camera to the right one."}) +
          fmt::format("camera_name: \"{}\"\n", name) +
          rtabmapMatrixText("rotation_matrix", right_from_left.rotation.toRotationMatrix()) +
          rtabmapMatrixText("translation_matrix", right_from_left.translation_m) +
@@ -57,12 +60,13 @@ std::string poseFile(const Rig& rig, const std::string& name, const CameraIntrin
          rtabmapMatrixText("fundamental_matrix", fundamentalMatrix(left, right, right_from_left));
 }
 
-// In a folder of its own, since a camera may have the name of one of its files.
+// In a separate folder, since a camera may have the name of one of its files.
 void addRtabmapPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsics& left,
                     const CameraIntrinsics& right, std::vector<FileContent>& files) {
   const Rectification rectified = rectify(left, right, pair.right_from_left);
   const RigidTransform base_from_left = baseFrom(pair.left) * pair.left.reference_from_camera;
-  // Both sit where the left one does: the pair's pose and P of the right one say the rest, as the program writes it.
+  // Both have the left camera's pose: the pair's pose and P of the right one determine the rest, as in the
+  // program.
   files.push_back(
       {"stereo/stereo_left.yaml", rtabmapCameraFile(rig, "stereo_left", left, rectified.rectified_from_left,
                                                     rectified.left_projection, base_from_left)});
@@ -72,7 +76,7 @@ void addRtabmapPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsi
   files.push_back({"stereo/stereo_pose.yaml", poseFile(rig, "stereo", left, right, pair.right_from_left)});
 }
 
-// Twelve numbers, row by row: what its Transform::fromString and its settings take.
+// Twelve numbers, row by row: the format of Transform::fromString and of its settings.
 std::string imuTransforms(const Rig& rig, const RigidTransform& base_from_reference) {
   std::string text;
   for (const RigImu& imu : rig.imus) {
@@ -107,7 +111,7 @@ ExportedFiles exportRtabmap(const NamedResult& result) {
     addRtabmapPair(rig, *pair, lenses[swapped ? 1 : 0], lenses[swapped ? 0 : 1], exported.files);
   } else if (rig.cameras.size() > 1) {
     exported.notes.push_back(
-        fmt::format("{} and {} do not sit side by side: there are no files of a stereo pair",
+        fmt::format("{} and {} are not side by side: files of a stereo pair are not written",
                     rig.cameras[0].name, rig.cameras[1].name));
   }
   if (!rig.imus.empty()) {

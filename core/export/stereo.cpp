@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-// Mean of where the image's corners are in normalised rectified coordinates.
+// Mean of the image corners in normalised rectified coordinates.
 Eigen::Vector2d cornersMean(const CameraIntrinsics& camera, const Eigen::Matrix3d& rectified_from_camera) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
@@ -46,12 +46,12 @@ std::optional<StereoPair> sideBySide(const Rig& rig) {
 
 StereoPair stereoPair(const Rig& rig, const char* program) {
   if (rig.cameras.size() < 2)
-    throw badInput("result", fmt::format("has one camera, and {} is for stereo", program),
+    throw badInput("result", fmt::format("has one camera, and {} requires two", program),
                    fmt::format("Leave {} out, or calibrate two cameras", program));
   std::optional<StereoPair> pair = sideBySide(rig);
   if (!pair)
     throw badInput("result",
-                   fmt::format("{} and {} do not sit side by side, as {} asks for", rig.cameras[0].name,
+                   fmt::format("{} and {} are not side by side, as {} requires", rig.cameras[0].name,
                                rig.cameras[1].name, program),
                    fmt::format("Leave {} out", program));
   return *std::move(pair);

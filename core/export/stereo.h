@@ -14,22 +14,22 @@ struct StereoPair {
   RigidTransform right_from_left;
 };
 
-// The first two cameras, whichever of them is the left one; nothing where there is one only, or where they don't
-// sit side by side.
+// The first two cameras, in either order; nullopt if there is only one, or if they are not
+// side by side.
 std::optional<StereoPair> sideBySide(const Rig& rig);
 
-// The same for a program that can do nothing else: throws CalibrationError (BadInput) where there is none.
+// For programs that require a pair: throws CalibrationError (BadInput) without one.
 StereoPair stereoPair(const Rig& rig, const char* program);
 
-// OpenCV's: E = [t]x R in normalised coordinates, second^T E first = 0.
+// Essential matrix as in OpenCV: E = [t]x R in normalised coordinates, second^T E first = 0.
 Eigen::Matrix3d essentialMatrix(const RigidTransform& second_from_first);
-// The same in undistorted pixels: second_px^T F first_px = 0.
+// Fundamental matrix in undistorted pixels: second_px^T F first_px = 0.
 Eigen::Matrix3d fundamentalMatrix(const CameraIntrinsics& first, const CameraIntrinsics& second,
                                   const RigidTransform& second_from_first);
 
-// Both cameras turned so that a point lies in one row of both: half the rotation between them each,
-// then the baseline onto x (Bouguet's method). One focal length and principal point for both, in
-// which the image's middle stays.
+// Rotates both cameras so that a point is in the same row of both: half of the rotation between them each,
+// then the baseline onto x (Bouguet's method). Both share one focal length and one principal point, which
+// keep the image's middle.
 struct Rectification {
   Eigen::Matrix3d rectified_from_left, rectified_from_right;
   Eigen::Matrix<double, 3, 4> left_projection, right_projection;  // of a point in the left rectified frame

@@ -27,7 +27,7 @@ std::string svoCameraText(const RigCamera& camera, const std::string& label, std
       dataMatrix(matrixOf(camera.reference_from_camera), 4));
 }
 
-// `dvs`: the camera that the program is to know by this label; nullptr: none.
+// `dvs`: the camera with this label in the program; nullptr: none.
 std::string rigText(const Rig& rig, const char* program, const RigCamera* dvs, ExportNotes& notes) {
   const KnownModels models{program, true, false, true};
   std::string text = "label: \"rig\"\ncameras:\n";
@@ -39,14 +39,14 @@ std::string rigText(const Rig& rig, const char* program, const RigCamera* dvs, E
   return text;
 }
 
-// The first camera of this kind; nullptr: there is none.
+// The first camera of this kind; nullptr if there is none.
 const RigCamera* firstOf(const Rig& rig, CameraKind kind) {
   const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(),
                                   [kind](const RigCamera& camera) { return camera.kind == kind; });
   return found == rig.cameras.end() ? nullptr : &*found;
 }
 
-// The program adds its one time shift to images, and takes events as they are stamped
+// The program adds its single time shift to images, and uses the events' stamps unchanged
 // (camera_imu_synchronizer_base.cpp, addImageData and addEventsData).
 void noteUltimateSlamTimes(const RigCamera& dvs, const RigCamera* images, ExportNotes& notes) {
   if (dvs.time_offset_s != 0.0)
@@ -54,8 +54,9 @@ void noteUltimateSlamTimes(const RigCamera& dvs, const RigCamera* images, Export
         "Ultimate SLAM does not shift events: add {} s to the time stamps of {} before you run it",
         real(dvs.time_offset_s), dvs.name));
   if (images)
-    notes.push_back(fmt::format(
-        "timeshift_cam_imu is of the images of {}, the only ones that the program shifts", images->name));
+    notes.push_back(
+        fmt::format("timeshift_cam_imu applies to the images of {}, the only ones that the program shifts",
+                    images->name));
 }
 
 std::string svoImu(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
@@ -73,8 +74,9 @@ std::string svoImu(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
       realList(imu.state.accelerometer_bias_m_s2));
 }
 
-// The program takes all but the cameras from flags. Its *_bias_random_walk are not random walks but how far a bias may be
-// off at the beginning, and stay as the program has them; sigma_*_drift are (vio_ceres_backend_interface.cpp).
+// The program reads all but the cameras from flags. Its *_bias_random_walk are not random walks but initial
+// bias uncertainties, and keep their defaults; sigma_*_drift are random walks
+// (vio_ceres_backend_interface.cpp).
 std::string ultimateSlamFlags(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const ImuNoise noise = statedNoise(imu, notes);
   const auto flag = [](const char* name, double value) {
@@ -115,7 +117,7 @@ ExportedFiles exportSvo(const NamedResult& result) {
       {"calib.yaml",
        headerComment(
            rig,
-           {"SVO's calib_file: cameras, IMU and where it begins. T_B_C takes points of the camera to the "
+           {"SVO's calib_file: cameras, IMU and initial state. T_B_C transforms points of the camera to the "
             "IMU.",
             "t_imu = t_cam - delay_imu_cam: the sign is the opposite of Kalibr's.",
             "acc_max and omega_max are the sensor's limits: check them against its data sheet."}) +
@@ -132,22 +134,21 @@ ExportedFiles exportUltimateSlam(const NamedResult& result) {
   const RigCamera* const images = firstOf(rig, CameraKind::Frames);
   noteUltimateSlamTimes(dvs, images, exported.notes);
   exported.notes.push_back(
-      fmt::format("the camera {} is called dvs in calib.yaml: it must be the event camera", dvs.file_name));
+      fmt::format("the camera {} is named dvs in calib.yaml: it must be the event camera", dvs.file_name));
   exported.files.push_back(
-      {"calib.yaml",
-       headerComment(
-           rig,
-           {"Camera rig of Ultimate SLAM. T_B_C takes points of the camera to the IMU; what belongs to the "
-            "IMU is in imu.flags.",
-            fmt::format("The event camera is called dvs there: here it is {}.", dvs.file_name)}) +
-           rigText(rig, "Ultimate SLAM", &dvs, exported.notes)});
+      {"calib.yaml", headerComment(rig, {"Camera rig of Ultimate SLAM. T_B_C transforms points of the camera "
+                                         "to the IMU; the IMU's parameters are in "
+                                         "imu.flags.",
+                                         fmt::format("The event camera is named dvs there: here it is {}.",
+                                                     dvs.file_name)}) +
+                         rigText(rig, "Ultimate SLAM", &dvs, exported.notes)});
   exported.files.push_back(
       {"imu.flags",
        headerComment(
            rig, {"For --flagfile: t_imu = t_image + timeshift_cam_imu; noise in Kalibr's units.",
-                 images ? fmt::format("timeshift_cam_imu is of the images of {}.", images->file_name)
+                 images ? fmt::format("timeshift_cam_imu applies to the images of {}.", images->file_name)
                         : std::string(
-                              "timeshift_cam_imu moves no events, and the rig has no camera of pictures.")}) +
+                              "timeshift_cam_imu does not shift events, and the rig has no frame camera.")}) +
            ultimateSlamFlags(rig, imu, exported.notes)});
   return exported;
 }

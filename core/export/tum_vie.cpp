@@ -12,18 +12,18 @@ namespace {
 
 constexpr const char* kTumVieProgram = "TUM-VIE";
 constexpr KnownModels kTumVieModels{kTumVieProgram, false, false,
-                                    true};  // its tools take k1 to k4 of all cameras
+                                    true};  // its tools use k1 to k4 of all cameras
 
-// Frame cameras left and right, then event cameras: its tools go by the number. Where a frame camera is missing, the
-// event camera of its side stands there.
+// Frame cameras left and right, then event cameras: its tools use the number. A missing frame camera is
+// replaced by the event camera of its side.
 std::vector<RigCamera> inTheirOrder(const DataSetCameras& placed, ExportNotes& notes) {
   if (!placed.right_event)
-    throw badInput("result", fmt::format("has one event camera, and {} is for stereo", kTumVieProgram),
-                   "Take basalt, whose layout is the same");
+    throw badInput("result", fmt::format("has one event camera, and {} requires two", kTumVieProgram),
+                   "Use basalt, whose layout is the same");
   if (!placed.left_frame || !placed.right_frame)
     notes.push_back(fmt::format(
-        "{} expects four cameras, of frames first: where the rig has none the event camera of that "
-        "side stands in its place",
+        "{} expects four cameras, frame cameras first: missing ones are replaced by the event camera of "
+        "their side",
         kTumVieProgram));
   return {placed.left_frame.value_or(*placed.left_event), placed.right_frame.value_or(*placed.right_event),
           *placed.left_event, *placed.right_event};
@@ -47,7 +47,7 @@ ExportedFiles exportTumVie(const NamedResult& result) {
                                                      fmt::format(",\n    \"camera_names\": [{}]", names))});
   std::vector<std::string> lines{
       "Cameras: 0 and 1 are frame cameras, left and right, 2 and 3 event cameras.",
-      "There is no mocap-imu-calibrationA.json: Evical sees no markers of a motion capture system.",
+      "mocap-imu-calibrationA.json is not written: Evical does not use markers of a motion capture system.",
       "calib_accel_bias and calib_gyro_bias are for raw samples; those of TUM-VIE's imu_data.txt are "
       "corrected."};
   const std::vector<std::string> meanings = basaltMeanings(rig.imus.front());

@@ -15,13 +15,13 @@ constexpr const char* kVinsFusionProgram = "VINS-Fusion";
 constexpr KnownModels kVinsFusionModels{kVinsFusionProgram, true, false, true, false, false, true};
 constexpr std::size_t kVinsFusionMostCameras = 2;
 
-// Keys that say nothing of a calibration: where they are missing the program takes 0, and finds nothing.
+// Keys that are not part of a calibration: if they are missing, the program reads 0 and detects no features.
 constexpr const char* kVinsFusionOwnKeys =
     "output_path: \"/tmp/\"\nmultiple_thread: 1\nmax_cnt: 150\nmin_dist: 30\nfreq: 10\nF_threshold: 1.0\n"
     "show_track: 1\nflow_back: 1\nmax_solver_time: 0.04\nmax_num_iterations: 8\nkeyframe_parallax: 10.0\n"
     "load_previous_pose_graph: 0\npose_graph_save_path: \"/tmp/\"\nsave_image: 0\n";
 
-// Of camodocal's MEI.
+// Parameters of camodocal's MEI model.
 std::string omniText(const CameraIntrinsics& own) {
   const auto& d = own.distortion;
   return fmt::format(
@@ -64,10 +64,10 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
       "%YAML:1.0\n---\n" +
       headerComment(
           rig,
-          {"The calibration's part of a VINS-Fusion configuration. body_T_camN takes points of the "
+          {"The calibration part of a VINS-Fusion configuration. body_T_camN transforms points of the "
            "camera to the IMU; t_imu = t_cam + td.",
-           "Noise is that of a sample, as the program takes it: densities times the square root of the rate.",
-           "What follows td is the program's own, with the values of its EuRoC configuration."}) +
+           "Noise is that of a sample, as the program requires: densities times the square root of the rate.",
+           "The keys after td are the program's, with the values of its EuRoC configuration."}) +
       fmt::format("imu: 1\nnum_of_cam: {}\nimu_topic: {}\n", count, yamlText(imu.stream));
   for (std::size_t i = 0; i < count; ++i)
     text += fmt::format("image{}_topic: {}\n", i, yamlText(rig.cameras[i].stream));

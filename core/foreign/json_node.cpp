@@ -19,7 +19,7 @@ JsonNode JsonNode::load(const std::filesystem::path& file) {
     const auto document = std::make_shared<const Json>(Json::parse(textOf(file)));
     return {document, document.get(), file.string(), ""};
   } catch (const nlohmann::json::exception& error) {
-    throw badInput(file.string(), "is no JSON: " + std::string(error.what()));
+    throw badInput(file.string(), "is not JSON: " + std::string(error.what()));
   }
 }
 
@@ -81,7 +81,7 @@ std::string JsonNode::treeText() const {
 double JsonNode::treeNumber() const {
   const std::string value = treeText();
   const std::optional<double> number = realFrom(value);
-  if (!number) fail(fmt::format("'{}' is no number", value));
+  if (!number) fail(fmt::format("'{}' is not a number", value));
   return *number;
 }
 
@@ -90,7 +90,7 @@ std::int64_t JsonNode::treeInteger() const {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (error != std::errc{} || end != value.data() + value.size())
-    fail(fmt::format("'{}' is no whole number", value));
+    fail(fmt::format("'{}' is not a whole number", value));
   return number;
 }
 

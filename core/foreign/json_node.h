@@ -1,4 +1,4 @@
-// JSON with the file and key in what is said of it.
+// JSON with the file and key in its error messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,8 @@
 
 namespace evical {
 
-// A place in a document. All methods throw CalibrationError (BadInput) where the key is missing or of another kind.
+// A value in a document. All methods throw CalibrationError (BadInput) if the key is missing or of another
+// type.
 class JsonNode {
  public:
   static JsonNode load(const std::filesystem::path& file);
@@ -22,13 +23,13 @@ class JsonNode {
   std::vector<JsonNode> items() const;                            // of a list
   std::vector<std::pair<std::string, JsonNode>> entries() const;  // of an object, in the file's order
 
-  // As rapidjson has them, where a text is no number.
+  // Values as in rapidjson, where a text is not a number.
   double number() const;
   std::int64_t integer() const;
   std::string text() const;
   std::vector<double> numbers(std::size_t count) const;
 
-  // As boost's property tree has them, where every value is a text.
+  // Values as in boost's property tree, where every value is a text.
   std::string treeText() const;
   double treeNumber() const;
   std::int64_t treeInteger() const;

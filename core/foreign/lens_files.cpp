@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-// A layout is recognised by a set of keys that only its files have.
+// A layout is recognised by keys that only its files have.
 struct Layout {
   const char* name;
   std::initializer_list<std::string_view> keys;
@@ -37,7 +37,7 @@ const std::initializer_list<Layout> kLayouts = {
 
 // The text of a file; empty for folders and for files that are too large.
 std::string smallText(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLargest_bytes = 16 << 20;  // basalt's files hold vignettes
+  constexpr std::uintmax_t kLargest_bytes = 16 << 20;  // basalt's files contain vignettes
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
   if (std::filesystem::file_size(file, error) > kLargest_bytes || error) return {};
@@ -69,7 +69,7 @@ std::optional<LensFile> readLensFile(const std::filesystem::path& file) {
   LensFile found{layout->name, layout->read(file)};
   std::erase_if(found.read.cameras, [](const ReadCamera& camera) { return !camera.lens; });
   if (found.read.cameras.empty())
-    throw badInput(file.string(), std::string("read as ") + layout->name + ", but holds no complete camera",
+    throw badInput(file.string(), std::string("read as ") + layout->name + ", but has no complete camera",
                    "Give a file with a camera's intrinsics: its matrix and its distortion");
   return found;
 }

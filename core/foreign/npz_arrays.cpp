@@ -33,7 +33,7 @@ std::string piece(const std::string& bytes, std::size_t at, std::size_t size, co
   return bytes.substr(at, size);
 }
 
-// One file that the archive's directory names, and where the next entry of the directory is.
+// One file in the archive's directory, and the position of the next entry.
 struct ArchivedArray {
   std::string name, content;
   std::size_t next;
@@ -50,20 +50,20 @@ ArchivedArray entryAt(const std::string& zip, std::size_t at, const std::string&
   ArchivedArray entry{piece(zip, at + 46, length, place), {}, at + 46 + length + extra};
   const std::string inside = place + ": " + entry.name;
   if (compression != 0) throw npzArraysBroken(inside, "is compressed");
-  // Both headers say the same of the file, as Python's zipfile demands of names.
+  // Both headers must agree, as Python's zipfile requires for names.
   if (piece(zip, own, 4, inside) != "PK\x03\x04" ||
       piece(zip, own + 6, 22, inside) != piece(zip, at + 8, 22, inside) ||
       piece(zip, own + 30, length, inside) != entry.name)
-    throw npzArraysBroken(inside, "is not where the directory says");
+    throw npzArraysBroken(inside, "is not at the position in the directory");
   entry.content =
       piece(zip, own + 30 + length + numberAt<std::uint16_t>(zip, own + 28, inside), size, inside);
   const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(entry.content.data()), entry.content.size());
   if (crc != numberAt<std::uint32_t>(zip, at + 16, inside))
-    throw npzArraysBroken(inside, "its check sum is another");
+    throw npzArraysBroken(inside, "its checksum is wrong");
   return entry;
 }
 
-// What follows a key in the header's dict, up to `end`.
+// Value of a key in the header's dict, up to `end`.
 std::string valueOf(const std::string& header, const std::string& key, char end, const std::string& place) {
   const std::size_t found = header.find("'" + key + "': ");
   const std::size_t begin = found + key.size() + 4;
@@ -78,9 +78,8 @@ std::vector<std::size_t> shapeOf(const std::string& text, const std::string& pla
        at = text.find_first_of("0123456789", at)) {
     std::size_t size = 0;
     const auto end = std::from_chars(text.data() + at, text.data() + text.size(), size);
-    constexpr std::size_t kMost = 100'000;  // what a file claims is not trusted
-    if (end.ec != std::errc{} || size > kMost)
-      throw npzArraysBroken(place, "is of no size that a calibration has");
+    constexpr std::size_t kMost = 100'000;  // limits the size that a file claims
+    if (end.ec != std::errc{} || size > kMost) throw npzArraysBroken(place, "is too large for a calibration");
     shape.push_back(size);
     at = static_cast<std::size_t>(end.ptr - text.data());
   }
@@ -93,7 +92,7 @@ std::string utf8Of(const std::string& utf32, const std::string& place) {
     const auto point = numberAt<std::uint32_t>(utf32, at, place);
     const auto add = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
     if (point == 0) break;
-    if (point > 0x10FFFF) throw npzArraysBroken(place, "is no text");
+    if (point > 0x10FFFF) throw npzArraysBroken(place, "is not a text");
     if (point < 0x80) {
       add(point);
     } else if (point < 0x800) {
@@ -113,13 +112,13 @@ std::string utf8Of(const std::string& utf32, const std::string& place) {
   return text;
 }
 
-// Bytes of one element: 8 of numbers, 4 a letter of texts.
+// Bytes of one element: 8 for numbers, 4 per letter for texts.
 std::size_t widthOf(const std::string& type, const std::string& place) {
   if (type == "'<f8'" || type == "'<i8'") return 8;
   std::size_t letters = 0;
   if (type.starts_with("'<U") && type.ends_with("'"))
     std::from_chars(type.data() + 3, type.data() + type.size() - 1, letters);
-  if (letters == 0 || letters > 100'000) throw npzArraysBroken(place, fmt::format("is of the type {}", type));
+  if (letters == 0 || letters > 100'000) throw npzArraysBroken(place, fmt::format("has the type {}", type));
   return 4 * letters;
 }
 
@@ -127,11 +126,11 @@ std::size_t widthOf(const std::string& type, const std::string& place) {
 
 NpzArrays::Array NpzArrays::arrayOf(const std::string& npy, const std::string& place) {
   if (piece(npy, 0, 8, place) != std::string("\x93NUMPY\x01\x00", 8))
-    throw npzArraysBroken(place, "is no .npy of version 1");
+    throw npzArraysBroken(place, "is not an .npy file of version 1");
   const std::size_t begin = 10 + std::size_t{numberAt<std::uint16_t>(npy, 8, place)};
   const std::string header = piece(npy, 10, begin - 10, place);
   if (valueOf(header, "fortran_order", ',', place) != "False")
-    throw npzArraysBroken(place, "is column by column");
+    throw npzArraysBroken(place, "is in Fortran order");
   const std::string type = valueOf(header, "descr", ',', place);
   const std::size_t width = widthOf(type, place);
   Array array{type[2] == 'U', shapeOf(valueOf(header, "shape", ')', place), place)};
@@ -140,7 +139,8 @@ NpzArrays::Array NpzArrays::arrayOf(const std::string& npy, const std::string& p
     count *= size;
     if (count > npy.size()) throw npzArraysBroken(place, "ends too early");
   }
-  if (npy.size() - begin != count * width) throw npzArraysBroken(place, "is not as long as its header says");
+  if (npy.size() - begin != count * width)
+    throw npzArraysBroken(place, "does not have the length in its header");
   for (std::size_t at = begin; at < npy.size(); at += width) {
     if (array.is_text)
       array.texts.push_back(utf8Of(npy.substr(at, width), place));
@@ -156,15 +156,15 @@ NpzArrays NpzArrays::load(const std::filesystem::path& file) {
   loaded.file_ = file.string();
   const std::string zip = textOf(file);
   const std::size_t end = zip.rfind("PK\x05\x06");
-  if (end == std::string::npos) throw npzArraysBroken(loaded.file_, "is no .npz file, or is cut off");
+  if (end == std::string::npos) throw npzArraysBroken(loaded.file_, "is not an .npz file, or is cut off");
   std::size_t at = numberAt<std::uint32_t>(zip, end + 16, loaded.file_);
   for (int left = numberAt<std::uint16_t>(zip, end + 10, loaded.file_); left > 0; --left) {
     const ArchivedArray entry = entryAt(zip, at, loaded.file_);
     const std::string inside = loaded.place(entry.name);
-    if (!entry.name.ends_with(".npy")) throw npzArraysBroken(inside, "is no array");
+    if (!entry.name.ends_with(".npy")) throw npzArraysBroken(inside, "is not an array");
     const std::string name = entry.name.substr(0, entry.name.size() - 4);
     if (!loaded.arrays_.emplace(name, arrayOf(entry.content, inside)).second)
-      throw npzArraysBroken(inside, "is there twice");
+      throw npzArraysBroken(inside, "occurs twice");
     at = entry.next;
   }
   if (at != end) throw npzArraysBroken(loaded.file_, "its directory is damaged");
@@ -175,7 +175,7 @@ const NpzArrays::Array& NpzArrays::get(const std::string& name, bool is_text, st
   const auto found = arrays_.find(name);
   if (found == arrays_.end()) throw npzArraysBroken(place(name), "is missing");
   if (found->second.is_text != is_text || found->second.shape.size() != dimensions)
-    throw npzArraysBroken(place(name), "is of another type or shape");
+    throw npzArraysBroken(place(name), "has another type or shape");
   return found->second;
 }
 
@@ -190,7 +190,7 @@ std::vector<double> NpzArrays::numbers(const std::string& name) const {
 Eigen::MatrixXd NpzArrays::matrix(const std::string& name, std::size_t rows, std::size_t cols) const {
   const Array& array = get(name, false, 2);
   if (array.shape[0] != rows || array.shape[1] != cols)
-    throw npzArraysBroken(place(name), "is of another shape");
+    throw npzArraysBroken(place(name), "has another shape");
   return matrixFrom(array.numbers, static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
 }
 

@@ -1,4 +1,4 @@
-// Arrays of a .npz file that is not compressed, as numpy.load takes them without pickles.
+// Arrays of an uncompressed .npz file, as numpy.load reads them without pickles.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,8 @@
 
 namespace evical {
 
-// All methods throw CalibrationError (BadInput), which names file and array, where it is missing or of another kind.
+// All methods throw CalibrationError (BadInput), which names file and array, if it is missing or of another
+// type.
 class NpzArrays {
  public:
   static NpzArrays load(const std::filesystem::path& file);

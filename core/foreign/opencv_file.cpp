@@ -25,24 +25,24 @@ OpencvNode OpencvNode::operator[](const std::string& key) const {
 }
 
 double OpencvNode::number() const {
-  if (!node_.isInt() && !node_.isReal()) fail("is no number to OpenCV");
+  if (!node_.isInt() && !node_.isReal()) fail("is not a number for OpenCV");
   const auto value = static_cast<double>(node_);
-  if (!std::isfinite(value)) fail("is no finite number");
+  if (!std::isfinite(value)) fail("is not a finite number");
   return value;
 }
 
 int OpencvNode::integer() const {
-  if (!node_.isInt()) fail("is no whole number to OpenCV");
+  if (!node_.isInt()) fail("is not a whole number for OpenCV");
   return static_cast<int>(node_);
 }
 
 std::string OpencvNode::text() const {
-  if (!node_.isString()) fail("is no text to OpenCV");
+  if (!node_.isString()) fail("is not a text for OpenCV");
   return static_cast<std::string>(node_);
 }
 
 std::vector<double> OpencvNode::numbers(std::size_t count) const {
-  if (!node_.isSeq()) fail("is no list");
+  if (!node_.isSeq()) fail("is not a list");
   if (node_.size() != count) fail(fmt::format("has {} numbers, {} are needed", node_.size(), count));
   std::vector<double> values;
   for (const cv::FileNode& item : node_) values.push_back(OpencvNode(item, file_, key_).number());
@@ -50,7 +50,7 @@ std::vector<double> OpencvNode::numbers(std::size_t count) const {
 }
 
 Eigen::MatrixXd OpencvNode::rows(std::size_t rows, std::size_t cols) const {
-  if (!node_.isSeq() || node_.size() != rows) fail(fmt::format("is no list of {} rows", rows));
+  if (!node_.isSeq() || node_.size() != rows) fail(fmt::format("is not a list of {} rows", rows));
   std::vector<double> all;
   for (const cv::FileNode& row : node_)
     for (const double value : OpencvNode(row, file_, key_).numbers(cols)) all.push_back(value);
@@ -62,10 +62,10 @@ Eigen::MatrixXd OpencvNode::matrix(int rows, int cols, int kind) const {
   try {
     read = node_.mat();
   } catch (const cv::Exception& error) {
-    fail("is no matrix to OpenCV: " + std::string(error.what()));
+    fail("is not a matrix for OpenCV: " + std::string(error.what()));
   }
   if (read.rows != rows || read.cols != cols || read.channels() != 1)
-    fail(fmt::format("is {} x {}, {} x {} is needed", read.rows, read.cols, rows, cols));
+    fail(fmt::format("is {} x {}, but must be {} x {}", read.rows, read.cols, rows, cols));
   if (kind >= 0 && read.depth() != kind) fail(fmt::format("must have dt {}", kind == CV_32F ? "f" : "d"));
   cv::Mat real;
   read.convertTo(real, CV_64F);
@@ -82,7 +82,7 @@ std::vector<double> OpencvNode::matrixNumbers() const {
   try {
     read = node_.mat();
   } catch (const cv::Exception& error) {
-    fail("is no matrix to OpenCV: " + std::string(error.what()));
+    fail("is not a matrix for OpenCV: " + std::string(error.what()));
   }
   if (read.empty() || read.channels() != 1) fail("is not a matrix of numbers");
   cv::Mat real;

@@ -1,5 +1,5 @@
-// OpenCV's own FileStorage, with the file and key in what it says. It keeps apart whole and real numbers: "20" is an int,
-// "20.0" a real one.
+// OpenCV's FileStorage, with the file and key in its error messages. It distinguishes whole and real numbers:
+// "20" is an int, "20.0" a real one.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace evical {
 
-// A place in a file. All methods throw CalibrationError (BadInput) where the key is missing or of another kind.
+// A value in a file. All methods throw CalibrationError (BadInput) if the key is missing or of another type.
 class OpencvNode {
  public:
   OpencvNode(cv::FileNode node, std::string file, std::string key);
@@ -26,9 +26,9 @@ class OpencvNode {
   std::size_t size() const { return node_.size(); }                // of a list
   std::vector<double> numbers(std::size_t count) const;            // of a list
   Eigen::MatrixXd rows(std::size_t rows, std::size_t cols) const;  // of a list of lists
-  // Of !!opencv-matrix; `kind` CV_32F or CV_64F, or -1 where the program takes both.
+  // An !!opencv-matrix; `kind`: CV_32F or CV_64F, or -1 if the program accepts both.
   Eigen::MatrixXd matrix(int rows, int cols, int kind) const;
-  std::vector<double> matrixNumbers() const;  // row by row, whatever its shape
+  std::vector<double> matrixNumbers() const;  // row by row, for any shape
   std::vector<std::string> keys() const;      // of a map; otherwise empty
 
   std::string place() const;  // "vins.yaml: acc_n"

@@ -1,5 +1,6 @@
-// After VladyslavUsenko/basalt-headers: include/basalt/serialization/headers_serialization.h (at 2ae558c) and
-// calibration/calib_bias.hpp (at 2f26c68: getCalibrated). cereal searches each name, and throws where it is missing.
+// Source: VladyslavUsenko/basalt-headers: include/basalt/serialization/headers_serialization.h (at 2ae558c)
+// and calibration/calib_bias.hpp (at 2f26c68: getCalibrated). cereal looks up each name, and throws if it is
+// missing.
 #include "core/foreign/json_node.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -17,12 +18,12 @@
 namespace evical {
 namespace {
 
-// `unit`: how far a quaternion may be from unit length; files for import may be rounded.
+// `unit`: tolerated deviation of a quaternion's norm from 1; files for import may be rounded.
 RigidTransform basaltPoseOf(const JsonNode& node, double unit) {
   const auto number = [&](const char* key) { return node[key].number(); };
   const RigidTransform pose{{number("qw"), number("qx"), number("qy"), number("qz")},
                             {number("px"), number("py"), number("pz")}};
-  if (std::abs(pose.rotation.norm() - 1.0) > unit) node.fail("has no unit quaternion");
+  if (std::abs(pose.rotation.norm() - 1.0) > unit) node.fail("does not have a unit quaternion");
   return pose;
 }
 
@@ -35,7 +36,7 @@ CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) 
   const auto known =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& each) { return type == each.first; });
   if (known == kTypes.end())
-    node["camera_type"].fail("is '" + type + "', and Evical has kb4, ds, eucm, pinhole and pinhole-radtan8");
+    node["camera_type"].fail("is '" + type + "'; supported are kb4, ds, eucm, pinhole and pinhole-radtan8");
   const CameraModel model = known->second;
   const JsonNode numbers = node["intrinsics"];
   std::vector<double> k, distortion;
@@ -85,7 +86,7 @@ ReadFile basaltCamerasOf(const std::filesystem::path& path, const JsonNode& valu
   const std::vector<JsonNode> poses = value["T_imu_cam"].items(), lenses = value["intrinsics"].items(),
                               sizes = value["resolution"].items();
   if (lenses.size() != poses.size() || sizes.size() != poses.size())
-    value["intrinsics"].fail("is not as long as T_imu_cam and resolution");
+    value["intrinsics"].fail("does not have the length of T_imu_cam and resolution");
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ReadCamera camera;
     camera.lens = basaltLensOf(lenses[i], sizes[i]);
@@ -128,8 +129,9 @@ ReadBack readBasalt(const std::filesystem::path& folder) {
   return read;
 }
 
-// TUM-VIE's own program is Basalt; what others ask of its file is after get_camera_calib_json of tub-rip/ES-PTAM
-// (mapper_emvs_stereo/src/calib.cpp, at 79ef978): kb4, and event cameras at 2 and 3. The names are Evical's addition.
+// TUM-VIE's own program is Basalt; further requirements on its file are those of get_camera_calib_json of
+// tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp, at 79ef978): kb4, and event cameras at 2 and 3. The
+// names are Evical's addition.
 ReadBack readTumVie(const std::filesystem::path& folder) {
   constexpr std::size_t kCameras = 4;
   ReadBack read;
@@ -138,7 +140,7 @@ ReadBack readTumVie(const std::filesystem::path& folder) {
   const JsonNode value = JsonNode::load(file.path)["value0"];
   const std::vector<JsonNode> names = value["camera_names"].items();
   if (file.cameras.size() != kCameras || names.size() != kCameras)
-    value["T_imu_cam"].fail("must be of four cameras");
+    value["T_imu_cam"].fail("must have four cameras");
   std::set<std::string> different;
   for (std::size_t i = 0; i < kCameras; ++i) {
     file.cameras[i].name = names[i].text();

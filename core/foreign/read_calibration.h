@@ -1,6 +1,6 @@
-// A calibration as another program reads it from its own files, in our terms. Readers (readers.h) are written from the
-// other program's source: the keys that it demands, the types, lengths and shapes that it insists on, its directions and
-// signs. What it would not take is a CalibrationError (BadInput) that names file and key.
+// A calibration as another program reads it from its own files, in Evical's terms. Readers (readers.h) follow
+// the other program's source: the keys, types, lengths and shapes that it requires, its directions and signs.
+// Anything that it would refuse is a CalibrationError (BadInput) that names file and key.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -18,46 +18,47 @@
 
 namespace evical {
 
-// What a file says of a camera; what it has no place for stays empty.
+// A file's data of a camera; empty if the format has no place for them.
 struct ReadCamera {
-  // By which the file knows it: the camera's name, its name in files or its stream. Empty: cameras come in the result's
-  // order.
+  // The camera's name in the file: its name, its name in files or its stream. Empty: cameras are in the
+  // result's order.
   std::string name = {};
-  std::optional<CameraIntrinsics> lens = {};             // resolution 0: the program asks for none here
+  std::optional<CameraIntrinsics> lens = {};             // resolution 0: not required here
   std::optional<RigidTransform> frame_from_camera = {};  // see ReadFile::about_first_camera
   std::optional<double> time_offset_s = {};              // t_reference = t_camera + that
 };
 
-// What a file says of an IMU. measured = M true + bias, in the frame that the file gives the IMU: turned against ours
-// where the program wants M of another shape.
+// A file's data of an IMU. measured = M true + bias, in the file's frame of the IMU, which is rotated
+// relative to Evical's if the program requires another shape of M.
 struct ReadImu {
   std::string name = {};                                              // as ReadCamera::name
-  std::optional<RigidTransform> reference_from_imu = {};              // both frames as the files have them
+  std::optional<RigidTransform> reference_from_imu = {};              // both frames as in the files
   std::optional<double> time_offset_s = {};                           // t_reference = t_imu + that
   std::optional<Eigen::Matrix3d> accelerometer = {}, gyroscope = {};  // M
   std::optional<Eigen::Vector3d> accelerometer_bias_m_s2 = {}, gyroscope_bias_rad_s = {};
   std::optional<ImuNoise> noise = {};
-  bool noise_of_samples = false;  // not densities: those times the square root of the rate
+  bool noise_of_samples = false;  // densities times the square root of the rate
   std::optional<double> rate_hz = {};
 };
 
 struct ReadFile {
   std::filesystem::path path = {};
   std::vector<ReadCamera> cameras = {};
-  std::vector<ReadImu> imus = {};   // the reference first, where they have no names
-  bool about_first_camera = false;  // poses: in the frame of the first of `cameras`, else the reference IMU's
-  double rounding = 1e-12;          // relative, of numbers as the program keeps them
-  double time_step_s = 0.0;         // of its time offsets
-  std::optional<double> gravity_m_s2 = {};  // how large
+  std::vector<ReadImu> imus = {};  // the reference first, if they have no names
+  bool about_first_camera =
+      false;                 // poses: in the frame of the first of `cameras`, otherwise of the reference IMU
+  double rounding = 1e-12;   // relative, of the program's number type
+  double time_step_s = 0.0;  // of its time offsets
+  std::optional<double> gravity_m_s2 = {};  // norm
 };
 
-// Relative rounding of a program that keeps its numbers as float.
+// Relative rounding of a program that stores numbers as float.
 inline constexpr double kFloatRounding = 6e-8;
 
 struct ReadBack {
   static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
   std::vector<ReadFile> files = {};
-  std::size_t most_cameras = kAny, most_imus = kAny;  // that the program takes
+  std::size_t most_cameras = kAny, most_imus = kAny;  // that the program accepts
 };
 
 }  // namespace evical

@@ -1,6 +1,6 @@
-// After JakobEngel/dso, src/util/Undistort.cpp (at 927edc6: getUndistorterForFile, readFromFile), which lukasvst/dm-vio
-// has unchanged; and lukasvst/dm-vio, src/IMU/IMUSettings.cpp (at 432b7af: IMUCalibration::loadFromFile) and
-// src/util/SettingsUtil.cpp (at fcc306b: tryReadFromYaml).
+// Source: JakobEngel/dso, src/util/Undistort.cpp (at 927edc6: getUndistorterForFile, readFromFile), unchanged
+// in lukasvst/dm-vio; and lukasvst/dm-vio, src/IMU/IMUSettings.cpp (at 432b7af: IMUCalibration::loadFromFile)
+// and src/util/SettingsUtil.cpp (at fcc306b: tryReadFromYaml).
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/foreign/read_numbers.h"
@@ -20,7 +20,7 @@ struct CameraLines {
 
   std::string place(std::size_t line) const { return fmt::format("{} (line {})", file, line + 1); }
 
-  // As many numbers as sscanf takes from the line's beginning.
+  // The numbers that sscanf reads from the line's beginning.
   std::vector<double> numbers(std::size_t line, std::size_t count) const {
     std::istringstream words(lines[line]);
     std::vector<double> values;
@@ -65,11 +65,11 @@ ReadFile readDmVioCamera(const std::filesystem::path& path) {
   const CameraIntrinsics lens = dsoLensOf(read);
   const std::vector<double> rectified = read.numbers(2, 5);
   if (rectified[2] > 1.0 || rectified[3] > 1.0)
-    throw badInput(read.place(2), "needs to be relative to the image's size");
+    throw badInput(read.place(2), "must be relative to the image's size");
   const Resolution size = read.resolution(3);
   constexpr int kPyramid_px = 8;  // three levels
   if (size.width_px % kPyramid_px != 0 || size.height_px % kPyramid_px != 0)
-    throw badInput(read.place(3), "has no three levels of a pyramid");
+    throw badInput(read.place(3), "allows fewer than three pyramid levels");
   ReadCamera camera;
   camera.lens = lens;
   return {path, {camera}};
@@ -103,7 +103,7 @@ ReadFile readDsoCameraFile(const std::filesystem::path& path) {
 
 ReadBack readDmVio(const std::filesystem::path& folder) {
   ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};
-  // DSO alone takes no more than the camera.
+  // DSO without DM-VIO reads only the camera.
   if (!isThere(folder / "camchain.yaml") && !isThere(folder / "noise.yaml")) return read;
   read.files.push_back(readCamchain(folder / "camchain.yaml"));
   read.files.push_back(readNoise(folder / "noise.yaml"));

@@ -1,5 +1,5 @@
-// After uzh-rpg/DSEC's README.md (at 0df8d87), and what reads it: compute_remapping of uzh-rpg/dsec-det
-// (src/dsec_det/remapping.py, at db941c2), get_camera_calib_dsec_yaml of tub-rip/ES-PTAM
+// Source: uzh-rpg/DSEC's README.md (at 0df8d87), and programs that read it: compute_remapping of
+// uzh-rpg/dsec-det (src/dsec_det/remapping.py, at db941c2), get_camera_calib_dsec_yaml of tub-rip/ES-PTAM
 // (mapper_emvs_stereo/src/calib.cpp, at 79ef978). camera_name is Evical's addition.
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -39,11 +39,11 @@ Eigen::Matrix3d turnOfRow(const YamlNode& extrinsics, std::size_t place) {
   const YamlNode node = extrinsics[fmt::format("R_rect{}", place)];
   const Eigen::MatrixXd rows = rowsOf(node, 3, 3);
   if (!((rows * rows.transpose() - Eigen::Matrix3d::Identity()).norm() < kSame))
-    throw node.error("is no rotation");
+    throw node.error("is not a rotation");
   return rows;
 }
 
-// Rectified, the right camera is beside the left one, and Q gives back a point from its disparity.
+// After rectification, the right camera is displaced along x, and Q reconstructs a point from its disparity.
 void checkPair(const YamlNode& root, std::size_t left, std::size_t right,
                const RigidTransform& right_from_left) {
   const YamlNode node = root["disparity_to_depth"][fmt::format("cams_{}{}", left, right)];
@@ -57,7 +57,7 @@ void checkPair(const YamlNode& root, std::size_t left, std::size_t right,
   const Eigen::Vector2d a = (k_left * on_left).hnormalized(), b = (k_right * on_right).hnormalized();
   const Eigen::Vector3d back = (q * Eigen::Vector4d(a.x(), a.y(), a.x() - b.x(), 1.0)).hnormalized();
   if (!(std::abs(a.y() - b.y()) < 1e-6) || !((back - on_left).norm() < kSame))
-    throw node.error("does not give back a point from its disparity");
+    throw node.error("does not reconstruct a point from its disparity");
 }
 
 CameraIntrinsics dsecLensOf(const YamlNode& camera) {
@@ -72,7 +72,7 @@ ReadCamera dsecCameraOf(const YamlNode& root, std::size_t place) {
                  level = root["intrinsics"][fmt::format("camRect{}", place)];
   checkKind(own, place, "false");
   checkKind(level, place, "true");
-  if (dsecSizeOf(own) != dsecSizeOf(level)) throw level["resolution"].error("is another than the camera's");
+  if (dsecSizeOf(own) != dsecSizeOf(level)) throw level["resolution"].error("differs from the camera's");
   static_cast<void>(own["distortion_model"].choice({"radtan"}));
   static_cast<void>(matrixOf(level));
   static_cast<void>(turnOfRow(root["extrinsics"], place));

@@ -1,6 +1,7 @@
-// After dv-processing: include/dv-processing/camera/calibration_set.hpp and camera/calibrations/camera_calibration.hpp,
-// imu_calibration.hpp, stereo_calibration.hpp, of copies that name no revision. A boost property tree, in which all values
-// are texts; numbers are kept as floats; the sensors' order counts, not their keys.
+// Source: dv-processing: include/dv-processing/camera/calibration_set.hpp and
+// camera/calibrations/camera_calibration.hpp, imu_calibration.hpp, stereo_calibration.hpp, of copies without
+// a revision. A boost property tree, in which all values are texts; numbers are stored as floats; the
+// sensors' order is used, not their keys.
 #include "core/foreign/json_node.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -44,7 +45,8 @@ ReadCamera dvProcessingCameraOf(const JsonNode& node) {
     node["distortionModel"].fail("must be radialTangential or equidistant");
   const JsonNode coefficients = node["distortionCoefficients"];
   const std::size_t count = coefficients.items().size();
-  if (count != 4 && (!radtan || count != 5)) coefficients.fail("has not as many numbers as the model");
+  if (count != 4 && (!radtan || count != 5))
+    coefficients.fail("has another number of coefficients than the model");
   std::vector<double> k = floats(node["focalLength"], 2);
   const std::vector<double> principal = floats(node["principalPoint"], 2),
                             size = node["resolution"].treeNumbers(2);
@@ -79,7 +81,7 @@ ReadImu dvProcessingImuOf(const JsonNode& node) {
 void checkStereo(const JsonNode& node, const std::vector<std::string>& names) {
   for (const char* key : {"leftCameraName", "rightCameraName"})
     if (std::find(names.begin(), names.end(), node[key].treeText()) == names.end())
-      node[key].fail("is the name of no camera");
+      node[key].fail("is not the name of a camera");
   floats(node["fundamentalMatrix"], 9);
   floats(node["essentialMatrix"], 9);
   if (!node.has("metadata")) return;
@@ -119,9 +121,9 @@ ReadBack readDvProcessing(const std::filesystem::path& folder) {
   if (root.has("imus"))
     for (const auto& [key, node] : root["imus"].entries()) {
       file.imus.push_back(dvProcessingImuOf(node));
-      // getImuCalibrationByName is asked for the camera's name.
+      // getImuCalibrationByName is called with the camera's name.
       if (std::find(names.begin(), names.end(), node["name"].treeText()) == names.end())
-        node["name"].fail("is the name of no camera, by which it is looked up");
+        node["name"].fail("is not the name of a camera, which is its key");
       const RigidTransform imu_from_first = inverse(dvProcessingPoseOf(node));
       for (ReadCamera& camera : file.cameras)
         camera.frame_from_camera = imu_from_first * *camera.frame_from_camera;

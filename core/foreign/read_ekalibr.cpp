@@ -1,7 +1,7 @@
-// After Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (at d9e93fd: CalibParamManager::load), and its library
-// veta's camera/pinhole*.h, which since 29195b0 asks for the notes. cereal's YAML archive searches each name and throws
-// where it is missing; a std::map is a list of {key, value}, a pointer has an id, marked by the highest bit where it is
-// met first.
+// Source: Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (at d9e93fd: CalibParamManager::load), and
+// its library veta's camera/pinhole*.h, which requires the notes since 29195b0. cereal's YAML archive looks
+// up each name and throws if it is missing; a std::map is a list of {key, value}, a pointer has an id, whose
+// highest bit marks its first occurrence.
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
@@ -19,7 +19,7 @@ constexpr std::int64_t kFirstOccurrence = 0x80000000;
 std::map<std::string, YamlNode> mapOf(const YamlNode& list) {
   std::map<std::string, YamlNode> map;
   for (const YamlNode& entry : list.items())
-    if (!map.emplace(entry["key"].text(), entry["value"]).second) throw entry["key"].error("is there twice");
+    if (!map.emplace(entry["key"].text(), entry["value"]).second) throw entry["key"].error("occurs twice");
   return map;
 }
 
@@ -32,25 +32,25 @@ Eigen::VectorXd ekalibrVectorOf(const YamlNode& node, Eigen::Index size) {
 Eigen::Quaterniond rotationOf(const YamlNode& node) {
   const Eigen::Quaterniond q(node["qw"].real(), node["qx"].real(), node["qy"].real(), node["qz"].real());
   constexpr double kUnit = 1e-9;
-  if (std::abs(q.norm() - 1.0) > kUnit) throw node.error("is no unit quaternion");
+  if (std::abs(q.norm() - 1.0) > kUnit) throw node.error("is not a unit quaternion");
   return q;
 }
 
 YamlNode ekalibrDataOf(const YamlNode& value) {
   const YamlNode wrapper = value["ptr_wrapper"];
   if ((wrapper["id"].nanoseconds() & kFirstOccurrence) == 0)
-    throw wrapper["id"].error("has no highest bit, and data");
+    throw wrapper["id"].error("has data, but not the highest bit");
   return wrapper["data"];
 }
 
-// Names of polymorphic types by their ids, as they are met.
+// Names of polymorphic types by their ids, in order of occurrence.
 class Types {
  public:
   std::string nameOf(const YamlNode& value) {
     const std::int64_t id = value["polymorphic_id"].nanoseconds();
     if ((id & kFirstOccurrence) != 0) names_[id & ~kFirstOccurrence] = value["polymorphic_name"].text();
     const auto found = names_.find(id & ~kFirstOccurrence);
-    if (found == names_.end()) throw value["polymorphic_id"].error("has not been met before");
+    if (found == names_.end()) throw value["polymorphic_id"].error("is used before its definition");
     return found->second;
   }
 
@@ -62,7 +62,7 @@ CameraIntrinsics ekalibrLensOf(const YamlNode& value, Types& types) {
   const std::string type = types.nameOf(value);
   const bool radtan = type == "pinhole_brown_t2";
   if (!radtan && type != "pinhole_fisheye")
-    throw value["polymorphic_id"].error("must be of pinhole_brown_t2 or pinhole_fisheye");
+    throw value["polymorphic_id"].error("must be pinhole_brown_t2 or pinhole_fisheye");
   const YamlNode data = ekalibrDataOf(value);
   for (const char* key : {"focal_length_note", "principal_point_note", "disto_param_note"}) data[key].text();
   std::vector<double> k = data["focal_length"].reals(2);
@@ -121,7 +121,8 @@ ReadFile readParameters(const std::filesystem::path& path) {
   }
   Types types;
   mapOf(intrinsics["Camera"]);
-  for (const YamlNode& entry : intrinsics["Camera"].items()) {  // in the file's order, by which types are met
+  for (const YamlNode& entry :
+       intrinsics["Camera"].items()) {  // in the file's order, in which types are defined
     ReadCamera camera;
     camera.name = entry["key"].text();
     camera.lens = ekalibrLensOf(entry["value"], types);

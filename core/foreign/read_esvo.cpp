@@ -1,7 +1,8 @@
-// After HKUST-Aerial-Robotics/ESVO: esvo_core/src/container/CameraSystem.cpp (at 995f61b: loadCalibInfo); NAIL-HNU/ESVO2:
-// esvo2_core/src/container/CameraSystem.cpp (at 2edd832) and image_representation/src/ImageRepresentation.cpp (at 27d2f5f),
-// which asks each camera's file for T_right_left and T_b_c. Size and distortion model of both cameras are the left one's,
-// and of coefficients four are taken.
+// Source: HKUST-Aerial-Robotics/ESVO: esvo_core/src/container/CameraSystem.cpp (at 995f61b: loadCalibInfo);
+// NAIL-HNU/ESVO2: esvo2_core/src/container/CameraSystem.cpp (at 2edd832) and
+// image_representation/src/ImageRepresentation.cpp (at 27d2f5f), which require T_right_left and T_b_c in each
+// camera's file. Size and distortion model of both cameras are the left one's, and four coefficients are
+// used.
 #include "core/base/error.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -35,7 +36,7 @@ ReadCamera esvoCameraOf(const YamlNode& left, const YamlNode& root) {
   return camera;
 }
 
-// Rectified, the right camera is beside the left one, and what projection_matrix says of how far is true.
+// After rectification, the right camera is displaced along x by the distance in projection_matrix.
 void checkRectification(const YamlNode& left, const YamlNode& right, const RigidTransform& right_from_left) {
   constexpr double kSame = 1e-9;
   const Eigen::Matrix3d of_left = esvoDataOf(left, "rectification_matrix", 3, 3),
@@ -48,7 +49,7 @@ void checkRectification(const YamlNode& left, const YamlNode& right, const Rigid
   if (!((turn - Eigen::Matrix3d::Identity()).norm() < kSame) || !((baseline - said).norm() < kSame))
     throw right["rectification_matrix"].error("does not put the cameras side by side");
   if (p_left.leftCols<3>() != p_right.leftCols<3>() || p_left.col(3) != Eigen::Vector3d::Zero())
-    throw left["projection_matrix"].error("is of another camera than the right one's");
+    throw left["projection_matrix"].error("differs from that of the right camera");
 }
 
 ReadBack readEsvoPair(const std::filesystem::path& folder, bool with_imu) {

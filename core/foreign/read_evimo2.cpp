@@ -1,6 +1,6 @@
-// After better-flow/evimo: evimo/dataset.h (at 02db528: read_params, read_cam_intr, read_extr), and
-// tools/evimo2_v2_generate/generate_extrinsics_npz.py (at 35286e2: read_camera_extrinsics), which demands four lines, the
-// last of them 0, and says that the third is the camera's time less the pose's.
+// Source: better-flow/evimo: evimo/dataset.h (at 02db528: read_params, read_cam_intr, read_extr), and
+// tools/evimo2_v2_generate/generate_extrinsics_npz.py (at 35286e2: read_camera_extrinsics), which requires
+// four lines, the last of them 0, and defines the third as the camera's time minus the pose's.
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
@@ -31,7 +31,7 @@ std::vector<std::vector<double>> evimo2LinesOf(const std::filesystem::path& file
       double& number = numbers.emplace_back();
       const auto end = std::from_chars(word.data(), word.data() + word.size(), number);
       if (end.ec != std::errc{} || end.ptr != word.data() + word.size())
-        throw evimo2Broken(file, fmt::format("'{}' is no number", word));
+        throw evimo2Broken(file, fmt::format("'{}' is not a number", word));
     }
   }
   return lines;

@@ -1,7 +1,7 @@
-// After ethz-asl/kalibr, kalibr_common/ConfigReader.py (at 0b8b9e8; its check of eucm as chengfzy/kalibr has it at 31a324b):
-// CameraChainParameters of camchain.yaml and camchain-imucam.yaml, ImuParameters of what --imu is given. imu.yaml has the
-// keys of IccSensors.py's IccImu.ImuParameters, which writes such files. Kalibr parses with PyYAML, whose floats have a
-// point, and insists on floats.
+// Source: ethz-asl/kalibr, kalibr_common/ConfigReader.py (at 0b8b9e8; its check of eucm as in chengfzy/kalibr
+// at 31a324b): CameraChainParameters of camchain.yaml and camchain-imucam.yaml, ImuParameters of the argument
+// of --imu. imu.yaml has the keys of IccSensors.py's IccImu.ImuParameters, which writes such files. Kalibr
+// parses with PyYAML, whose floats have a point, and requires floats.
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/foreign/read_numbers.h"
@@ -16,10 +16,10 @@ namespace {
 
 // PyYAML's resolvers: 1e-05 is a string, 5 an int.
 double pythonFloat(const YamlNode& node) {
-  constexpr std::size_t kLongest = 100;  // the library's matching goes as deep as a text is long
+  constexpr std::size_t kLongest = 100;  // the library's matching recurses over a text's length
   static const std::regex kFloat(R"([-+]?([0-9][0-9_]*)?\.[0-9_]*([eE][-+][0-9]+)?)");
   if (node.text().size() > kLongest || !std::regex_match(node.text(), kFloat))
-    throw node.error(fmt::format("'{}' is no float to Kalibr's YAML parser", node.text()));
+    throw node.error(fmt::format("'{}' is not a float for Kalibr's YAML parser", node.text()));
   return node.real();
 }
 
@@ -34,7 +34,7 @@ std::vector<double> pythonNumbers(const YamlNode& list, std::size_t count) {
   std::vector<double> values;
   for (const YamlNode& item : list.items()) values.push_back(pythonNumber(item));
   if (values.size() != count)
-    throw list.error(fmt::format("has {} numbers, Kalibr asks for {}", values.size(), count));
+    throw list.error(fmt::format("has {} numbers, Kalibr requires {}", values.size(), count));
   return values;
 }
 
@@ -42,7 +42,7 @@ Eigen::MatrixXd pythonRows(const YamlNode& node, std::size_t size) {
   std::vector<double> all;
   const std::vector<YamlNode> rows = node.items();
   if (rows.size() != size)
-    throw node.error(fmt::format("has {} rows, Kalibr asks for {}", rows.size(), size));
+    throw node.error(fmt::format("has {} rows, Kalibr requires {}", rows.size(), size));
   for (const YamlNode& row : rows)
     for (const double value : pythonNumbers(row, size)) all.push_back(value);
   return matrixFrom(all, static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(size));
@@ -63,7 +63,7 @@ Model kalibrModelOf(const YamlNode& camera) {
   const std::size_t model = camera["camera_model"].choice({"pinhole", "omni", "eucm", "ds"});
   const std::size_t distortion = camera["distortion_model"].choice({"radtan", "equidistant", "none"});
   const bool fits = model == 0 ? distortion < 2 : model == 1 ? distortion == 0 : distortion == 2;
-  if (!fits) throw camera["distortion_model"].error("does not go with that camera_model");
+  if (!fits) throw camera["distortion_model"].error("does not match the camera_model");
   if (model == 0) return {distortion == 0 ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant, 0};
   if (model == 1) return {CameraModel::OmniRadtan, 1};
   return {model == 2 ? CameraModel::Eucm : CameraModel::DoubleSphere, 2};
@@ -93,7 +93,7 @@ CameraIntrinsics kalibrLensOf(const YamlNode& camera) {
                   {size[0].integer(1, kLargest_px), size[1].integer(1, kLargest_px)});
 }
 
-// `inertial`: also what Kalibr adds in a calibration with IMUs.
+// `inertial`: includes the keys that Kalibr adds in a calibration with IMUs.
 ReadFile readKalibrChain(const std::filesystem::path& path, bool inertial) {
   const YamlNode root = YamlNode::load(path);
   ReadFile file{path, {}, {}, !inertial};
@@ -143,7 +143,7 @@ ReadImu kalibrImuOf(const YamlNode& node) {
   };
   const YamlNode gyroscopes = node["gyroscopes"];
   if (pythonRows(gyroscopes["A"], 3) != Eigen::Matrix3d::Zero())
-    throw gyroscopes["A"].error("tells of a gyroscope that feels forces: Evical's does not");
+    throw gyroscopes["A"].error("is the g-sensitivity of a gyroscope, which is not supported");
   imu.accelerometer = lower(node["accelerometers"]["M"]);
   const YamlNode turn = gyroscopes["C_gyro_i"];
   Eigen::MatrixXd turn_pose = Eigen::MatrixXd::Zero(3, 4);

@@ -1,5 +1,6 @@
-// After MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h (at decef91), src/frontend/CameraParams.cpp (at
-// 2b79043), src/imu-frontend/ImuFrontendParams.cpp (at db6748d) and src/pipeline/Pipeline-definitions.cpp (at 6b8ec96).
+// Source: MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h (at decef91),
+// src/frontend/CameraParams.cpp (at 2b79043), src/imu-frontend/ImuFrontendParams.cpp (at db6748d) and
+// src/pipeline/Pipeline-definitions.cpp (at 6b8ec96).
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -16,7 +17,8 @@ ReadFile readKimeraCamera(const std::filesystem::path& path) {
   const OpencvFile file(path);
   if (file["camera_model"].text() != "pinhole") file["camera_model"].fail("must be pinhole");
   const std::string model = file["distortion_model"].text();
-  if (model != "radtan" && model != "equidistant") file["distortion_model"].fail("is no model that we write");
+  if (model != "radtan" && model != "equidistant")
+    file["distortion_model"].fail("must be radtan or equidistant");
   if (file["rate_hz"].integer() <= 0) file["rate_hz"].fail("must be above 0");
   const std::vector<double> size = file["resolution"].numbers(2);
   const OpencvNode distortion = file["distortion_coefficients"];
@@ -31,7 +33,7 @@ ReadFile readKimeraCamera(const std::filesystem::path& path) {
   return {path, {camera}};
 }
 
-// One shift for all: it goes to the left camera.
+// One shift for all cameras: assigned to the left one.
 ReadFile readKimeraImu(const std::filesystem::path& path, ReadFile& left) {
   const OpencvFile file(path);
   const auto positive = [&](const char* key) {

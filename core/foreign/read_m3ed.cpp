@@ -1,7 +1,7 @@
-// After daniilidis-group/m3ed: insert_calibration of build_system/bag_processing/rosbag2hdf5.py, which writes the groups,
-// and load_remapping of build_system/semantics/internimage.py, which reads them (both at 2b39788). Its users' readers also
-// ask for pinhole and radtan, four coefficients, and the identity at the left event camera. camera_name is Evical's
-// addition.
+// Source: daniilidis-group/m3ed: insert_calibration of build_system/bag_processing/rosbag2hdf5.py, which
+// writes the groups, and load_remapping of build_system/semantics/internimage.py, which reads them (both at
+// 2b39788). Readers of its users also require pinhole and radtan, four coefficients, and the identity at the
+// left event camera. camera_name is Evical's addition.
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
@@ -41,7 +41,7 @@ class Groups {
     const std::optional<Hdf5Dataset> found = datasets_(path);
     if (!found) throw badInput(place(path), "is missing", "Export again");
     const auto* const data = std::get_if<Data>(&found->data);
-    if (data == nullptr || found->shape != shape) throw badInput(place(path), "is of another type or shape");
+    if (data == nullptr || found->shape != shape) throw badInput(place(path), "has another type or shape");
     return *data;
   }
 
@@ -100,7 +100,7 @@ ReadBack readM3ed(const std::filesystem::path& folder) {
     placed.name = camera.name;
     placed.frame_from_camera = imu_from_left * *camera.frame_from_camera;
   }
-  inertial.imus.emplace_back();  // the reference: nothing else is said of it
+  inertial.imus.emplace_back();  // the reference, without further data
   read.files.push_back(inertial);
   return read;
 }

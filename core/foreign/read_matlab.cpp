@@ -1,6 +1,6 @@
-// After MathWorks' documentation of cameraParameters, cameraIntrinsics and stereoParameters, and its
+// Source: MathWorks' documentation of cameraParameters, cameraIntrinsics and stereoParameters, and its
 // stereoParametersFromOpenCV.m (2021-2024): pixels from 1, rotations of row vectors. The numbers are those that the
-// function assigns to fields of rig; what follows makes objects of them.
+// function assigns to fields of rig; the rest of the function creates objects of them.
 #include "core/base/error.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -19,7 +19,7 @@ class Assignments {
   explicit Assignments(const std::filesystem::path& path) : file_(path.string()) {
     const std::string text = textOf(path);
     if (!text.starts_with("function rig = evical_rig()\n") || !text.ends_with("\nend\n"))
-      throw badInput(file_, "is no whole function evical_rig");
+      throw badInput(file_, "is not a complete function evical_rig");
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
       const std::size_t equals = line.find(" = ");
@@ -34,13 +34,13 @@ class Assignments {
   std::string text(const std::string& name) const {
     const std::string& value = at(name);
     if (value.size() < 2 || !value.starts_with('\'') || !value.ends_with('\''))
-      throw badInput(place(name), "is no text");
+      throw badInput(place(name), "is not a text");
     return value.substr(1, value.size() - 2);
   }
 
   Eigen::MatrixXd matrix(const std::string& name, std::size_t rows, std::size_t cols) const {
     const std::string& value = at(name);
-    if (!value.starts_with('[') || !value.ends_with(']')) throw badInput(place(name), "is no matrix");
+    if (!value.starts_with('[') || !value.ends_with(']')) throw badInput(place(name), "is not a matrix");
     std::istringstream lines(value.substr(1, value.size() - 2));
     std::vector<double> all;
     std::size_t count = 0;
@@ -48,7 +48,8 @@ class Assignments {
       const std::size_t before = all.size();
       std::istringstream words(line);
       for (std::string word; std::getline(words, word, ',');) all.push_back(numberOf(word, name));
-      if (all.size() - before != cols) throw badInput(place(name), fmt::format("has no {} columns", cols));
+      if (all.size() - before != cols)
+        throw badInput(place(name), fmt::format("does not have {} columns", cols));
     }
     if (count != rows) throw badInput(place(name), fmt::format("has {} rows, not {}", count, rows));
     return matrixFrom(all, static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
@@ -74,7 +75,7 @@ class Assignments {
     double value = 0.0;
     const auto [last, error] = std::from_chars(begin, end, value);
     if (error != std::errc{} || last != end)
-      throw badInput(place(name), fmt::format("'{}' is no number", word));
+      throw badInput(place(name), fmt::format("'{}' is not a number", word));
     return value;
   }
 
@@ -92,7 +93,7 @@ CameraIntrinsics matlabLensOf(const Assignments& read, const std::string& owner)
   if (model == "KannalaBrandt")
     return lensFrom(CameraModel::PinholeEquidistant, k, read.row(field(".DistortionCoefficients"), 4),
                     resolution);
-  if (model != "RadialTangential") throw badInput(read.place(field(".Model")), "is no model of it");
+  if (model != "RadialTangential") throw badInput(read.place(field(".Model")), "is not a known model");
   const std::vector<double> radial = read.row(field(".RadialDistortion"), 3),
                             tangential = read.row(field(".TangentialDistortion"), 2);
   return lensFrom(CameraModel::PinholeRadtan, k,
@@ -132,7 +133,7 @@ ReadFile pairOf(const Assignments& read, const std::vector<ReadCamera>& cameras,
   const std::vector<double> numbers = read.row("rig.stereo.Cameras", 2);
   const auto camera = [&](double number) {
     if (!(number >= 1.0) || number > static_cast<double>(cameras.size()))
-      throw badInput(read.place("rig.stereo.Cameras"), "names a camera that is not there");
+      throw badInput(read.place("rig.stereo.Cameras"), "names a missing camera");
     ReadCamera named;
     named.name = cameras[static_cast<std::size_t>(number) - 1].name;
     return named;

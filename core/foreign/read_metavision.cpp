@@ -1,5 +1,5 @@
-// The SDK's own loader is closed; its metavision_mono_calibration writes these keys with OpenCV's FileStorage, and OpenCV
-// reads them here.
+// The SDK's loader is closed source; its metavision_mono_calibration writes these keys with OpenCV's
+// FileStorage, and OpenCV reads them here.
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/foreign/opencv_file.h"

@@ -16,9 +16,9 @@ std::string textOf(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 64 << 20;
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
-    throw badInput(file.string(), "does not exist, or is no file");
+    throw badInput(file.string(), "does not exist, or is not a file");
   if (std::filesystem::file_size(file, error) > kLargest_bytes || error)
-    throw badInput(file.string(), "is too large for such a file");
+    throw badInput(file.string(), "is too large for a calibration file");
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   if (!stream || !(content << stream.rdbuf())) throw badInput(file.string(), "cannot be read, or is empty");
@@ -38,11 +38,11 @@ std::vector<std::filesystem::path> filesLike(const std::filesystem::path& folder
 }
 
 RigidTransform rigidFrom(const Eigen::MatrixXd& matrix, const std::string& place) {
-  constexpr double kRotation = 1e-5;  // programs that keep floats write so many digits
+  constexpr double kRotation = 1e-5;  // precision of programs that store floats
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off < kRotation) || rotation.determinant() < 0.0)
-    throw badInput(place, fmt::format("holds no rotation: R R^T is off the identity by {:.2g}", off));
+    throw badInput(place, fmt::format("is not a rotation: R R^T differs from the identity by {:.2g}", off));
   if (matrix.rows() == 4 && matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))
     throw badInput(place, "its last row is not 0 0 0 1");
   return {Eigen::Quaterniond(rotation).normalized(), matrix.topRightCorner<3, 1>()};

@@ -1,4 +1,4 @@
-// What readers of several programs share: numbers, matrices and poses out of YAML.
+// Shared functions of readers: numbers, matrices and poses from YAML.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -13,23 +13,23 @@
 
 namespace evical {
 
-// Throws CalibrationError (BadInput) where it does not exist, or is no plain file of a size that texts have.
+// Throws CalibrationError (BadInput) if it does not exist, or is not a regular file of limited size.
 std::string textOf(const std::filesystem::path& file);
 
-// Files of the folder with this beginning and this ending ("input-", ".yaml"), by name.
+// Files of the folder with this prefix and suffix ("input-", ".yaml"), by name.
 std::vector<std::filesystem::path> filesLike(const std::filesystem::path& folder,
                                              const std::string& beginning, const std::string& ending);
 
-// a_from_b of a matrix of 3 or 4 rows; `place` names file and key. Throws CalibrationError (BadInput) where its rotation
-// is none, by more than 1e-5, or its last row is not 0 0 0 1.
+// a_from_b of a matrix of 3 or 4 rows; `place` names file and key. Throws CalibrationError (BadInput) if its
+// rotation has an error of more than 1e-5, or its last row is not 0 0 0 1.
 RigidTransform rigidFrom(const Eigen::MatrixXd& matrix, const std::string& place);
 
 Eigen::MatrixXd matrixFrom(const std::vector<double>& row_major, Eigen::Index rows, Eigen::Index cols);
 
-// A list of rows; throws where there are not as many, or one has not as many numbers.
+// A list of rows; throws if the number of rows, or of a row's numbers, is different.
 Eigen::MatrixXd rowsOf(const YamlNode& node, std::size_t rows, std::size_t cols);
 
-// A map of rows, cols and data, as ROS and SVO have them; throws where it has another shape.
+// A map of rows, cols and data, as in ROS and SVO; throws if it has another shape.
 Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols);
 
 // fx fy cx cy, and distortion in the order of CameraIntrinsics.

@@ -1,4 +1,5 @@
-// After NumPy 1.24.2 (lib/format.py, lib/npyio.py) and Python's zipfile; the keys are those of docs/exports.md.
+// Source: NumPy 1.24.2 (lib/format.py, lib/npyio.py) and Python's zipfile; the keys are those of
+// docs/exports.md.
 #include "core/foreign/npz_arrays.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -22,12 +23,12 @@ CameraIntrinsics numpyLensOf(const NpzArrays& arrays, const std::string& sensor)
   const std::string name = arrays.text(sensor + "model");
   const auto model = std::find(kCameraModelNames.begin(), kCameraModelNames.end(), name);
   if (model == kCameraModelNames.end())
-    throw badInput(arrays.place(sensor + "model"), "is none of the models");
+    throw badInput(arrays.place(sensor + "model"), "is not a known model");
   const Eigen::Matrix3d k = arrays.matrix(sensor + "K", 3, 3);
   const std::vector<double> size = arrays.numbers(sensor + "resolution"), d = arrays.numbers(sensor + "D");
   const auto kind = static_cast<CameraModel>(std::distance(kCameraModelNames.begin(), model));
   if (size.size() != 2 || d.size() != static_cast<std::size_t>(coefficientCount(kind)))
-    throw badInput(arrays.place(sensor + "D"), "or resolution has not as many numbers as it should");
+    throw badInput(arrays.place(sensor + "D"), "or resolution has a wrong number of elements");
   return lensFrom(kind, {k(0, 0), k(1, 1), k(0, 2), k(1, 2)}, d,
                   {static_cast<int>(size[0]), static_cast<int>(size[1])});
 }

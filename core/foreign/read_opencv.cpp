@@ -1,4 +1,4 @@
-// After opencv/opencv, samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp and
+// Source: opencv/opencv, samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp and
 // samples/cpp/stereo_calib.cpp (at aa2dde3), and opencv/opencv_contrib, modules/ccalib/samples/omni_calibration.cpp:
 // matrices are read with >> cv::Mat.
 #include "core/base/error.h"
@@ -20,7 +20,7 @@
 namespace evical {
 namespace {
 
-// A column of 5 for cv::projectPoints, of 4 for cv::fisheye's and, beside xi, for cv::omnidir's.
+// A column of 5 for cv::projectPoints, of 4 for cv::fisheye's and, in addition to xi, for cv::omnidir's.
 CameraIntrinsics opencvLensOf(const OpencvFile& file, const char* k_key, const char* d_key,
                               const char* xi_key, Resolution size) {
   const Eigen::Matrix3d k = file[k_key].matrix(3, 3, CV_64F);
@@ -44,7 +44,7 @@ ReadCamera opencvCameraOf(const OpencvFile& file, const std::string& name) {
   camera.lens = opencvLensOf(file, "camera_matrix", "distortion_coefficients", "xi",
                              {file["image_width"].integer(), file["image_height"].integer()});
   if ((file["fisheye_model"].integer() != 0) != (camera.lens->model == CameraModel::PinholeEquidistant))
-    file["fisheye_model"].fail("does not go with the distortion_coefficients");
+    file["fisheye_model"].fail("does not match the distortion_coefficients");
   file["avg_reprojection_error"].number();
   camera.frame_from_camera = poseAt(file, "reference_from_camera");
   camera.time_offset_s = file["time_offset_s"].number();
@@ -74,7 +74,7 @@ PairAsRead readOpencvPair(const std::filesystem::path& folder) {
                         rigidFrom(pose, ex["R"].place())};
   for (const char* const key : {"E", "F"}) ex[key].matrix(3, 3, CV_64F);
   ex["Q"].matrix(4, 4, CV_64F);
-  // Rectified, the cameras differ by the baseline along x and by nothing else.
+  // After rectification, the cameras differ only by the baseline along x.
   constexpr double kSame = 1e-9;
   const Eigen::Matrix3d r1 = ex["R1"].matrix(3, 3, CV_64F), r2 = ex["R2"].matrix(3, 3, CV_64F);
   const Eigen::MatrixXd p2 = ex["P2"].matrix(3, 4, CV_64F);
@@ -82,7 +82,7 @@ PairAsRead readOpencvPair(const std::filesystem::path& folder) {
   ex["P1"].matrix(3, 4, CV_64F);
   if ((r2 * pair.right_from_left.rotation * r1.transpose() - Eigen::Matrix3d::Identity()).norm() > kSame ||
       (baseline - Eigen::Vector3d(p2(0, 3) / p2(0, 0), 0.0, 0.0)).norm() > kSame)
-    ex["R"].fail("is not what R1, R2 and P2 rectify");
+    ex["R"].fail("is inconsistent with R1, R2 and P2");
   return pair;
 }
 
@@ -174,7 +174,7 @@ CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, st
   return lensFrom(CameraModel::PinholeRadtan, intrinsics, d, size);
 }
 
-// `root`: its flag and size count for cameras that have none of their own.
+// `root`: provides flag and size for cameras without their own.
 void addOpencvCameras(const OpencvNode& root, const OpencvNode& node, const std::string& name,
                       ReadFile& file) {
   for (const OpencvKeys& keys : kOpencvKeys) {

@@ -1,6 +1,6 @@
-// After rpng/open_vins: ov_core/src/utils/opencv_yaml_parse.h (at 14211e2: YamlParser) and
+// Source: rpng/open_vins: ov_core/src/utils/opencv_yaml_parse.h (at 14211e2: YamlParser) and
 // ov_msckf/src/core/VioManagerOptions.h (at 051f60c: print_and_load_noise, print_and_load_state). It parses with OpenCV
-// and goes on without what it does not find, so that a missing key is as bad as a wrong one.
+// and continues without missing keys, so that a missing key is as bad as a wrong one.
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -17,7 +17,7 @@ ReadFile readOpenvinsChain(const std::filesystem::path& path) {
   for (std::size_t i = 0; i == 0 || chain.has(fmt::format("cam{}", i)); ++i) {
     const OpencvNode node = chain[fmt::format("cam{}", i)];
     ReadCamera camera;
-    // Whatever is not called equidistant is radtan to it.
+    // The program treats any other name than equidistant as radtan.
     const std::string model = node["distortion_model"].text();
     if (model != "equidistant" && model != "radtan")
       node["distortion_model"].fail("must be radtan or equidistant");
@@ -38,7 +38,7 @@ ReadFile readOpenvinsChain(const std::filesystem::path& path) {
   return file;
 }
 
-// Of what is not the model's triangle it takes nothing.
+// It ignores elements outside of the model's triangle.
 Eigen::Matrix3d triangleOf(const Eigen::Matrix3d& inverse_of, bool upper) {
   const Eigen::Matrix3d whole = inverse_of.inverse();
   if (upper) return whole.triangularView<Eigen::Upper>();
@@ -58,7 +58,7 @@ ReadFile readOpenvinsImu(const std::filesystem::path& path) {
     node["model"].fail("must be calibrated, kalibr or rpng");
   const Eigen::Matrix3d to_acc = node["R_IMUtoACC"].rows(3, 3), to_gyro = node["R_IMUtoGYRO"].rows(3, 3);
   if (node["Tg"].rows(3, 3) != Eigen::Matrix3d::Zero())
-    node["Tg"].fail("tells of a gyroscope that feels forces");
+    node["Tg"].fail("is the g-sensitivity of a gyroscope, which is not supported");
   const bool upper = model == "rpng";
   imu.accelerometer = triangleOf(node["Ta"].rows(3, 3), upper).inverse() * to_acc;
   imu.gyroscope = triangleOf(node["Tw"].rows(3, 3), upper).inverse() * to_gyro;

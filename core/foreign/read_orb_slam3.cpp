@@ -1,6 +1,7 @@
-// After UZ-SLAMLab/ORB_SLAM3: src/Settings.cc (at 1464d8f). It keeps floats, takes matrices of floats only, and ends
-// where a key is missing or an int is a real number. Of two pinholes it rectifies both with the first one's distortion
-// (Settings.h); what is read here is each camera's own, and the exporter says what that costs.
+// Source: UZ-SLAMLab/ORB_SLAM3: src/Settings.cc (at 1464d8f). It stores floats, only accepts matrices of
+// floats, and ends if a key is missing or an int is a real number. It rectifies both of two pinholes with the
+// first one's distortion (Settings.h); here each camera's own distortion is read, and the exporter states the
+// resulting error.
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
@@ -31,7 +32,7 @@ CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, const std::string& camer
                     orbSlam3NumbersOf(file, camera, {"k1", "k2", "k3", "k4"}), size);
   }
   if (type != "PinHole") file["Camera.type"].fail("must be PinHole or KannalaBrandt8");
-  // Settings of images without distortion may leave it out.
+  // Settings of images without distortion may omit it.
   std::vector<double> distortion(4);
   if (file.has(camera + ".k1")) distortion = orbSlam3NumbersOf(file, camera, {"k1", "k2", "p1", "p2"});
   const std::string third = camera + ".k3";
@@ -94,7 +95,7 @@ ReadFile readOrbSlam3File(const std::filesystem::path& path) {
     if (file.has(std::string(side) + ".K")) read.cameras.push_back(orbSlam2CameraOf(file, side));
   if (!read.cameras.empty()) return read;  // then Camera.* is the rectified camera
   const Resolution size = file.has("Camera.width") ? orbSlam3SizeOf(file) : Resolution{};
-  if (file.has("IMU.NoiseGyro")) read.imus.emplace_back();  // a note says that it is not imported
+  if (file.has("IMU.NoiseGyro")) read.imus.emplace_back();  // a note states that it is not imported
   for (const char* camera : {"Camera", "Camera1", "Camera2"}) {
     if (!file.has(std::string(camera) + ".fx")) continue;
     ReadCamera& found = read.cameras.emplace_back();
@@ -116,7 +117,7 @@ ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   if (file["File.version"].text() != "1.0")
     file["File.version"].fail("must be 1.0, or older settings are expected");
   askOrbSlam3ForOwnKeys(file);
-  // Which of its modes there are data for.
+  // Checks the modes for which the file has data.
   const bool stereo = file.has("Camera2.fx"), inertial = file.has("IMU.NoiseGyro");
   settings.about_first_camera = !inertial;
   const Resolution size = orbSlam3SizeOf(file);

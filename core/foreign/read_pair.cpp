@@ -12,7 +12,7 @@ bool sameNumbers(CameraIntrinsics a, const CameraIntrinsics& b) {
   return a == b;
 }
 
-// Metres and radians alike: it is to tell cameras apart, not to judge them.
+// Adds metres and radians: it only distinguishes cameras.
 double distance(const RigidTransform& a, const RigidTransform& b) {
   return (a.translation_m - b.translation_m).norm() + a.rotation.angularDistance(b.rotation);
 }
@@ -45,7 +45,7 @@ ReadFile pairAmong(std::span<const ReadCamera> cameras, const PairAsRead& pair,
       best_right = &right;
     }
   if (best_left == nullptr)
-    throw badInput(path.string(), "left or right has another lens than any camera's own file");
+    throw badInput(path.string(), "left or right has a lens that no camera's own file has");
   ReadFile file{
       path,
       {placed(*best_left, pair.left, {}), placed(*best_right, pair.right, inverse(pair.right_from_left))}};

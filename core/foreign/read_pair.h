@@ -1,4 +1,4 @@
-// Files of a stereo pair that say left and right, but not which camera of the rig either is.
+// Files of a stereo pair that name left and right, but not the cameras of the rig.
 #pragma once
 
 #include "core/foreign/read_calibration.h"
@@ -11,12 +11,13 @@
 namespace evical {
 
 struct PairAsRead {
-  CameraIntrinsics left, right;  // resolutions are not looked at
+  CameraIntrinsics left, right;  // resolutions are not compared
   RigidTransform right_from_left;
 };
 
-// Of `cameras`, read from their own files, those two that have the pair's lenses; where several have the same numbers,
-// those whose own poses come nearest. Throws CalibrationError (BadInput) where there are none; `path` is the pair's file.
+// Those two of `cameras`, read from their own files, that have the pair's lenses; if several have the same
+// numbers, those with the closest poses. Throws CalibrationError (BadInput) if there are none; `path` is the
+// pair's file.
 ReadFile pairAmong(std::span<const ReadCamera> cameras, const PairAsRead& pair,
                    const std::filesystem::path& path);
 

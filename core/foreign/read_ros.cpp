@@ -1,7 +1,8 @@
-// After ros-perception/image_common, camera_calibration_parsers/src/parse_yml.cpp (at 00bed63: readCalibrationYml);
-// ros2/geometry2, tf2_ros/src/static_transform_broadcaster_program.cpp (at 04e7636: parse_args), which launch files of
-// ROS 2 start, too; ros/geometry2's program of that name, to which ROS 1 hands nine words; and ros/urdfdom,
-// urdf_parser/src/model.cpp and joint.cpp (at 02a883b: parseURDF, parseJoint).
+// Source: ros-perception/image_common, camera_calibration_parsers/src/parse_yml.cpp (at 00bed63:
+// readCalibrationYml); ros2/geometry2, tf2_ros/src/static_transform_broadcaster_program.cpp (at 04e7636:
+// parse_args), which launch files of ROS 2 also start; ros/geometry2's program of that name, which ROS 1
+// calls with nine arguments; and ros/urdfdom, urdf_parser/src/model.cpp and joint.cpp (at 02a883b: parseURDF,
+// parseJoint).
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/base/number.h"
@@ -29,15 +30,15 @@ ReadFile readCameraInfo(const std::filesystem::path& path) {
   const Eigen::Matrix3d k = matrixOf(root["camera_matrix"], 3, 3);
   const Eigen::Matrix3d rectification = matrixOf(root["rectification_matrix"], 3, 3);
   const Eigen::MatrixXd projection = matrixOf(root["projection_matrix"], 3, 4);
-  // image_geometry takes the pixels of one camera for those of its own frame.
+  // image_geometry interprets the pixels of a single camera in that camera's frame.
   if (rectification != Eigen::Matrix3d::Identity())
     throw root["rectification_matrix"].error("must be the identity");
-  if (projection.leftCols<3>() != k) throw root["projection_matrix"].error("must hold the camera_matrix");
+  if (projection.leftCols<3>() != k) throw root["projection_matrix"].error("must contain the camera_matrix");
   // plumb_bob has 5 coefficients in image_geometry, equidistant 4.
   const bool radtan = root["distortion_model"].choice({"plumb_bob", "equidistant"}) == 0;
   const YamlNode node = root["distortion_coefficients"];
   const std::size_t count = static_cast<std::size_t>(node["rows"].integer(1, 1) * node["cols"].integer(4, 5));
-  if (count != (radtan ? 5U : 4U)) throw node["cols"].error("does not go with the distortion_model");
+  if (count != (radtan ? 5U : 4U)) throw node["cols"].error("does not match the distortion_model");
   ReadCamera camera;
   camera.name = root["camera_name"].text();
   camera.lens = lensFrom(radtan ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
@@ -45,7 +46,7 @@ ReadFile readCameraInfo(const std::filesystem::path& path) {
   return {path, {camera}};
 }
 
-// Places what a frame's name tells in the frame of `parent`.
+// Pose of the frame `child` in the frame `parent`.
 struct Placed {
   std::string parent, child;
   RigidTransform parent_from_child;
@@ -64,7 +65,7 @@ ReadFile filePlacing(const std::filesystem::path& path, const std::vector<Placed
   for (const Placed& placed : all) {
     if (placed.parent != all.front().parent)
       throw badInput(path.string(),
-                     fmt::format("{} and {} are placed in two frames", all.front().child, placed.child));
+                     fmt::format("{} and {} have different parent frames", all.front().child, placed.child));
     if (&placed == &all.front() && placed.parent.ends_with(kOptical)) {
       file.about_first_camera = true;
       camera(placed.parent, {});
@@ -88,18 +89,19 @@ ReadFile filePlacing(const std::filesystem::path& path, const std::vector<Placed
 
 double numberOf(const std::string& text, const std::string& place) {
   const std::optional<double> value = realFrom(text);
-  if (!value) throw badInput(place, fmt::format("'{}' is no number", text));
+  if (!value) throw badInput(place, fmt::format("'{}' is not a number", text));
   return *value;
 }
 
-// One call of static_transform_publisher; words before it are ros2 run's.
+// One call of static_transform_publisher; the words before it are those of ros2 run.
 Placed placedBy(const std::vector<std::string>& words, const std::string& place) {
   std::map<std::string, std::string> values{{"--frame-id", ""}, {"--child-frame-id", ""}};
   constexpr std::array kNumbers{"--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw"};
   for (const char* number : kNumbers) values[number];
   for (std::size_t i = 0; i < words.size(); i += 2) {
     const auto found = values.find(words[i]);
-    if (found == values.end()) throw badInput(place, fmt::format("'{}' is no option of it", words[i]));
+    if (found == values.end())
+      throw badInput(place, fmt::format("'{}' is not an option of static_transform_publisher", words[i]));
     if (i + 1 == words.size()) throw badInput(place, fmt::format("'{}' has no value", words[i]));
     found->second = words[i + 1];
   }
@@ -113,7 +115,7 @@ Placed placedBy(const std::vector<std::string>& words, const std::string& place)
                               {number("--x"), number("--y"), number("--z")}};
   constexpr double kUnit = 1e-9;
   if (std::abs(placed.parent_from_child.rotation.norm() - 1.0) > kUnit)
-    throw badInput(place, "has no unit quaternion");
+    throw badInput(place, "does not have a unit quaternion");
   return placed;
 }
 
@@ -126,7 +128,7 @@ ReadFile readTransforms(const std::filesystem::path& path) {
     const std::string place = fmt::format("{} (line {})", path.string(), number);
     if (line.empty() || line.starts_with('#') || line == "wait") continue;
     if (!line.starts_with(program) || !line.ends_with(" &"))
-      throw badInput(place, "is no call of static_transform_publisher in the background");
+      throw badInput(place, "is not a call of static_transform_publisher in the background");
     std::istringstream arguments(line.substr(program.size(), line.size() - program.size() - 2));
     std::vector<std::string> words;
     for (std::string word; arguments >> word;) words.push_back(word);
@@ -136,7 +138,7 @@ ReadFile readTransforms(const std::filesystem::path& path) {
   return filePlacing(path, all);
 }
 
-// ROS 1 takes numbers and frames by their order.
+// ROS 1 identifies numbers and frames by their order.
 ReadFile readLaunch(const std::filesystem::path& path) {
   const XmlElement launch = readXml(path);
   if (launch.name != "launch") throw badInput(path.string(), "has no launch element");
@@ -146,13 +148,13 @@ ReadFile readLaunch(const std::filesystem::path& path) {
     if (node->attribute("pkg") != "tf2_ros" || node->attribute("type") != "static_transform_publisher")
       throw badInput(node->place, "starts another program");
     if (!names.insert(node->attribute("name")).second)
-      throw badInput(node->place, "has a name that is there twice");
+      throw badInput(node->place, "has a name that occurs twice");
     std::istringstream arguments(node->attribute("args"));
     std::vector<std::string> words;
     for (std::string word; arguments >> word;) words.push_back(word);
     constexpr std::array kOrder{
         "--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw", "--frame-id", "--child-frame-id"};
-    if (words.size() != kOrder.size()) throw badInput(node->place, "has no nine args");
+    if (words.size() != kOrder.size()) throw badInput(node->place, "does not have nine args");
     std::vector<std::string> named;
     for (std::size_t i = 0; i < words.size(); ++i) {
       named.emplace_back(kOrder[i]);
@@ -164,16 +166,16 @@ ReadFile readLaunch(const std::filesystem::path& path) {
   return filePlacing(path, all);
 }
 
-// Of the Python of a launch file the arguments of its nodes.
+// Reads the arguments of the nodes in the Python code of a launch file.
 ReadFile readPythonLaunch(const std::filesystem::path& path) {
   const std::string text = textOf(path), opening = "arguments=['", closing = "'])";
   if (text.find("def generate_launch_description():\n") == std::string::npos || !text.ends_with("\n    ])\n"))
-    throw badInput(path.string(), "is no whole launch description");
+    throw badInput(path.string(), "is not a complete launch description");
   std::vector<Placed> all;
   for (std::size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at)) {
     at += opening.size();
     const std::size_t end = text.find(closing, at);
-    if (end == std::string::npos) throw badInput(path.string(), "has arguments without an end");
+    if (end == std::string::npos) throw badInput(path.string(), "has an unterminated list of arguments");
     std::vector<std::string> words;
     const std::string list = text.substr(at, end - at), between = "', '";
     for (std::size_t word = 0; word <= list.size();) {
@@ -207,14 +209,14 @@ RigidTransform originOf(const XmlElement& joint) {
 
 ReadFile readUrdf(const std::filesystem::path& path) {
   const XmlElement robot = readXml(path);
-  if (robot.name != "robot") throw badInput(path.string(), "could not find the robot element");
+  if (robot.name != "robot") throw badInput(path.string(), "has no robot element");
   robot.attribute("name");
   std::set<std::string> links, joints, children;
   for (const XmlElement* link : robot.all("link"))
-    if (!links.insert(link->attribute("name")).second) throw badInput(link->place, "is there twice");
+    if (!links.insert(link->attribute("name")).second) throw badInput(link->place, "occurs twice");
   std::vector<Placed> all;
   for (const XmlElement* joint : robot.all("joint")) {
-    if (!joints.insert(joint->attribute("name")).second) throw badInput(joint->place, "is there twice");
+    if (!joints.insert(joint->attribute("name")).second) throw badInput(joint->place, "occurs twice");
     if (joint->attribute("type") != "fixed") throw badInput(joint->place, "must be fixed");
     Placed placed{joint->one("parent").attribute("link"), joint->one("child").attribute("link"),
                   originOf(*joint)};
@@ -223,8 +225,7 @@ ReadFile readUrdf(const std::filesystem::path& path) {
     if (!children.insert(placed.child).second) throw badInput(joint->place, "its child has two parents");
     all.push_back(placed);
   }
-  if (links.size() != children.size() + 1)
-    throw badInput(robot.place, "its links hang together at no single root");
+  if (links.size() != children.size() + 1) throw badInput(robot.place, "its links do not have a single root");
   return filePlacing(path, all);
 }
 

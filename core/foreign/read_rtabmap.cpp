@@ -1,5 +1,5 @@
-// After introlab/rtabmap, corelib/src/CameraModel.cpp (at 191e165: CameraModel::load), corelib/src/StereoCameraModel.cpp
-// (at 4d44b61: load) and corelib/src/Transform.cpp (fromString).
+// Source: introlab/rtabmap, corelib/src/CameraModel.cpp (at 191e165: CameraModel::load),
+// corelib/src/StereoCameraModel.cpp (at 4d44b61: load) and corelib/src/Transform.cpp (fromString).
 #include "core/base/error.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
@@ -16,7 +16,7 @@
 namespace evical {
 namespace {
 
-// Each stops the program (UASSERT) where it has another shape.
+// Other shapes stop the program (UASSERT).
 Eigen::MatrixXd matrixAt(const OpencvFile& file, const char* key, int rows, int cols) {
   const OpencvNode node = file[key];
   if (node["rows"].integer() != rows || node["cols"].integer() != cols)
@@ -81,7 +81,7 @@ PairAsRead readRtabmapPair(const std::filesystem::path& folder) {
   const Eigen::MatrixXd pose = (Eigen::MatrixXd(3, 4) << rotation, translation).finished();
   const PairAsRead pair{*left.camera.lens, *right.camera.lens,
                         rigidFrom(pose, file["rotation_matrix"].place())};
-  // It goes by R and P: rectified, the cameras must differ by the baseline along x and by nothing else.
+  // It uses R and P: after rectification, the cameras must differ only by the baseline along x.
   constexpr double kSame = 1e-9;
   const Eigen::Matrix3d level_from_level =
       right.rectification * pair.right_from_left.rotation * left.rectification.transpose();
@@ -89,7 +89,7 @@ PairAsRead readRtabmapPair(const std::filesystem::path& folder) {
   const double by_projection_m = right.projection(0, 3) / right.projection(0, 0);
   if ((level_from_level - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kSame ||
       (baseline - Eigen::Vector3d(by_projection_m, 0.0, 0.0)).norm() > kSame)
-    file["rotation_matrix"].fail("is not what the cameras' R and P rectify");
+    file["rotation_matrix"].fail("is inconsistent with the cameras' R and P");
   return pair;
 }
 
@@ -100,7 +100,7 @@ ReadBack readRtabmap(const std::filesystem::path& folder) {
   ReadBack read;
   for (const std::filesystem::path& path : filesLike(folder, "", ".yaml")) {
     cameras.push_back(readRtabmapCamera(path).camera);
-    if (path.stem() != cameras.back().name) throw badInput(path.string(), "has another camera_name");
+    if (path.stem() != cameras.back().name) throw badInput(path.string(), "differs from its camera_name");
     read.files.push_back({path, {cameras.back()}});
   }
   if (cameras.empty()) throw badInput(folder.string(), "has no camera");
@@ -117,7 +117,7 @@ ReadBack readRtabmap(const std::filesystem::path& folder) {
   const std::filesystem::path stereo = folder / "stereo";
   if (std::filesystem::exists(stereo, ignored))
     read.files.push_back(pairAmong(cameras, readRtabmapPair(stereo), stereo / "stereo_pose.yaml"));
-  // Poses to the base become poses to the reference IMU, or in the first camera.
+  // Converts poses in the base to poses in the reference IMU, or in the first camera.
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     ReadFile& file = read.files[i];
     file.cameras[0].frame_from_camera = reference_from_base * *cameras[i].frame_from_camera;

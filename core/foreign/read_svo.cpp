@@ -1,4 +1,4 @@
-// After uzh-rpg/rpg_svo_pro_open: vikit/vikit_cameras/src/ncamera_yaml_serialization.cpp and
+// Source: uzh-rpg/rpg_svo_pro_open: vikit/vikit_cameras/src/ncamera_yaml_serialization.cpp and
 // camera_yaml_serialization.cpp (at 372ab39), and imu_handler.cpp (loadCalibrationFromFile, loadInitializationFromFile);
 // uzh-rpg/rpg_ultimate_slam_open: common/ze_cameras/src/camera_yaml_serialization.cpp and camera_rig.cpp (at cf674f5),
 // flags of vio_ceres_backend_interface.cpp, frontend_base.cpp and data_provider_factory.cpp. Both read the same rig.
@@ -50,7 +50,7 @@ Eigen::Vector3d svoVectorOf(const YamlNode& node) {
   return {three[0], three[1], three[2]};
 }
 
-// Of a --flagfile; gflags ends the program where it does not know a flag.
+// Flags of a --flagfile; gflags ends the program for unknown flags.
 std::map<std::string, double> flagsOf(const std::filesystem::path& path) {
   std::map<std::string, double> flags;
   for (const char* known : {"timeshift_cam_imu", "swe_imu_rate", "gyro_noise_density", "acc_noise_density",
@@ -64,14 +64,15 @@ std::map<std::string, double> flagsOf(const std::filesystem::path& path) {
     const std::string place = fmt::format("{} (line {})", path.string(), number);
     if (line.empty() || line.starts_with('#')) continue;
     const std::size_t equals = line.find('=');
-    if (!line.starts_with("--") || equals == std::string::npos) throw badInput(place, "is no --flag=value");
+    if (!line.starts_with("--") || equals == std::string::npos) throw badInput(place, "is not --flag=value");
     const auto found = flags.find(line.substr(2, equals - 2));
     if (found == flags.end())
-      throw badInput(place, fmt::format("{} is no flag of it", line.substr(0, equals)));
+      throw badInput(place, fmt::format("{} is not a flag of the program", line.substr(0, equals)));
     const char* const begin = line.data() + equals + 1;
     const char* const end = line.data() + line.size();
     const auto [stop, error] = std::from_chars(begin, end, found->second);
-    if (error != std::errc{} || stop != end) throw badInput(place, fmt::format("'{}' is no number", begin));
+    if (error != std::errc{} || stop != end)
+      throw badInput(place, fmt::format("'{}' is not a number", begin));
   }
   for (const auto& [name, value] : flags)
     if (std::isnan(value)) throw badInput(path.string(), fmt::format("--{} is missing", name));
@@ -121,10 +122,11 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
   const std::vector<YamlNode> cameras = root["cameras"].items();
   const auto isDvs = [](const YamlNode& camera) { return camera["camera"]["label"].text() == "dvs"; };
   if (std::none_of(cameras.begin(), cameras.end(), isDvs))
-    throw cameras.front()["camera"]["label"].error("must be dvs, or that of another camera must be");
+    throw cameras.front()["camera"]["label"].error("must be dvs, unless another camera has this label");
   ReadFile file{folder / "imu.flags"};
   std::map<std::string, double> flags = flagsOf(file.path);
-  // camera_imu_synchronizer_base.cpp shifts images only; which camera takes them is a topic's matter, and said in a comment.
+  // camera_imu_synchronizer_base.cpp shifts images only; a topic determines whose images, which a comment
+  // states.
   const std::string text = textOf(file.path);
   constexpr std::string_view kImages = "the images of ";
   if (const std::size_t at = text.find(kImages); at != std::string::npos) {
@@ -134,7 +136,7 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
     images.time_offset_s = flags["timeshift_cam_imu"];
     file.cameras = {images};
   } else if (flags["timeshift_cam_imu"] != 0.0) {
-    throw badInput(file.path.string(), "timeshift_cam_imu moves images, and the rig has no camera of images");
+    throw badInput(file.path.string(), "timeshift_cam_imu shifts images, but the rig has no frame camera");
   }
   ReadImu imu;
   imu.noise = {flags["gyro_noise_density"], flags["acc_noise_density"], flags["vio_ceres_sigma_gyro_drift"],

@@ -1,6 +1,7 @@
-// After HKUST-Aerial-Robotics/VINS-Fusion: vins_estimator/src/estimator/parameters.cpp (at 3d6cfb6: readParameters) and
-// camera_models/src/camera_models/CameraFactory.cc (at 939f012: generateCameraFromYamlFile), which leaves the keys to
-// PinholeCamera, EquidistantCamera and CataCamera. It takes 0 for a missing key, without a word.
+// Source: HKUST-Aerial-Robotics/VINS-Fusion: vins_estimator/src/estimator/parameters.cpp (at 3d6cfb6:
+// readParameters) and camera_models/src/camera_models/CameraFactory.cc (at 939f012:
+// generateCameraFromYamlFile), which leaves the keys to PinholeCamera, EquidistantCamera and CataCamera. It
+// reads a missing key as 0 without a warning.
 #include "core/base/error.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
@@ -20,7 +21,7 @@ std::vector<double> vinsFusionNumbersOf(const OpencvNode& node, std::initializer
   return values;
 }
 
-// It does not look whether letters are large or small.
+// The comparison ignores case.
 std::string vinsFusionModelOf(const OpencvFile& file) {
   std::string name = file["model_type"].text();
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
@@ -56,7 +57,7 @@ ReadFile readVinsFusionCamera(const std::filesystem::path& path, std::size_t num
   const OpencvFile file(path);
   file["camera_name"].text();
   ReadFile read{path};
-  read.cameras.resize(number + 1);  // cameras before it are in files of their own
+  read.cameras.resize(number + 1);  // earlier cameras are in separate files
   read.cameras[number] = vinsFusionCameraOf(file);
   return read;
 }
@@ -95,7 +96,7 @@ ReadBack readVinsFusion(const std::filesystem::path& folder) {
   askVinsFusionForOwnKeys(file);
   if (file["imu"].integer() != 1) file["imu"].fail("must be 1");
   if (file["estimate_extrinsic"].integer() != 0)
-    file["estimate_extrinsic"].fail("must be 0, or the poses are changed");
+    file["estimate_extrinsic"].fail("must be 0; otherwise the program changes the poses");
   const int count = file["num_of_cam"].integer();
   if (count != 1 && count != 2) file["num_of_cam"].fail("must be 1 or 2");
   ReadFile vins{path, {}, {vinsFusionImuOf(file)}};
@@ -114,7 +115,7 @@ ReadBack readVinsFusion(const std::filesystem::path& folder) {
   const CameraIntrinsics& first = *read.files.front().cameras.front().lens;
   if (file["image_width"].integer() != first.resolution_px.width_px ||
       file["image_height"].integer() != first.resolution_px.height_px)
-    file["image_width"].fail("is not that of the first camera");
+    file["image_width"].fail("differs from that of the first camera");
   read.files.push_back(std::move(vins));
   return read;
 }

@@ -1,5 +1,5 @@
-// One function a target, for the table of targets: reads the files in the target's folder as the program does. Throws
-// CalibrationError (BadInput) that names file and key where the program would not take them.
+// One reader per target, for the table of targets: reads the files in the target's folder like the program.
+// Throws CalibrationError (BadInput) that names file and key if the program would refuse them.
 #pragma once
 
 #include "core/foreign/read_calibration.h"
@@ -30,7 +30,7 @@ ReadBack readEvimo2(const std::filesystem::path& folder);
 ReadBack readTumVie(const std::filesystem::path& folder);
 ReadBack readNumpy(const std::filesystem::path& folder);
 
-// Cameras of a single file, for import. Keys that only the other program needs may be missing.
+// Cameras of a single file, for import. Keys that only the other program requires may be missing.
 ReadFile readBasaltFile(const std::filesystem::path& file);
 ReadFile readDvProcessingFile(const std::filesystem::path& file);
 ReadFile readVinsCameraFile(const std::filesystem::path& file);

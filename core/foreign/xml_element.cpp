@@ -20,14 +20,14 @@ class XmlParser {
     skipBetween();
     XmlElement root = element("", 0);
     skipBetween();
-    if (at_ < text_.size()) fail("goes on after the root element's end");
+    if (at_ < text_.size()) fail("continues after the root element's end");
     return root;
   }
 
  private:
   [[noreturn]] void fail(const std::string& problem) const {
     const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    throw badInput(fmt::format("{} (line {})", file_, lines + 1), "is no XML: " + problem);
+    throw badInput(fmt::format("{} (line {})", file_, lines + 1), "is not XML: " + problem);
   }
 
   bool startsWith(std::string_view what) const {
@@ -48,7 +48,7 @@ class XmlParser {
     while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
   }
 
-  // What follows up to `end`, and beyond it.
+  // Text up to `end`, which is skipped.
   std::string until(std::string_view end) {
     const std::size_t found = text_.find(end, at_);
     if (found == std::string::npos) fail(fmt::format("'{}' is missing", end));
@@ -57,7 +57,7 @@ class XmlParser {
     return taken;
   }
 
-  // Blanks, comments and the declaration.
+  // Skips blanks, comments and the declaration.
   void skipBetween() {
     for (skipBlanks();; skipBlanks()) {
       if (take("<!--")) {
@@ -87,13 +87,13 @@ class XmlParser {
       const char quote = at_ < text_.size() ? text_[at_++] : ' ';
       if (quote != '"' && quote != '\'') fail("an attribute has no quotes");
       if (!element.attributes.emplace(name, until(std::string_view(&quote, 1))).second)
-        fail(fmt::format("{} is there twice", name));
+        fail(fmt::format("{} occurs twice", name));
     }
   }
 
   XmlElement element(const std::string& above, int depth) {
     constexpr int kDeepest = 100;
-    if (depth > kDeepest) fail("is too deep");
+    if (depth > kDeepest) fail("is nested too deeply");
     expect("<");
     XmlElement element;
     element.name = word();

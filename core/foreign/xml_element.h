@@ -1,4 +1,4 @@
-// As much of XML as robot descriptions need: elements, their attributes, comments, no text.
+// The part of XML that robot descriptions need: elements, their attributes and comments; no text.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@ struct XmlElement {
   std::string place;  // "rig.urdf: robot.joint (line 12)"
 
   std::vector<const XmlElement*> all(const std::string& name) const;  // children of this name
-  // Both throw CalibrationError (BadInput) where there is none.
+  // Both throw CalibrationError (BadInput) if it is missing.
   const XmlElement& one(const std::string& name) const;
   const std::string& attribute(const std::string& name) const;
 };
 
-// The document's one root. Throws CalibrationError (BadInput) with the line of what is no XML.
+// The document's root. Throws CalibrationError (BadInput) with the line of the error.
 XmlElement readXml(const std::filesystem::path& file);
 
 }  // namespace evical

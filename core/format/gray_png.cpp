@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-constexpr std::uint8_t kUp = 2;  // rows as differences to those above, which are mostly the same
+constexpr std::uint8_t kUp = 2;  // rows as differences to the previous ones, which are mostly equal
 constexpr std::size_t kChunk_bytes = 1 << 20;
 
 std::string bigEndian(std::uint32_t value) {
@@ -30,8 +30,7 @@ struct GrayPng::Stream {
 GrayPng::GrayPng(int width_px, int height_px, double resolution_dpi)
     : stream_(std::make_unique<Stream>()), above_(static_cast<std::size_t>(width_px), 0) {
   if (deflateInit(&stream_->z, Z_DEFAULT_COMPRESSION) != Z_OK)
-    throw calibrationFailed("PNG", "cannot be compressed: there is no memory left",
-                            "Use fewer dots per inch");
+    throw calibrationFailed("PNG", "cannot be compressed: out of memory", "Use fewer dots per inch");
   file_ = std::string("\x89PNG\r\n\x1A\n", 8);
   const std::string gray8 = {8, 0, 0, 0, 0};
   addChunk("IHDR", bigEndian(static_cast<std::uint32_t>(width_px)) +

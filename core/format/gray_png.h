@@ -1,5 +1,5 @@
-// A PNG of grey pixels that states how many there are to an inch, written row by row: only its compressed bytes are
-// held.
+// PNG of grey pixels with its resolution in pixels per inch, written row by row: only the compressed bytes
+// are stored.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class GrayPng {
   GrayPng& operator=(const GrayPng&) = delete;
 
   void addRow(std::span<const std::uint8_t> shades);
-  std::string finish();  // the file, once all rows are there
+  std::string finish();  // the file, after all rows
 
  private:
   void addChunk(const char* type, const std::string& data);

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::size_t kStep_bytes = 1 << 20;  // of a file in memory
 
-// Closes itself.
+// Handle that closes itself.
 using Handle = std::unique_ptr<const hid_t, std::function<void(const hid_t*)>>;
 
 Handle held(hid_t id, herr_t (*close)(hid_t)) {
-  if (id < 0) throw calibrationFailed("HDF5", "the file cannot be made");
+  if (id < 0) throw calibrationFailed("HDF5", "the file cannot be created");
   return {new hid_t(id), [close](const hid_t* each) {
             close(*each);
             delete each;
@@ -27,10 +27,10 @@ Handle held(hid_t id, herr_t (*close)(hid_t)) {
 }
 
 void require(herr_t outcome) {
-  if (outcome < 0) throw calibrationFailed("HDF5", "the file cannot be made");
+  if (outcome < 0) throw calibrationFailed("HDF5", "the file cannot be created");
 }
 
-// As h5py has str: of any length, UTF-8.
+// Type of h5py's str: any length, UTF-8.
 Handle textType() {
   Handle type = held(H5Tcopy(H5T_C_S1), H5Tclose);
   require(H5Tset_size(*type, H5T_VARIABLE));
@@ -87,14 +87,14 @@ void writeComment(hid_t file, const std::string& comment) {
   require(H5Awrite(*attribute, *type, static_cast<const void*>(&characters)));
 }
 
-// As where recordings are read: on damaged ones the library complains when it is closed at the program's end, and whoever
-// calls it first says that it is not.
+// Required as for recordings: after damaged files the library prints errors when it is closed at the
+// program's end. The first caller disables this.
 void closeNothingAtExit() {
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);
 }
 
-// One thread in the library at a time, for not every build of it is safe for several; and it prints no errors.
+// One thread in the library at a time, since some builds are not thread-safe; suppresses its error output.
 class InLibrary {
  public:
   InLibrary() : lock_(mutex()) {
@@ -117,19 +117,19 @@ class InLibrary {
   void* data_ = nullptr;
 };
 
-// A name for each: those of one name are one file to the library.
+// Unique name, since the library treats equal names as one file.
 std::string nameInMemory() {
   static int made = 0;
   return "in memory " + std::to_string(++made);
 }
 
-// What a file claims is not trusted: it has few numbers, or holds as many as it claims.
+// Checks a file's claim: it has few numbers, or stores as many as it claims.
 std::size_t sizeOf(hid_t dataset, hid_t type, const std::vector<hsize_t>& shape, const std::string& place) {
   constexpr hsize_t kFew = 100'000;
   const hsize_t most = std::max(kFew, H5Dget_storage_size(dataset) / std::max<hsize_t>(H5Tget_size(type), 1));
   hsize_t size = 1;
   for (const hsize_t each : shape) {
-    if (each == 0 || each > most / size) throw badInput(place, "is not of the size that it claims");
+    if (each == 0 || each > most / size) throw badInput(place, "does not have the size that it claims");
     size *= each;
   }
   return static_cast<std::size_t>(size);
@@ -139,7 +139,7 @@ std::vector<std::string> textsOf(hid_t dataset, hid_t type, std::size_t size, co
   std::vector<char*> characters(size, nullptr);
   if (H5Tis_variable_str(type) <= 0 ||
       H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<void*>(characters.data())) < 0)
-    throw badInput(place, "is no text of any length");
+    throw badInput(place, "is not a text of variable length");
   std::vector<std::string> texts;
   for (char* const each : characters) {
     texts.emplace_back(each == nullptr ? "" : each);
@@ -182,17 +182,17 @@ Hdf5Dataset datasetOf(hid_t dataset, const std::string& path, const std::string&
   return found;
 }
 
-// Closed as it is used: by one thread at a time.
+// Opened and closed by one thread at a time.
 class OpenedFile {
  public:
   OpenedFile(std::string_view content, const std::string& file) : file_(file) {
     const InLibrary library;
     const Handle access = held(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     require(H5Pset_fapl_core(*access, kStep_bytes, false));
-    // The library asks for what it may change, and copies it.
+    // The library copies the content; its parameter is not const.
     require(H5Pset_file_image(*access, const_cast<char*>(content.data()), content.size()));
     const hid_t opened = H5Fopen(nameInMemory().c_str(), H5F_ACC_RDONLY, *access);
-    if (opened < 0) throw badInput(file, "is no HDF5 file, or is cut off", "Export again");
+    if (opened < 0) throw badInput(file, "is not an HDF5 file, or is cut off", "Export again");
     handle_ = held(opened, H5Fclose);
   }
   ~OpenedFile() {
@@ -226,7 +226,7 @@ void writeHdf5(const std::function<void(const Hdf5Sink& add)>& fill, const std::
   fill([&](const Hdf5Dataset& dataset) { writeDataset(*file, dataset); });
   writeComment(*file, comment);
   require(H5Fflush(*file, H5F_SCOPE_GLOBAL));
-  void* memory = nullptr;  // where it is, not copied: it may be large
+  void* memory = nullptr;  // not copied, since it may be large
   require(H5Fget_vfd_handle(*file, H5P_DEFAULT, &memory));
   const ssize_t size = H5Fget_file_image(*file, nullptr, 0);
   require(size > 0 ? 0 : -1);

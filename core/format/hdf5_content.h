@@ -1,4 +1,4 @@
-// HDF5 files in memory: datasets one by one, by their paths.
+// HDF5 files in memory, as datasets with paths.
 #pragma once
 
 #include "core/base/text_sink.h"
@@ -14,27 +14,28 @@
 namespace evical {
 
 struct Hdf5Dataset {
-  std::string path;                     // "/prophesee/left/calib/intrinsics"; groups above it are made
+  std::string path;                     // "/prophesee/left/calib/intrinsics"; parent groups are created
   std::vector<std::size_t> shape = {};  // of numbers or texts, row by row; empty: one
-  // Text as h5py writes str; one text has no shape.
+  // Text as h5py's str; a single text has no shape.
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::string, std::vector<std::string>> data;
-  bool narrow = false;  // integers are written in as few bytes as hold all of them
+  bool narrow = false;  // integers are written in the fewest possible bytes
 
   bool operator==(const Hdf5Dataset&) const = default;
 };
 
 using Hdf5Sink = std::function<void(const Hdf5Dataset& dataset)>;
-// Nothing where there is no dataset of this path.
+// nullopt without a dataset of this path.
 using Hdf5Source = std::function<std::optional<Hdf5Dataset>(const std::string& path)>;
 
-// Hands on, in one piece, a file with what `fill` adds, and with an attribute `comment` of the root. The same datasets are the
-// same bytes: it bears no time. Throws CalibrationError (CalibrationFailed) where the library cannot.
+// Calls its argument with the bytes of a file with the datasets of `fill`, and an attribute `comment` of the
+// root. Equal datasets give equal bytes: the file has no time. Throws CalibrationError (CalibrationFailed) if
+// the library fails.
 void writeHdf5(const std::function<void(const Hdf5Sink& add)>& fill, const std::string& comment,
                const TextSink& sink);
 
-// The datasets of a file's bytes. Throws CalibrationError (BadInput), which names `file`, where these are no HDF5 file; the
-// source throws it where a dataset is neither float64 nor integers nor text. Bytes that may be damaged need a check sum
-// before they come here: the library writes past its memory on some of them.
+// The datasets of a file's bytes. Throws CalibrationError (BadInput), which names `file`, if these are not an
+// HDF5 file; the source throws it if a dataset is neither float64 nor integers nor text. Verify a checksum
+// first if the bytes may be damaged: the library writes beyond its memory on some of them.
 Hdf5Source hdf5Source(std::string_view content, const std::string& file);
 
 }  // namespace evical

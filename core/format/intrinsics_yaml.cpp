@@ -23,7 +23,7 @@
 namespace evical {
 namespace {
 
-// Enough for the largest sensors to come, and small enough that width * height fits an int.
+// Larger than any expected sensor, and small enough that width * height fits an int.
 constexpr int kMostPixels = 30000;
 
 Eigen::Vector2d pair(const YamlNode& node) {
@@ -45,7 +45,7 @@ void setDistortion(const YamlNode& node, CameraIntrinsics& camera) {
     const auto names = distortionNames(camera.model);
     throw node.error(
         fmt::format("has {} coefficients", values.size()),
-        radtan ? "Give k1, k2, p1, p2 and if you like k3"
+        radtan ? "Give k1, k2, p1, p2 and optionally k3"
                : fmt::format("Give {}",
                              fmt::join(names.begin(), names.begin() + static_cast<int>(count), ", ")));
   }
@@ -64,7 +64,7 @@ CameraIntrinsics readOwn(const YamlNode& map) {
   return camera;
 }
 
-// The numbers before the focal lengths are the model's own: [xi alpha], [alpha beta], [xi], and none.
+// The numbers before the focal lengths belong to the model: [xi alpha], [alpha beta], [xi], or none.
 CameraIntrinsics kalibrLens(const YamlNode& node, CameraModel model, std::size_t own) {
   const std::vector<double> values = node.reals(own + 4);
   CameraIntrinsics camera;
@@ -83,7 +83,7 @@ CameraIntrinsics readKalibrOmni(const YamlNode& map) {
   return camera;
 }
 
-// The first of these keys that the map has. Without any, the error names the first one.
+// The first of these keys in the map. If all are missing, the error names the first one.
 YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
   for (const char* const key : keys)
     if (const auto node = map.find(key)) return *node;
@@ -92,7 +92,7 @@ YamlNode anyOf(const YamlNode& map, std::initializer_list<const char*> keys) {
 
 CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
   if (const YamlNode model = map["distortion_model"]; model.text() == "fov")
-    throw model.error("is the fov model, which Evical does not have",
+    throw model.error("is the fov model, which is not supported",
                       "Calibrate this camera again with radtan or equidistant");
   const std::size_t distortion =
       map["distortion_model"].choice({"radtan", "equidistant", "none", "radial-tangential"});
@@ -130,7 +130,7 @@ void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
   const std::vector<double> all = node.reals();
   if (camera.model != CameraModel::PinholeRadtan || all.size() <= kRadtan) return setDistortion(node, camera);
   if (std::any_of(all.begin() + kRadtan, all.end(), [](double each) { return each != 0.0; }))
-    throw node.error("are those of a rational lens, and Evical has three radial coefficients at most",
+    throw node.error("are those of a rational lens model; at most three radial coefficients are supported",
                      "Calibrate this camera again, or export it with k4, k5 and k6 fixed at zero");
   std::copy_n(all.begin(), kRadtan, camera.distortion.begin());
 }
@@ -139,7 +139,7 @@ void setMatrix(const YamlNode& node, CameraIntrinsics& camera) {
   constexpr double kNoSkew_px = 1e-3;
   const std::vector<double> k = node.reals(9);
   if (std::abs(k[1]) > kNoSkew_px)
-    throw node.error(fmt::format("has a skew of {:.4g} px, which no lens of Evical has", k[1]),
+    throw node.error(fmt::format("has a skew of {:.4g} px, which is not supported", k[1]),
                      "Calibrate this camera again without skew");
   camera.focal_length_px = {k[0], k[4]};
   camera.principal_point_px = {k[2], k[5]};
@@ -150,14 +150,15 @@ CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
   const auto name = map.has("distortion_model") ? map.find("distortion_model") : map.find("camera_model");
   if (!name) {
     if (distortion.reals().size() >= 5) return CameraModel::PinholeRadtan;
-    throw distortion.error("may be of either model, and distortion_model is missing",
+    throw distortion.error("fits two models, and distortion_model is missing",
                            "Add distortion_model: plumb_bob, or equidistant");
   }
   const std::size_t model = name->choice({"plumb_bob", "rational_polynomial", "equidistant", "fisheye"});
   return model < 2 ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant;
 }
 
-// sensor_msgs/CameraInfo as camera_calibration_parsers writes it, or as `rostopic echo` or `ros2 topic echo` prints it.
+// sensor_msgs/CameraInfo as written by camera_calibration_parsers, or printed by `rostopic echo` or `ros2
+// topic echo`.
 CameraIntrinsics readCameraInfo(const YamlNode& map) {
   const bool parsers = map.has("camera_matrix");
   const YamlNode distortion = numbersOf(anyOf(map, {"distortion_coefficients", "D", "d"}));
@@ -194,7 +195,7 @@ CameraIntrinsics readOak(const YamlNode& root) {
   return camera;
 }
 
-// eKalibr's: k1 k2 k3 t1 t2, where we and OpenCV have k3 last.
+// eKalibr's order k1 k2 k3 t1 t2; Evical and OpenCV have k3 last.
 CameraIntrinsics readEkalibr(const YamlNode& map) {
   CameraIntrinsics camera;
   camera.model =
@@ -228,12 +229,12 @@ YamlNode pickCamera(const YamlNode& cameras, const std::string& name, const std:
     if (namesStream(cameras[key], stream)) return cameras[key];
   if (names.size() == 1) return cameras[names[0]];
   throw cameras.error(
-      fmt::format("has several cameras, none called '{}' or with rostopic '{}'", name, stream),
-      fmt::format("There are: {}", joined(names)));
+      fmt::format("has several cameras, but none with the name '{}' or rostopic '{}'", name, stream),
+      fmt::format("Use one of: {}", joined(names)));
 }
 
-// Of `count` numbers from the first on; the other ones that a lens could have correlate with nothing. Files round: what
-// is no matrix of correlations but for that is one.
+// Correlation of `count` numbers from the first one on; other intrinsics are uncorrelated. Accepts matrices
+// that are only invalid because of rounding.
 IntrinsicsMatrix readCorrelation(const YamlNode& node, Eigen::Index first, Eigen::Index count) {
   const std::vector<YamlNode> rows = node.items();
   if (static_cast<Eigen::Index>(rows.size()) < first + count)
@@ -249,12 +250,12 @@ IntrinsicsMatrix readCorrelation(const YamlNode& node, Eigen::Index first, Eigen
   const IntrinsicsMatrix lifted = matrix + kRounded * IntrinsicsMatrix::Identity();
   if (!matrix.isApprox(matrix.transpose(), kRounded) ||
       (matrix.diagonal().array() - 1.0).abs().maxCoeff() > kRounded || lifted.llt().info() != Eigen::Success)
-    throw node.error("is no matrix of correlations",
-                     "It is symmetric, with 1 on its diagonal and nothing beyond 1");
+    throw node.error("is not a correlation matrix",
+                     "Give a symmetric matrix with 1 on the diagonal and other values from -1 to 1");
   return matrix;
 }
 
-// Of a result's, which are between all quantities.
+// Correlation in a result, whose matrix covers all quantities.
 std::optional<IntrinsicsMatrix> correlationInResult(const YamlNode& root, const std::string& camera,
                                                     int count) {
   const auto uncertainty = root.find("uncertainty");
@@ -268,7 +269,7 @@ std::optional<IntrinsicsMatrix> correlationInResult(const YamlNode& root, const 
   return readCorrelation((*uncertainty)["correlation"], first - columns.begin(), count);
 }
 
-// `beside`: the map that has intrinsics, and sigmas where they are known.
+// Reads the map of `intrinsics`, with sigmas if known.
 KnownIntrinsics withSigmas(const YamlNode& beside) {
   KnownIntrinsics known{readIntrinsics(beside["intrinsics"]), {}};
   if (const auto sigmas = beside.find("intrinsics_std"))
@@ -276,19 +277,19 @@ KnownIntrinsics withSigmas(const YamlNode& beside) {
   return known;
 }
 
-// Keys of a lens that are read, or that hold nothing worth a note.
+// Keys of a lens that are read, or that need no note.
 constexpr std::string_view kLensKeys[] = {
     "camera_model", "intrinsics", "distortion_model", "distortion_coeffs", "resolution", "rostopic",
     "cam_overlaps", "image_width", "image_height", "width", "height", "camera_name", "camera_matrix",
     "distortion_coefficients", "K", "k", "D", "d", "projection_matrix", "P", "p", "rectification_matrix", "R",
     "r", "header", "binning_x", "binning_y", "roi",
-    // said by who imports them
+    // reported by the import
     "T_cam_imu", "T_cn_cnm1", "timeshift_cam_imu",
-    // ours, eKalibr's and an OAK's
+    // keys of Evical, eKalibr and OAK
     "model", "resolution_px", "focal_length_px", "principal_point_px", "distortion", "Intrinsics",
     "intrinsics_std", "correlation", "cameraData"};
 
-// ost.txt in the keys of camera_info: headings, each with rows of numbers below.
+// Converts ost.txt to the keys of camera_info: headings, each followed by rows of numbers.
 std::string cameraInfoOf(const std::string& text) {
   std::map<std::string, std::string> numbers;
   std::istringstream lines(text);
@@ -344,7 +345,7 @@ CameraIntrinsics readIntrinsics(const YamlNode& map) {
   if (camera.resolution_px.known()) {
     validate(camera, map.place());
   } else {
-    CameraIntrinsics checked = camera;  // all but the resolution, which the recording will give
+    CameraIntrinsics checked = camera;  // except the resolution, which the recording gives
     checked.resolution_px = {kMostPixels, kMostPixels};
     validate(checked, map.place());
   }
@@ -386,7 +387,7 @@ std::vector<std::string> leftOutOf(const YamlNode& lens) {
   if (p.size() == 12 && p[0] != 0.0 &&
       (std::abs(p[0] - k[0]) > kSame_px || std::abs(p[5] - k[4]) > kSame_px ||
        std::abs(p[2] - k[2]) > kSame_px || std::abs(p[6] - k[5]) > kSame_px || std::abs(p[3]) > kSame_px))
-    notes.emplace_back("its projection matrix is of rectified images and is left out");
+    notes.emplace_back("its projection matrix is for rectified images and is left out");
   return notes;
 }
 
@@ -394,7 +395,7 @@ KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std
                                     const std::string& stream) {
   const YamlNode root = loadIntrinsics(file);
   if (!root.isMap())
-    throw root.error("holds no camera intrinsics", "Give intrinsics as Evical, Kalibr or ROS write them");
+    throw root.error("has no camera intrinsics", "Give intrinsics in the format of Evical, Kalibr or ROS");
   if (root.has("evical_result")) {
     const YamlNode camera = pickCamera(root["cameras"], camera_name, stream);
     KnownIntrinsics known = withSigmas(camera);
@@ -418,7 +419,7 @@ LensUncertainty readLensUncertainty(const YamlNode& sigmas, const std::optional<
     const YamlNode node = sigmas[key];
     const std::vector<double> values = node.reals(numbers);
     if (*std::min_element(values.begin(), values.end()) < 0.0)
-      throw node.error("has a sigma below 0", "0 stands for what is not known any better than usual");
+      throw node.error("has a sigma below 0", "Use 0 for the default sigma");
     std::copy(values.begin(), values.end(), uncertainty.std.begin() + at);
   };
   take("focal_length_px", 2, 0);

@@ -37,7 +37,7 @@ std::string bytesOf(const Numbers& numbers) {
   return bytes;
 }
 
-// The code points; what is no UTF-8 is a replacement character, as in Python.
+// Code points; invalid UTF-8 becomes a replacement character, as in Python.
 std::u32string codePoints(const std::string& text) {
   std::u32string points;
   for (std::size_t i = 0; i < text.size();) {
@@ -54,7 +54,7 @@ std::u32string codePoints(const std::string& text) {
   return points;
 }
 
-// NumPy's str arrays are UTF-32, all of the longest one's length.
+// NumPy's str arrays are UTF-32, padded to the longest text.
 std::string npyTexts(const std::vector<std::string>& texts, const std::string& shape) {
   std::vector<std::u32string> all;
   std::size_t longest = 1;
@@ -73,7 +73,8 @@ struct ZipEntry {
   std::uint32_t crc, size, place;
 };
 
-// What a file's own header and its entry in the directory share: from the version that is needed to the name's length.
+// Common part of a file's own header and its entry in the directory: from the required version to the name's
+// length.
 void appendCommon(std::string& bytes, const ZipEntry& entry) {
   constexpr std::uint16_t kVersion = 20, kNoFlags = 0, kStored = 0, kMidnight = 0, kFirstOf1980 = 0x21;
   for (const std::uint16_t field : {kVersion, kNoFlags, kStored, kMidnight, kFirstOf1980})

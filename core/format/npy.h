@@ -1,4 +1,4 @@
-// NumPy's files: an array as .npy (version 1.0, little endian), several of them as .npz.
+// NumPy files: an array as .npy (version 1.0, little endian), several of them as .npz.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,11 +19,11 @@ std::string npyNumber(double number);
 std::string npyText(const std::string& text);
 
 struct NpzArray {
-  std::string name;  // as numpy.load has it: no ".npy"
+  std::string name;  // as in numpy.load, without ".npy"
   std::string npy;
 };
 
-// A ZIP file of them, stored without compression. The same arrays are the same bytes: files bear no time.
+// A ZIP file of arrays, without compression. Equal arrays give equal bytes: files have no time.
 std::string npz(std::span<const NpzArray> arrays);
 
 }  // namespace evical

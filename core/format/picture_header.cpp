@@ -50,12 +50,12 @@ std::optional<Resolution> pngSize(Bytes bytes) {
 std::optional<Resolution> bmpSize(Bytes bytes) {
   constexpr std::size_t kWidthAt = 18, kHeightAt = 22;
   if (!has(bytes, kHeightAt, 4)) return std::nullopt;
-  // Of a picture that is stored from the top the height is negative.
+  // The height is negative if rows are stored from the top.
   const std::uint32_t height = littleEndian(bytes, kHeightAt, 4);
   return sizeOf(littleEndian(bytes, kWidthAt, 4), height > 0x7FFFFFFFU ? 0U - height : height);
 }
 
-// Where the segment begins that begins a frame, which holds the size.
+// Begin of the segment that starts a frame, which has the size.
 std::optional<std::size_t> jpegFrame(Bytes bytes) {
   std::size_t at = 2;
   while (has(bytes, at, 9)) {

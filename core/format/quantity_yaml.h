@@ -13,12 +13,12 @@
 
 namespace evical {
 
-// Lines "key: value", some of them in sections. A section stands where the first of its lines was added.
+// Lines "key: value", some of them in sections. A section is placed where its first line was added.
 class YamlSections {
  public:
-  // Without a section's name: among the sections.
+  // Lines without a section's name are placed among the sections.
   void add(const std::string& section, const std::string& key, const std::string& value);
-  std::string text(std::size_t indent) const;  // the lines of sections are two blanks further in
+  std::string text(std::size_t indent) const;  // lines of sections are indented by two more blanks
 
  private:
   struct Section {
@@ -28,7 +28,7 @@ class YamlSections {
   std::vector<Section> sections_;
 };
 
-// Numbers that read back the same; and rounded, as is enough for sigmas. Both know .nan and .inf.
+// Numbers that read back exactly, and rounded ones for sigmas. Both write .nan and .inf.
 std::string exactYaml(double value);
 std::string roundedYaml(double value);
 
@@ -39,13 +39,13 @@ std::string quantityYaml(const Eigen::Vector3d& value, NumberFormat format);
 std::string quantityYaml(const Eigen::Quaterniond& value, NumberFormat format);  // x, y, z, w
 std::string quantityYaml(const Eigen::Matrix3d& value, NumberFormat format);
 
-// What a sigma is multiplied by where it is written: of rotations they are in degrees.
+// Factor of a written sigma: those of rotations are in degrees.
 double yamlSigmaFactor(const QuantityInfo& info);
 
-// Where the quantity's keys are; nothing if the section is not there.
+// The map with the quantity's keys; nullopt if the section is missing.
 std::optional<YamlNode> quantitySection(const YamlNode& sensor, const QuantityInfo& info);
 
-// What may stand in a sensor's map, sections by their names, or in one of its sections.
+// Allowed keys of a sensor's map, including sections by their names, or of one of its sections.
 template <class Rows>
 std::vector<std::string> quantityKeys(const Rows& rows, const std::string& section = {}) {
   std::vector<std::string> keys;

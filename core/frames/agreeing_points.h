@@ -1,4 +1,4 @@
-// Points that a decoder read off a picture, of which some may be false.
+// Outlier rejection for points that a decoder read from a picture.
 #pragma once
 
 #include "core/frames/plane_map.h"
@@ -14,11 +14,11 @@ struct ReadPoint {
   Eigen::Vector2d on_board_m = Eigen::Vector2d::Zero(), at_px = Eigen::Vector2d::Zero();
 };
 
-// Those that one plane explains within `tolerance_px`, which must leave room for what a lens bends; none where
-// fewer than half do.
+// The points that fit one plane within `tolerance_px`, which must allow for lens distortion; empty if fewer
+// than half fit.
 std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, double tolerance_px);
 
-// The map that points make; nothing where they are too few. `step_m` as PlaneMap has it.
+// The map from points; empty if there are too few. `step_m` as for PlaneMap.
 std::optional<PlaneMap> mapOf(const std::vector<ReadPoint>& points, double step_m);
 
 }  // namespace evical

@@ -9,12 +9,12 @@ namespace {
 
 constexpr double kBin_s = 1e-9 * static_cast<double>(kBlinkBin_ns);
 
-// Spread over the sensor.
+// Selects pixels spread over the sensor.
 bool isNth(const Event& event, std::uint32_t n) {
   return (event.x_px + 7u * event.y_px) % n == 0;
 }
 
-// From lag 0 to the last, each by its own number of products; 1 at lag 0.
+// Autocorrelation for lag 0 to the last, each divided by its number of products; 1 at lag 0.
 std::vector<double> autocorrelation(std::span<const float> signal, std::size_t lags) {
   double mean = 0.0;
   for (const float value : signal) mean += value;
@@ -32,7 +32,7 @@ std::vector<double> autocorrelation(std::span<const float> signal, std::size_t l
   return correlation;
 }
 
-// Where a parabola through a peak and its neighbours is highest, in lags.
+// Position of a peak's maximum, in lags, from a parabola through the peak and its neighbours.
 double summitOf(const std::vector<double>& correlation, std::size_t lag) {
   if (lag + 1 >= correlation.size()) return static_cast<double>(lag);
   const double before = correlation[lag - 1], at = correlation[lag], after = correlation[lag + 1];
@@ -43,7 +43,8 @@ double summitOf(const std::vector<double>& correlation, std::size_t lag) {
 }  // namespace
 
 std::optional<Blink> findBlink(std::span<const float> balance, const BlinkOptions& options) {
-  // A slow change of everything decays without a valley; multiples of the period are as high as the period.
+  // The peak must follow a valley, which a slow change of everything does not have; multiples of the period
+  // have equal peaks.
   constexpr double kValley = 0.3, kNearlyHighest = 0.8;
   const auto longest = static_cast<std::size_t>(1.0 / (options.least_hz * kBin_s)) + 2;
   const std::size_t lags = std::min(longest, balance.size() / 2 + 1);
@@ -137,7 +138,7 @@ void BlinkNotice::weigh(const Event& event) {
   balance_[bin] += event.brighter ? 1.0f : -1.0f;
 }
 
-// Twice in each look; what is older than a look is left behind.
+// Twice per interval; older events are dropped.
 void BlinkNotice::judge() {
   const auto look = static_cast<std::size_t>(options_.look_s / kBin_s);
   std::optional<Blink> found = findBlink(balance_, options_);

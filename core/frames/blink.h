@@ -1,4 +1,4 @@
-// A light that goes on and off, as an event camera sees it (docs/maths.md, 7.5).
+// Detection of a blinking light in events (docs/maths.md, 7.5).
 #pragma once
 
 #include "core/data/event.h"
@@ -15,20 +15,20 @@ namespace evical {
 struct Blink {
   double period_s = 0.0;
   double peak = 0.0;   // of the autocorrelation, 1 at most
-  double share = 0.0;  // of events in pixels that brighten and darken in every period
+  double share = 0.0;  // share of events from pixels that brighten and darken in every period
 };
 
 inline constexpr std::int64_t kBlinkBin_ns = 1'000'000;
 
-// The first clear peak of the autocorrelation; `balance` is brightening less darkening events in bins of
-// kBlinkBin_ns. Nothing where there is none, or where fewer than two periods are seen.
+// The first clear peak of the autocorrelation; `balance` is the number of ON minus OFF events in bins of
+// kBlinkBin_ns. Empty if there is no peak, or if the data cover fewer than two periods.
 std::optional<Blink> findBlink(std::span<const float> balance, const BlinkOptions& options);
 
-// Of events in order of time, inside the resolution. 0 where they do not reach over two periods.
+// Blink::share of events in order of time, inside the resolution. 0 if they cover fewer than two periods.
 double shareOfBlinkingPixels(EventSpan events, Resolution resolution_px, double period_s);
 
-// Looks for a blink in events as they come. It keeps them for who wants to go on from them; where they are too many, those
-// of a part of the pixels, which tell as well whether pixels blink.
+// Detects a blink in a stream of events. Keeps the events for further processing; if there are too many, only
+// those of a subset of the pixels, which suffices to detect blinking.
 class BlinkNotice {
  public:
   static constexpr std::size_t kMostKept = 4'000'000;
@@ -36,15 +36,15 @@ class BlinkNotice {
   BlinkNotice(Resolution resolution_px, const BlinkOptions& options, std::size_t most_kept = kMostKept)
       : resolution_px_(resolution_px), options_(options), most_kept_(most_kept) {}
 
-  // Events in order of time, inside the resolution. Does nothing once a blink is noticed.
+  // Events in order of time, inside the resolution. Does nothing after a blink is detected.
   void add(EventSpan events);
-  // No more will come: judges by what there is.
+  // End of the events: decides with the available ones.
   void finish();
 
   const std::optional<Blink>& blink() const { return blink_; }
-  // The clearest that was seen, whether it was enough or not.
+  // The clearest blink so far, even if it was rejected.
   const Blink& clearest() const { return clearest_; }
-  // Since about a look before the blink was noticed; none where only a part of them was kept.
+  // Events from about one interval before the detection; empty if only a subset was kept.
   std::vector<Event> takeEvents();
 
  private:
@@ -62,7 +62,7 @@ class BlinkNotice {
   std::int64_t origin_ns_ = 0;
   std::size_t judge_at_ = 0;  // bins
   std::size_t most_kept_;
-  std::uint32_t every_nth_ = 1;  // pixel, of which events are kept
+  std::uint32_t every_nth_ = 1;  // subset of pixels whose events are kept
   std::vector<Event> kept_;
 };
 

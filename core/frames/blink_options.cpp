@@ -7,23 +7,23 @@ namespace {
 
 constexpr std::tuple kBlinkFields{
     Field{"least_hz", &BlinkOptions::least_hz, 5.0, within(1.0, 100.0), "Hz",
-          "A screen that flashes more slowly is not noticed."},
+          "Lowest flash rate that is detected."},
     Field{"most_hz", &BlinkOptions::most_hz, 500.0, within(10.0, 500.0), "Hz",
-          "Nor is one that flashes faster."},
-    Field{"least_peak", &BlinkOptions::least_peak, 0.4, within(0.05, 0.99), "",
-          "Autocorrelation of brightening less darkening events, in bins of 1 ms, that a blink reaches one "
-          "period "
-          "later."},
+          "Highest flash rate that is detected."},
+    Field{
+        "least_peak", &BlinkOptions::least_peak, 0.4, within(0.05, 0.99), "",
+        "Smallest autocorrelation of ON minus OFF events after one period, in bins of 1 ms, that counts as a "
+        "blink."},
     Field{"least_share", &BlinkOptions::least_share, 0.3, within(0.01, 1.0), "",
-          "Share of the events that must come from pixels which brighten and darken in every period."},
+          "Smallest share of events from pixels that brighten and darken in every period."},
     Field{"look_s", &BlinkOptions::look_s, 1.0, within(0.1, 10.0), "s",
-          "So much of the recording is looked at together to notice a blink."},
+          "Length of the intervals of the recording in which a blink is searched."},
     Field{"largest_move_px", &BlinkOptions::largest_move_px, 0.3, within(0.01, 10.0), "px",
-          "Flashes are added up while the board moves by less."},
+          "Largest movement of the board while flashes are summed to one picture."},
     Field{"still_px", &BlinkOptions::still_px, 0.5, within(0.0, 100.0), "px",
-          "Views of a board that has moved by less since are one view: they have their errors in common."},
+          "Largest movement of the board between views that are merged, since their errors are correlated."},
     Field{"smallest_side_px", &BlinkOptions::smallest_side_px, 512, within(64, 4096), "px",
-          "Pictures of the flashes are enlarged until their longer side has so many pixels."}};
+          "Smallest longer side of the pictures of flashes; smaller pictures are enlarged."}};
 constexpr auto kBlinkDefaults = defaultsOf<BlinkOptions, kBlinkFields>();
 
 }  // namespace

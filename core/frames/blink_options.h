@@ -1,4 +1,4 @@
-// How boards are searched whose light blinks.
+// Options of the detection of blinking boards.
 #pragma once
 
 #include "core/base/option_struct.h"

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLargestBlur_px = 1.0;  // within the shortest part of a slot
+constexpr double kLargestBlur_px = 1.0;  // motion within the shortest part of a slot
 
 double middle_s(const FlashCounts& counts, std::int64_t start_ns) {
   return 0.5 * (secondsSince(start_ns, counts.begin_ns) + secondsSince(start_ns, counts.end_ns));
@@ -61,7 +61,7 @@ void BlinkTracker::gather(EventSpan events) {
   for (const Event& event : events) gathering_->add(event);
 }
 
-// How far the board moves within the slot tells how many of its flashes may be added up.
+// The board's motion within the slot determines how many flashes may be summed.
 void BlinkTracker::see(const FlashSlot& slot) {
   const FlashCounts whole = sumOf(slot);
   WindowReport window;
@@ -83,8 +83,8 @@ void BlinkTracker::see(const FlashSlot& slot) {
   keep(std::move(found), window);
 }
 
-// Near where it was last: a search that takes a tenth of the time. Nothing where that is not nearly all of it, or the last
-// search has found less than others.
+// Measures the board near its last place: ten times faster than a search. Empty if this does not find nearly
+// all points, or if the last search found fewer points than others.
 FoundPoints BlinkTracker::follow(const FlashCounts& whole, double time_s) {
   constexpr double kLongestGap_s = 0.5, kNearlyAll = 0.9, kToNeighbours = 0.4;
   const bool search = seen_.empty() || time_s - seen_.back().time_s > kLongestGap_s ||
@@ -149,17 +149,19 @@ BoardObservations BlinkTracker::finish() {
     const Blink& clearest = notice_.clearest();
     throw calibrationFailed(
         camera_,
-        clearest.peak > 0.0
-            ? fmt::format("nothing blinks: the clearest rhythm, of {:.0f} Hz, has a correlation of {:.2f} "
-                          "and {:.0f} % of "
-                          "the events; {:.2f} and {:.0f} % are needed",
-                          1.0 / clearest.period_s, clearest.peak, 100.0 * clearest.share, options_.least_peak,
-                          100.0 * options_.least_share)
-            : fmt::format("nothing blinks between {:.0f} and {:.0f} Hz", options_.least_hz, options_.most_hz),
-        "Check that the screen flashes (a page that does is made " + howTo(HowTo::MakeFlashingPage) +
-            "), that it fills much of the image, and that the camera stands still; a board that does not "
-            "flash has to "
-            "move, and the session must not say that it flashes");
+        clearest.peak > 0.0 ? fmt::format("no blinking board detected: the clearest rhythm, of {:.0f} Hz, "
+                                          "has a correlation of {:.2f} "
+                                          "and {:.0f} % of "
+                                          "the events, but {:.2f} and {:.0f} % are required",
+                                          1.0 / clearest.period_s, clearest.peak, 100.0 * clearest.share,
+                                          options_.least_peak, 100.0 * options_.least_share)
+                            : fmt::format("no blinking between {:.0f} and {:.0f} Hz detected",
+                                          options_.least_hz, options_.most_hz),
+        "Check that the screen flashes (a page that flashes is made " + howTo(HowTo::MakeFlashingPage) +
+            "), that it fills a large part of the image, and that the camera is at rest. For a board that "
+            "does not "
+            "flash, remove "
+            "that setting from the session, and move the camera");
   }
   gathering_->finish();
   const std::vector<PointsInFrame> views =

@@ -1,5 +1,5 @@
-// Views of a blinking board from events: the blink is noticed, flashes are added up to pictures, and the board is
-// found in these as in frames (docs/maths.md, 7.5).
+// Views of a blinking board from events: the blink is detected, flashes are summed to pictures, and the board
+// is detected in these as in frames (docs/maths.md, 7.5).
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -19,7 +19,7 @@ namespace evical {
 
 class BlinkTracker {
  public:
-  // Throws CalibrationError (BadInput) where the board's numbers make no board.
+  // Throws CalibrationError (BadInput) if the board is invalid.
   BlinkTracker(std::string camera, const Board& board, Resolution resolution_px, const FrameOptions& frames,
                const BlinkOptions& options, std::int64_t start_ns);
   BlinkTracker(const BlinkTracker&) = delete;
@@ -28,10 +28,10 @@ class BlinkTracker {
   // Events in order of time, inside the resolution.
   void add(EventSpan events);
 
-  // The windows so far; views are known at the end.
+  // The windows so far; views are available at the end.
   const BoardObservations& soFar() const { return so_far_; }
 
-  // In the sensor's own pixels. Throws CalibrationFailed where nothing blinks.
+  // In the sensor's own pixels. Throws CalibrationFailed if no blinking is detected.
   BoardObservations finish();
 
   const std::optional<Blink>& blink() const { return notice_.blink(); }
@@ -54,8 +54,9 @@ class BlinkTracker {
   FlashFinder finder_;
   std::optional<FlashGathering> gathering_;
   std::vector<PointsInFrame> seen_;
-  int followed_ = 0;                                   // slots since the last search
-  std::size_t searched_points_ = 0, most_points_ = 0;  // that it found, and that any found
+  int followed_ = 0;  // slots since the last search
+  std::size_t searched_points_ = 0,
+              most_points_ = 0;  // points of the last search, and the most of any search
   BoardObservations so_far_;
 };
 

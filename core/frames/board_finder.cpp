@@ -23,7 +23,7 @@ std::unique_ptr<PatternFinder> finderOf(const Board& board, const FrameOptions& 
   }
 }
 
-constexpr int kSmallestSide_px = 16;  // OpenCV's finders need some
+constexpr int kSmallestSide_px = 16;  // smallest size for OpenCV's finders
 
 bool isLargeEnough(const GrayImage& image) {
   return image.size_px.width_px >= kSmallestSide_px && image.size_px.height_px >= kSmallestSide_px;
@@ -42,7 +42,7 @@ FoundPoints BoardFinder::find(const GrayImage& image) {
   try {
     return finder_->search(image);
   } catch (const cv::Exception&) {
-    return {};  // its finders assert what pictures without a board may not hold
+    return {};  // some pictures without a board fail assertions in its finders
   }
 }
 

@@ -1,11 +1,11 @@
-// Finds the board in a picture, without knowledge of the lens and of other pictures.
+// Detection of the board in a picture, without knowledge of the lens and of other pictures.
 //
 // Corners are measured as crossing points of edges, circles as ellipses fitted to their edges. An ellipse's
-// centre, in the sensor's own pixels, is what a lens without distortion would make of the circle
-// (circle_conic.h); a lens bends the ellipse, which over a circle's few pixels is a matter of thousandths.
+// centre, in the sensor's own pixels, is correct for a lens without distortion (circle_conic.h); distortion
+// changes the ellipse, by some thousandths of a pixel for small circles.
 //
-// Of checkerboards point 0 is the corner before which, towards -x -y, lies a dark square; where rows and columns
-// are both even or both odd that holds of both ends or of none, and either may be point 0, as with symmetric
+// Point 0 of a checkerboard is the corner with a dark square before it, towards -x -y. If rows and columns
+// are both even or both odd, both ends or none have one, and either may be point 0, as with symmetric
 // circles.
 #pragma once
 
@@ -22,27 +22,27 @@ namespace evical {
 
 class PatternFinder;
 
-// Of a checkerboard no part tells which part it is. Any will do where nothing but the lens is wanted: then its points
-// are called those of the board's beginning.
+// Use of parts of a checkerboard. A part does not determine its place on the board. Any place is acceptable
+// if only the lens is calibrated: points are then numbered from the board's beginning.
 enum class CheckerboardParts { None, Any };
 
 class BoardFinder {
  public:
-  // Throws CalibrationError (BadInput) where the board's numbers make no board.
+  // Throws CalibrationError (BadInput) if the board is invalid.
   BoardFinder(const Board& board, const FrameOptions& options,
               CheckerboardParts parts = CheckerboardParts::None);
   ~BoardFinder();
   BoardFinder(BoardFinder&&) noexcept;
   BoardFinder& operator=(BoardFinder&&) noexcept;
 
-  // Points that are seen, all or a part of them; none where the board is not found. Remembers what of a board
-  // it need not try again: the tags' border, the markers' dictionary.
+  // Detected points, all or a part of them; empty if the board is not found. Remembers properties of the
+  // board: the tags' border, the markers' dictionary.
   FoundPoints find(const GrayImage& image);
 
-  // Points near where the map puts them: a search that takes a hundredth of the time.
+  // Points near their places according to the map: takes a hundredth of a search's time.
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const;
 
-  // What speaks against the board's numbers, in a sentence; empty where nothing does.
+  // Contradiction between the pictures and the board's parameters, as a sentence; empty if there is none.
   std::string doubt() const;
 
  private:

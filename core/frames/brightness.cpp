@@ -25,7 +25,7 @@ double brightnessAt(const GrayImage& image, const Eigen::Vector2d& at_px) {
 }
 
 double noiseSigma(const GrayImage& image) {
-  constexpr int kStep = 5;       // a part of all pixels is enough
+  constexpr int kStep = 5;       // a subset of the pixels suffices
   constexpr double kGain = 6.0;  // of the second difference below, on white noise
   constexpr double kOfWholeNumbers = 0.29;
   const int width = image.size_px.width_px, height = image.size_px.height_px;

@@ -22,13 +22,13 @@ const char* nameOf(MarkerFamily family) {
   return kNames.at(static_cast<std::size_t>(family));
 }
 
-// OpenCV 4.7 and later hand it out by value.
+// OpenCV 4.7 and later return it by value.
 cv::Ptr<cv::aruco::Dictionary> predefined(int set) {
   return cv::makePtr<cv::aruco::Dictionary>(cv::aruco::getPredefinedDictionary(set));
 }
 
-// The first markers of a family: its smaller sets are the beginnings of its larger ones, and a set that holds
-// no more than the board needs takes less for a marker that is none.
+// The first markers of a family: smaller sets are the beginnings of larger ones, and the smallest sufficient
+// set has the fewest false detections.
 cv::Ptr<cv::aruco::Dictionary> dictionaryOf(MarkerFamily family, int markers) {
   if (family == MarkerFamily::Original) return predefined(cv::aruco::DICT_ARUCO_ORIGINAL);
   constexpr int kSetsOfFamily = 4;
@@ -58,7 +58,7 @@ std::vector<SeenMarker> readMarkers(const cv::Mat& picture, MarkerFamily family,
   return seen;
 }
 
-// One way to read a picture: a dictionary, and which squares are dark.
+// A hypothesis for reading a picture: the dictionary, and which squares are dark.
 struct Reading {
   MarkerFamily family = MarkerFamily::Automatic;
   bool first_is_bright = false;
@@ -92,7 +92,7 @@ class CharucoFinder : public PatternFinder {
 
   std::string doubt() const override {
     if (settled_ || best_family_ == MarkerFamily::Automatic) return {};
-    return fmt::format("markers of {} bits were seen that do not lie as on a board of {} x {} squares",
+    return fmt::format("the detected markers of {} bits do not fit a board of {} x {} squares",
                        nameOf(best_family_), board_.rows, board_.cols);
   }
 

@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-// Inner corners, row by row: of all of the board, or of what is seen of it.
+// Inner corners, row by row: of the whole board, or of the visible part.
 struct Grid {
   int rows = 0, cols = 0;
   std::vector<Eigen::Vector2d> corners;
@@ -22,11 +22,11 @@ struct Grid {
   Eigen::Vector2d& at(int row, int col) { return corners[static_cast<std::size_t>(row * cols + col)]; }
 };
 
-// Searches are slow in large pictures, and mostly need none of their detail.
+// Searches are slow in large pictures, and usually do not need full resolution.
 constexpr std::array<int, 2> kSearchedSides_px = {400, 800};
 constexpr int kShortestSide_px = 300;  // smaller pictures are enlarged
 
-// OpenCV may count the rows from either end, and then sees a mirrored board.
+// OpenCV may count the rows from either end, which can result in a mirrored board.
 void putRight(Grid& grid) {
   const Eigen::Vector2d x = grid.at(0, grid.cols - 1) - grid.at(0, 0);
   const Eigen::Vector2d y = grid.at(grid.rows - 1, 0) - grid.at(0, 0);
@@ -46,7 +46,7 @@ std::optional<Grid> searchIn(const cv::Mat& picture, const Board& board) {
   const cv::Size size(board.cols, board.rows);
   std::vector<cv::Point2f> corners;
   bool found = false;
-  if (std::min(size.width, size.height) > 2) {  // OpenCV knows no smaller boards
+  if (std::min(size.width, size.height) > 2) {  // OpenCV does not support smaller boards
     found = cv::findChessboardCornersSB(picture, size, corners, cv::CALIB_CB_ACCURACY);
     if (!found)
       found = cv::findChessboardCorners(picture, size, corners,
@@ -56,7 +56,7 @@ std::optional<Grid> searchIn(const cv::Mat& picture, const Board& board) {
   return gridOf(corners, board.rows, board.cols);
 }
 
-// As much of a checkerboard as there is.
+// The visible part of a checkerboard.
 std::optional<Grid> searchPartIn(const cv::Mat& picture) {
   constexpr int kSmallest = 3;
   std::vector<cv::Point2f> corners;
@@ -67,14 +67,14 @@ std::optional<Grid> searchPartIn(const cv::Mat& picture) {
   return gridOf(corners, meta.rows, meta.cols);
 }
 
-// At another size; places are those of the picture itself.
+// Searches at another size; places are those of the picture itself.
 template <class Search>
 std::optional<Grid> searchScaled(const cv::Mat& picture, double scale, const Search& search) {
   cv::Mat scaled;
   cv::resize(picture, scaled, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_CUBIC);
   std::optional<Grid> grid = search(scaled);
   if (!grid) return grid;
-  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);  // pixels' centres are at whole numbers
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);  // pixels' centres are at integers
   for (Eigen::Vector2d& corner : grid->corners) corner = (corner + half) / scale - half;
   return grid;
 }
@@ -110,7 +110,7 @@ class CheckerboardFinder : public PatternFinder {
   CheckerboardFinder(const Board& board, const FrameOptions& options, CheckerboardParts parts)
       : board_(board), options_(options), parts_(parts), pattern_(checkerboardCorners(board)) {
     if (std::min(board.rows, board.cols) < 3)
-      throw badInput("board", "a checkerboard of fewer than 3 x 3 inner corners is not found in frames",
+      throw badInput("board", "a checkerboard of fewer than 3 x 3 inner corners cannot be detected in frames",
                      "Use a board with more squares");
   }
 
@@ -122,7 +122,7 @@ class CheckerboardFinder : public PatternFinder {
     const std::optional<PlaneMap> map = mapOf(rough, board_);
     if (!map) return {};
     FoundPoints found = measure(image, *map, options_.largest_move_px);
-    if (is_part) keepThoseOf(rough, found);  // beyond it there are none, or none that were seen
+    if (is_part) keepThoseOf(rough, found);  // beyond it there are no corners, or none were seen
     return found;
   }
 
@@ -131,10 +131,10 @@ class CheckerboardFinder : public PatternFinder {
   }
 
   std::string doubt() const override {
-    constexpr double kNowAndThen = 0.3;  // a line is added to it that is none
+    constexpr double kNowAndThen = 0.3;  // false lines are sometimes added
     return larger_ > kNowAndThen * parts_found_
                ? fmt::format(
-                     "of the checkerboard up to {} x {} inner corners are seen, and the session says {} x "
+                     "up to {} x {} inner corners of the checkerboard are visible, but the session has {} x "
                      "{}: check rows and columns",
                      largest_.rows, largest_.cols, board_.rows, board_.cols)
                : std::string();
@@ -149,7 +149,7 @@ class CheckerboardFinder : public PatternFinder {
     return numbered(*grid, 0, 0);
   }
 
-  // At the board's beginning, or one row or column further, as squares there are dark or bright.
+  // Part at the board's beginning, or one row or column further, depending on the squares' brightness.
   FoundPoints searchPart(const GrayImage& image) {
     std::optional<Grid> grid = searchAtSizes(image, searchPartIn);
     if (!grid) return {};
@@ -181,7 +181,7 @@ class CheckerboardFinder : public PatternFinder {
     return points;
   }
 
-  // How much darker the squares are that should be, the grid's first corner being the board's.
+  // Mean brightness difference between bright and dark squares, if the grid's first corner is the board's.
   double shadeOf(const GrayImage& image, Grid& grid) const {
     std::array<double, 2> sums{}, counts{};
     for (int row = 0; row + 1 < grid.rows; ++row) {
@@ -198,8 +198,8 @@ class CheckerboardFinder : public PatternFinder {
     return sums[0] / std::max(counts[0], 1.0) - sums[1] / std::max(counts[1], 1.0);
   }
 
-  // The half turn that puts a dark square before point 0; of a board that has bright ones before both ends the
-  // pattern is the other.
+  // Applies the half turn that puts a dark square before point 0; if both ends have bright squares, the
+  // pattern is inverted instead.
   void turnByShade(const GrayImage& image, Grid& grid) {
     if (shadeOf(image, grid) >= 0.0) return;
     if (board_.hasHalfTurnAmbiguity())
@@ -216,7 +216,7 @@ class CheckerboardFinder : public PatternFinder {
   FrameOptions options_;
   CheckerboardParts parts_;
   CornerPattern pattern_;
-  int parts_found_ = 0, larger_ = 0;  // pictures in which some was seen, and more than the board has
+  int parts_found_ = 0, larger_ = 0;  // pictures with a part of the board, and with more than the board
   Size largest_;
 };
 

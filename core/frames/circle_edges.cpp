@@ -18,7 +18,7 @@ namespace {
 constexpr double kStep_px = 0.5;  // along a normal
 constexpr double kBetweenEdgePoints_px = 1.5;
 constexpr int kFewestEdgePoints = 10, kMostEdgePoints = 60;
-constexpr double kLeastSeen = 0.7;  // part of the normals that show an edge
+constexpr double kLeastSeen = 0.7;  // smallest share of the normals with an edge
 constexpr int kRounds = 3;
 
 using Shift =
@@ -38,8 +38,8 @@ Axes axesOf(const Ellipse& ellipse) {
   return {axes(1), std::numbers::pi * axes.sum()};
 }
 
-// Where along its normal the edge is: the middle of the change of brightness around its steepest place. `sign`
-// is 1 where brightness grows outwards.
+// Position of the edge along its normal: the middle of the brightness change around its steepest place.
+// `sign` is 1 if brightness grows outwards.
 std::optional<double> edgeAlong(const GrayImage& image, const EdgePoint& point, double reach_px, double sign,
                                 double least_contrast) {
   constexpr int kMostSteps = 64, kAround = 3;
@@ -65,7 +65,7 @@ std::optional<double> edgeAlong(const GrayImage& image, const EdgePoint& point, 
     sum += slope(k);
     moment += slope(k) * (k - steps - 1) * kStep_px;
   }
-  // Each slope counts two steps: half their sum is what brightness changes by.
+  // Each slope covers two steps: half their sum is the change of brightness.
   if (0.5 * sum < least_contrast) return std::nullopt;
   return moment / sum;
 }
@@ -88,7 +88,7 @@ std::vector<EdgePoint> edgePoints(const GrayImage& image, const Ellipse& ellipse
   return points;
 }
 
-// How far the ellipse moves at the point, along its normal, by each part of a shift.
+// Displacement of the ellipse at the point, along its normal, per component of a shift.
 Shift rowOf(const EdgePoint& point, const Ellipse& ellipse) {
   const Eigen::Vector2d n = point.normal, e = point.on_ellipse - ellipse.centre_px;
   return (Shift() << n.x(), n.y(), n.x() * e.x(), n.y() * e.y(), n.x() * e.y() + n.y() * e.x()).finished();
@@ -101,7 +101,7 @@ struct Fit {
 };
 
 std::optional<Fit> fit(std::vector<EdgePoint> points, const Ellipse& ellipse) {
-  constexpr double kOutlier = 3.5;  // RMS errors
+  constexpr double kOutlier = 3.5;  // in RMS errors
   for (int pass = 0;; ++pass) {
     if (static_cast<int>(points.size()) < kFewestEdgePoints) return std::nullopt;
     Eigen::Matrix<double, 5, 5> sums = Eigen::Matrix<double, 5, 5>::Zero();
@@ -176,7 +176,7 @@ FoundPoints measureCircles(const GrayImage& image, const Board& board, const Pla
     const PlaneMap::Place place = map.placeOf(board.point_m(point));
     const Ellipse expected{place.at_px, board.radius_m * place.px_per_m};
     const double smallest_px = axesOf(expected).smallest_px;
-    // Not as far as the next circle's edge.
+    // Limited by the distance of the next circle's edge.
     const double reach_px = std::min({gate_px + 1.5, 0.9 * between * smallest_px, 0.9 * smallest_px});
     const std::optional<MeasuredEllipse> ellipse =
         measureEllipse(image, expected, reach_px, board.circles, contrast);

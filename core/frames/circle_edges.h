@@ -1,4 +1,4 @@
-// Measures circles near where they are expected: ellipses fitted to their edges.
+// Measurement of circles near their expected places: ellipses fitted to their edges.
 #pragma once
 
 #include "core/frames/found_point.h"
@@ -21,12 +21,12 @@ struct MeasuredEllipse {
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();  // of the centre
 };
 
-// Edge points are where brightness changes most along normals of the expected ellipse, within `reach_px` of it.
-// Nothing where too little of an ellipse is seen.
+// Edge points are at the steepest change of brightness along normals of the expected ellipse, within
+// `reach_px` of it. Empty if too little of the ellipse is visible.
 std::optional<MeasuredEllipse> measureEllipse(const GrayImage& image, const Ellipse& expected,
                                               double reach_px, CircleShade shade, double least_contrast);
 
-// All circles within `gate_px` of where the map puts them.
+// All circles within `gate_px` of their places according to the map.
 FoundPoints measureCircles(const GrayImage& image, const Board& board, const PlaneMap& map, double gate_px,
                            const FrameOptions& options);
 

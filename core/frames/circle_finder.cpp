@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-// Outlines that fill the ellipse of their moments this well are circles.
+// Smallest ratio of areas, of an outline and of the ellipse of its moments, for a circle.
 constexpr double kLeastFill = 0.85, kMostFill = 1.1;
 constexpr double kLargestAspect = 6.0;
 constexpr double kSmallestArea_px2 = 12.0;
@@ -42,7 +42,7 @@ std::optional<Blob> blobOf(const std::vector<cv::Point>& outline, double largest
   std::vector<cv::Point> hull;
   cv::convexHull(outline, hull);
   if (moments.m00 < kLeastFill * cv::contourArea(hull)) return std::nullopt;
-  // Outlines run through the outermost pixels' middles.
+  // Outlines connect the centres of the outermost pixels.
   const double grown = std::pow(product, 0.25) + 0.5;
   blob.shape_px2 *= grown * grown / std::sqrt(product);
   blob.radius_px = grown;
@@ -62,8 +62,8 @@ void addBlobs(const cv::Mat& mask, double largest_area_px2, std::vector<Blob>& b
   }
 }
 
-// Fields that are darker (or brighter) than their neighbourhood, at several sizes of that: a circle is found
-// where it is some times larger than the circle.
+// Regions that are darker (or brighter) than their neighbourhood, for several sizes of the neighbourhood: it
+// must be several times larger than a circle.
 std::vector<Blob> findBlobs(const GrayImage& image, CircleShade shade) {
   const cv::Mat picture = viewOf(image);
   cv::Mat smooth;
@@ -94,7 +94,7 @@ class CircleFinder : public PatternFinder {
     const std::vector<Blob> blobs = findBlobs(image, board_.circles);
     const std::optional<PlaneMap> rough = place(blobs);
     if (!rough) return {};
-    // A lens may bend the board's far ends further than one plane tells: outwards from what is found.
+    // A lens may displace the board's ends from one plane's map: measured outwards from the detected points.
     FoundPoints found = measure(image, *rough, 2.0 * options_.largest_move_px);
     const std::optional<PlaneMap> map = mapOf(found, board_);
     return map ? measure(image, *map, options_.largest_move_px) : FoundPoints{};
@@ -105,7 +105,7 @@ class CircleFinder : public PatternFinder {
   }
 
  private:
-  // The lattice, by what neighbours on the board are apart.
+  // The lattice, with the distances of neighbours on the board.
   CircleLattice latticeOf(const std::vector<Blob>& blobs) const {
     const double step = (board_.type == BoardType::AsymmetricCircles ? std::numbers::sqrt2 : 1.0) *
                         board_.spacing_m / board_.radius_m;
@@ -135,7 +135,7 @@ class CircleFinder : public PatternFinder {
         continue;
       }
       if (isHalfTurnOf(*best, *map)) continue;
-      // Of a part of the board several places may do as well: then none is known.
+      // A part of the board may fit several places equally well: then it is rejected.
       if (placement.size() + kMargin > most) return std::nullopt;
     }
     return best;
@@ -149,7 +149,7 @@ class CircleFinder : public PatternFinder {
     return mapOf(known, board_.spacing_m);
   }
 
-  // A sheared or shrunk lattice would make other ellipses of circles than are seen.
+  // A sheared or shrunk lattice would imply other ellipses than the observed ones.
   bool hasShapes(const PlaneMap& map, const LatticePlacement& placement,
                  const std::vector<Blob>& blobs) const {
     constexpr double kTolerance = 0.35;

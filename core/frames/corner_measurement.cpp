@@ -13,11 +13,11 @@
 namespace evical {
 namespace {
 
-constexpr double kSmallestHalfWidth_px = 1.5;  // a smaller window shows no two edges
+constexpr double kSmallestHalfWidth_px = 1.5;  // a smaller window does not show two edges
 constexpr int kMostIterations = 12;
 constexpr double kSettled_px = 0.003;
 
-// A window of pixels around a place, with what the sums over it need.
+// A window of pixels around a place, for the sums over it.
 class Window {
  public:
   Window(const GrayImage& image, const Eigen::Vector2d& centre_px, double half_width_px)
@@ -28,7 +28,7 @@ class Window {
     last_y_ = static_cast<int>(std::floor(centre_px.y() + reach_));
   }
 
-  // Calls with each pixel's place from the centre, gradient and weight.
+  // Calls `function` with each pixel's offset from the centre, gradient and weight.
   template <class Function>
   void forEach(const Function& function) const {
     const int width = image_.size_px.width_px;
@@ -69,16 +69,15 @@ Sums sumsOf(const Window& window) {
   return sums;
 }
 
-// Two edges: one alone leaves the corner free to slide along it.
+// True for two edges: with a single edge, the corner could slide along it.
 bool hasTwoEdges(const Eigen::Matrix2d& gradients) {
   constexpr double kLeastRatio = 0.02;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gradients, Eigen::EigenvaluesOnly);
   return eigen.eigenvalues()(0) > kLeastRatio * eigen.eigenvalues()(1) && eigen.eigenvalues()(1) > 1.0;
 }
 
-// The corner is where sum w g (g . d) = 0: of first order, errors e of the gradients move it by
-// G^-1 sum w (g d^T + g . d) e. With e made of the neighbours' noise that is a sum over pixels, each with a
-// factor of its own.
+// The corner is where sum w g (g . d) = 0: to first order, errors e of the gradients move it by
+// G^-1 sum w (g d^T + g . d) e. For e from the pixels' noise, this is a sum over pixels with one factor each.
 Eigen::Matrix2d covarianceOf(const Window& window, const Eigen::Matrix2d& gradients, double noise_sigma) {
   const int columns = window.columns();
   std::vector<Eigen::Vector2d> factors(static_cast<std::size_t>(columns * window.rows()),
@@ -99,7 +98,7 @@ Eigen::Matrix2d covarianceOf(const Window& window, const Eigen::Matrix2d& gradie
   return noise_sigma * noise_sigma * inverse * sum * inverse;
 }
 
-// The fields around a corner are dark and bright as they should be.
+// True if the fields around a corner are dark and bright according to the pattern.
 bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eigen::Matrix2d& field_px,
                 bool dark_ahead, double least_contrast) {
   const Eigen::Vector2d x = field_px.col(0), y = field_px.col(1);
@@ -114,9 +113,10 @@ bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eige
   return (dark_ahead ? across.first - ahead.second : ahead.first - across.second) > least_contrast;
 }
 
-// What optics, print and sampling leave of errors, normal to each of the two edges. Small windows have fewer pixels of
-// them, and more of what is beside: of 33,000 corners of simulated grids, seen at up to 70 degrees, errors were 0.024 px
-// with half widths of 3 to 5 px, 0.033 with 2.5, 0.044 with 1.8, 0.063 with 1.5.
+// Errors from optics, print and sampling, normal to each of the two edges. Small windows have fewer pixels of
+// the edges and are affected more by their surroundings: for 33,000 corners of simulated grids, at up to 70
+// degrees, errors were 0.024 px with half widths of 3 to 5 px, 0.033 with 2.5, 0.044 with 1.8, 0.063 with
+// 1.5.
 Eigen::Matrix2d modelError_px2(const Eigen::Matrix2d& px_per_m, double half_width_px,
                                const FrameOptions& options) {
   constexpr double kPower = 1.5;
@@ -171,7 +171,7 @@ Eigen::Vector2d shiftByBending(const GrayImage& image, const Eigen::Vector2d& at
 
 namespace {
 
-// By what bent lines do to a corner's place.
+// Corrects corners for the curvature of lines.
 void unbend(const GrayImage& image, const Board& board, const std::vector<double>& half_widths_px,
             FoundPoints& found) {
   const BentLines bent(found, board);
@@ -195,7 +195,7 @@ FoundPoints measureCorners(const GrayImage& image, const Board& board, const Cor
     if (!(half_width >= kSmallestHalfWidth_px)) continue;
     const std::optional<MeasuredCorner> corner = measureCorner(image, expected, half_width, noise);
     if (!corner || (corner->at_px - expected).norm() > gate_px) continue;
-    // In the fields' middles, and not further off than the window.
+    // In the middle of the fields, but within the window.
     const double field = std::min(0.6 * pattern.plain_m, half_width / smallestScale(scale));
     if (!isInside(image, corner->at_px, 2.0 * field * scale.norm())) continue;
     if (!looksRight(image, corner->at_px, field * scale, pattern.dark_ahead[static_cast<std::size_t>(point)],

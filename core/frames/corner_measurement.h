@@ -1,4 +1,4 @@
-// Measures corners near where they are expected.
+// Measurement of corners near their expected places.
 #pragma once
 
 #include "core/frames/corner_pattern.h"
@@ -18,19 +18,19 @@ struct MeasuredCorner {
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  // of the picture's noise alone
 };
 
-// The place at which every gradient of a window around it is perpendicular to the way there (W. Forstner and E.
-// Gulch, 1987; OpenCV's cornerSubPix), each weighted by its distance. Nothing where that runs out of the window
-// or the picture, or where there is one edge or none.
+// The place from which every offset within a window is perpendicular to the gradient there (W. Forstner and
+// E. Gulch, 1987; OpenCV's cornerSubPix), weighted by distance. Empty if the iteration leaves the window or
+// the picture, or if there are not two edges.
 std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen::Vector2d& start_px,
                                             double half_width_px, double noise_sigma);
 
-// How far that place lies beside a corner of bent lines. At s along an edge p of normal n(s), n(s) . p(s) is not 0 but
-// -curvature s^2 / 2.
+// Offset between that place and a corner of curved lines. At s along an edge p of normal n(s), n(s) . p(s) is
+// not 0 but -curvature s^2 / 2.
 Eigen::Vector2d shiftByBending(const GrayImage& image, const Eigen::Vector2d& at_px, double half_width_px,
                                const std::array<BentLine, 2>& lines);
 
-// All corners that are seen within `gate_px` of where the map puts them, and that have dark and bright fields as
-// the pattern says.
+// All visible corners within `gate_px` of their places according to the map that have dark and bright fields
+// as in the pattern.
 FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
                            const PlaneMap& map, double gate_px, const FrameOptions& options);
 

@@ -25,7 +25,7 @@ CornerPattern checkerboardCorners(const Board& board) {
 CornerPattern tagGridCorners(const Board& board, int border_bits) {
   const double border_m = board.tag_size_m * border_bits / (kTagSide_bits + 2 * border_bits);
   CornerPattern pattern{std::min(border_m, board.spacing_m - board.tag_size_m), {}};
-  // From the bottom left against the clock: the tag itself lies towards +x -y, -x -y, -x +y, +x +y.
+  // From the bottom left counterclockwise: the tag itself is towards +x -y, -x -y, -x +y, +x +y.
   for (int k = 0; k < board.pointCount(); ++k) pattern.dark_ahead.push_back(k % 2 == 1);
   return pattern;
 }

@@ -1,4 +1,4 @@
-// What surrounds the corners of a board without circles.
+// Surroundings of the corners of a board without circles.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -7,13 +7,13 @@
 
 namespace evical {
 
-// Around each corner two fields are dark, those on one diagonal, and two are bright.
+// Around each corner, two diagonal fields are dark, and the other two are bright.
 struct CornerPattern {
-  double plain_m = 0.0;          // within this distance along both axes there is nothing but the corner
-  std::vector<bool> dark_ahead;  // by point: dark are the fields towards +x +y and -x -y
+  double plain_m = 0.0;          // within this distance along both axes, the corner is the only feature
+  std::vector<bool> dark_ahead;  // by point: true if the fields towards +x +y and -x -y are dark
 };
 
-// Of a checkerboard the square before point 0, towards -x -y, is dark.
+// The square before point 0 of a checkerboard, towards -x -y, is dark.
 CornerPattern checkerboardCorners(const Board& board);
 CornerPattern tagGridCorners(const Board& board, int border_bits);
 // The board's top left square is dark, unless `first_is_bright`.

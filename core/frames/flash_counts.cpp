@@ -13,12 +13,12 @@ bool isFlashing(const FlashCounts& sum, std::uint16_t count) {
   return count >= std::max(1, sum.half_periods);
 }
 
-// What a pixel counts that sees all of the flash: the mean of those around it that flash. A screen is less bright from
-// the side, and a corner between fields that are not equally dark would seem to lie elsewhere.
+// Count of a pixel that sees the full flash: the mean of flashing pixels around it. A screen is less bright
+// from the side, and a corner between fields of different darkness would be displaced.
 cv::Mat fullCounts(const FlashCounts& sum, const Resolution& size_px) {
-  constexpr double kAround = 0.05;   // of the picture's longer side, a sigma
-  constexpr double kFarAway = 0.02;  // where a smaller share flashes, the whole picture's mean prevails
-  constexpr double kFull = 1.1;      // pixels at edges make the mean too small
+  constexpr double kAround = 0.05;   // sigma relative to the picture's longer side
+  constexpr double kFarAway = 0.02;  // if a smaller share flashes, the whole picture's mean dominates
+  constexpr double kFull = 1.1;      // corrects the mean for pixels at edges
   cv::Mat flashing(size_px.height_px, size_px.width_px, CV_32F), counted(flashing.size(), CV_32F);
   for (int k = 0; k < size_px.pixelCount(); ++k) {
     const std::uint16_t count = sum.counts[static_cast<std::size_t>(k)];

@@ -1,4 +1,4 @@
-// Events counted pixel by pixel over half periods of a blinking light, and the picture they make.
+// Events per pixel, counted over half periods of a blinking light, and the picture that they form.
 #pragma once
 
 #include "core/data/event.h"
@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// Which part of a board flashes: what is printed dark and turns bright, or what is bright and turns dark.
+// The flashing part of a board: printed dark areas that turn bright, or bright areas that turn dark.
 enum class Flashing { Ink, Paper };
 
 struct FlashCounts {
@@ -25,16 +25,16 @@ struct FlashCounts {
   }
 };
 
-// Of neighbours in time.
+// Sum of consecutive counts.
 FlashCounts sumOf(std::span<const FlashCounts> parts);
 
-// Pixels that fired in every half period, on average.
+// Number of pixels that fired in every half period, on average.
 std::size_t flashingPixels(const FlashCounts& sum);
 
-// Brightness as a frame would have it: what flashes is dark where it is ink, bright where it is paper.
+// Brightness as in a frame: flashing pixels are dark for ink, bright for paper.
 GrayImage pictureOf(const FlashCounts& sum, Resolution size_px, Flashing flashing);
 
-// So many times as wide and as high; a place x of the picture is at times (x + 0.5) - 0.5 of the larger one.
+// Enlarged `times` times; a place x of the picture is at times (x + 0.5) - 0.5 of the larger one.
 GrayImage enlarged(const GrayImage& image, int times);
 
 }  // namespace evical

@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-// Edges of circles are measured to parts of a pixel that must be large enough to show them, and no larger.
+// Enlargement factor. Edges of circles are measured with subpixel accuracy, so circles need less enlargement.
 int enlargement(const Board& board, const Resolution& size_px, int smallest_side_px) {
   constexpr int kEnoughForCircles_px = 200;
   const int longest = std::max({size_px.width_px, size_px.height_px, 1});
@@ -20,7 +20,7 @@ int enlargement(const Board& board, const Resolution& size_px, int smallest_side
   return std::max(1, (smallest_side_px + longest - 1) / longest);
 }
 
-// Lengths in the sensor's pixels, for a larger picture.
+// Options in the enlarged picture's pixels.
 FrameOptions enlargedOptions(FrameOptions options, int times) {
   options.subpixel_window_px *= times;
   options.smallest_sigma_px *= times;
@@ -29,7 +29,7 @@ FrameOptions enlargedOptions(FrameOptions options, int times) {
   return options;
 }
 
-// Around a corner there is nothing else within this.
+// Distance from a corner within which there are no other features.
 double plain_m(const Board& board) {
   const double gap_m = board.spacing_m - board.tag_size_m;
   constexpr double kBorder = 0.2;  // of Kalibr's tags
@@ -38,7 +38,7 @@ double plain_m(const Board& board) {
                                             : board.spacing_m;
 }
 
-// Pixels' centres are at whole numbers.
+// Pixels' centres are at integers.
 Eigen::Vector2d onSensor(const Eigen::Vector2d& at_px, int times) {
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);
   return (at_px + half) / times - half;
@@ -85,7 +85,7 @@ FoundPoints FlashFinder::measure(const FlashCounts& sum, const FoundPoints& near
 FoundPoints FlashFinder::onSensor(const GrayImage& picture, const GrayImage& larger,
                                   FoundPoints found) const {
   if (!board_.hasCircles()) found = saddles(picture, larger, found);
-  // Edge points of a larger picture have their noise in common with their neighbours.
+  // Neighbouring edge points of an enlarged picture have correlated noise.
   const double shared = board_.hasCircles() ? times_ : 1.0;
   for (FoundPoint& point : found) {
     point.at_px = evical::onSensor(point.at_px, times_);
@@ -97,7 +97,7 @@ FoundPoints FlashFinder::onSensor(const GrayImage& picture, const GrayImage& lar
 
 FoundPoints FlashFinder::saddles(const GrayImage& picture, const GrayImage& larger,
                                  const FoundPoints& found) const {
-  constexpr double kSmoothed = 0.1, kReach = 0.3;    // of what is plain around the corner
+  constexpr double kSmoothed = 0.1, kReach = 0.3;    // relative to the distance without other features
   constexpr double kLeast_px = 0.5, kMost_px = 1.5;  // on the sensor
   const std::optional<PlaneMap> map = mapOf(found, board_);
   if (!map) return {};

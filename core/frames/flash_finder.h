@@ -1,4 +1,4 @@
-// Finds the board in counts of flashes, and measures its points in the sensor's own pixels.
+// Detection of the board in counts of flashes, and measurement of its points in the sensor's own pixels.
 #pragma once
 
 #include "core/frames/blink_options.h"
@@ -15,10 +15,10 @@ class FlashFinder {
   FlashFinder(const Board& board, Resolution size_px, const FrameOptions& frames,
               const BlinkOptions& options);
 
-  // None where the board is not found. Whether the ink flashes or the paper is found out, and remembered.
+  // Empty if the board is not found. Determines whether ink or paper flashes, and remembers it.
   FoundPoints find(const FlashCounts& sum);
-  // The points that lie within the gate of where a view nearby in time puts them; of a checkerboard, those that were found
-  // last: nothing says whether there are others.
+  // The points within the gate of their places in a view close in time; for a checkerboard only those found
+  // last, since a part of it does not determine whether there are others.
   FoundPoints measure(const FlashCounts& sum, const FoundPoints& near, double gate_px) const;
 
   std::string doubt() const { return finder_.doubt(); }
@@ -29,8 +29,8 @@ class FlashFinder {
 
   Board board_;
   Resolution size_px_;
-  int times_;             // as large are the pictures that are searched
-  FrameOptions options_;  // for these
+  int times_;             // enlargement of the searched pictures
+  FrameOptions options_;  // for the enlarged pictures
   BoardFinder finder_;
   std::optional<Flashing> flashing_;
   FoundPoints last_found_;

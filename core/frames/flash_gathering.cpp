@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostParts = 16;        // of a slot
+constexpr int kMostParts = 16;        // per slot
 constexpr double kLongestHalf = 1.2;  // periods: in a longer one the light was out of sight
 constexpr int kLongestPause = 3;      // periods without any event
 
@@ -65,7 +65,7 @@ void FlashGathering::endHalfPeriod(std::int64_t at_ns) {
   if (at_ns - slot_.front().begin_ns >= slot_ns_) handOut();
 }
 
-// One half period alone may be half as bright as the other.
+// A single half period may be half as bright as the next.
 void FlashGathering::handOut() {
   int half_periods = 0;
   for (const FlashCounts& part : slot_) half_periods += part.half_periods;

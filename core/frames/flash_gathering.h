@@ -1,4 +1,4 @@
-// Gathers the events of a blinking light into counts of half periods, and these into slots of some length, in one
+// Sums the events of a blinking light to counts of half periods, and these to slots of a given length, in one
 // pass and bounded memory.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace evical {
 
-// Some half periods one after the other; those of a fast blink several in one.
+// Consecutive half periods; for a fast blink, several are summed in one element.
 using FlashSlot = std::vector<FlashCounts>;
 
 class FlashGathering {
@@ -36,9 +36,9 @@ class FlashGathering {
   Sink sink_;
   HalfPeriods half_periods_;
   std::int64_t bin_end_ns_ = 0;
-  double balance_ = 0.0;                  // of the bin under way
-  bool started_ = false, whole_ = false;  // whether the half period under way was seen from its beginning
-  std::deque<Event> pending_;             // that may yet belong to the next half period
+  double balance_ = 0.0;                  // of the current bin
+  bool started_ = false, whole_ = false;  // whole_: the current half period was seen from its beginning
+  std::deque<Event> pending_;             // may belong to the next half period
   FlashCounts current_;
   FlashSlot slot_;
 };

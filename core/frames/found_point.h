@@ -1,4 +1,4 @@
-// A point of the board (Board::point_m) as one frame shows it. Pixels: the centre of the top-left pixel is
+// A detected point of the board (Board::point_m) in one frame. Pixels: the centre of the top-left pixel is
 // (0, 0).
 #pragma once
 
@@ -20,7 +20,7 @@ struct FoundPoint {
 // In order of their indices, each at most once.
 using FoundPoints = std::vector<FoundPoint>;
 
-// Leaves out what the other has not.
+// Removes points that are not in the other list.
 inline void keepThoseOf(const FoundPoints& other, FoundPoints& points) {
   std::erase_if(points, [&](const FoundPoint& point) {
     return !std::binary_search(other.begin(), other.end(), point,

@@ -1,4 +1,4 @@
-// How frames are searched for the board.
+// Options of the detection of boards in frames.
 #pragma once
 
 #include "core/base/option_struct.h"

@@ -9,10 +9,10 @@
 namespace evical {
 namespace {
 
-// Frames further apart do not tell where the board is next.
+// Frames with longer gaps do not predict the board's place.
 constexpr double kLongestPrediction_s = 0.5;
 
-// The same points counted from the board's other end.
+// The same points, numbered from the board's other end.
 FoundPoints turned(const FoundPoints& points, int count) {
   FoundPoints other(points.rbegin(), points.rend());
   for (FoundPoint& point : other) point.point = count - 1 - point.point;
@@ -32,14 +32,14 @@ FrameTracker::FrameTracker(std::string camera, const Board& board, const FrameOp
 
 bool FrameTracker::isDue(double time_s) {
   const double period_s = 1.0 / options_.rate_hz;
-  // Stamps jitter: of frames that come at just this rate none is to be left out.
+  // Tolerates jitter of stamps: frames at exactly this rate are all used.
   constexpr double kJitter = 0.1;
   if (due_s_ && time_s < *due_s_ - kJitter * period_s) return false;
   due_s_ = (due_s_ && time_s < *due_s_ + period_s ? *due_s_ : time_s) + period_s;
   return true;
 }
 
-// As the board moved between the last two views, seen from the last one.
+// Prediction with the motion between the last two views.
 std::optional<PlaneMap> FrameTracker::predicted(double time_s) const {
   if (seen_.empty() || time_s - seen_.back().time.time_s > kLongestPrediction_s) return std::nullopt;
   const Seen& last = seen_.back();
@@ -55,8 +55,8 @@ std::optional<PlaneMap> FrameTracker::predicted(double time_s) const {
   return mapOf(expected, board_);
 }
 
-// First within a wide gate; then each point must be where the others put it, and those that were missed are looked
-// for there.
+// Measures with a wide gate first; then each point must be close to its place according to the others, and
+// missed points are searched there.
 FoundPoints FrameTracker::follow(const GrayImage& image, double time_s) const {
   const std::optional<PlaneMap> map = predicted(time_s);
   if (!map) return {};
@@ -80,7 +80,7 @@ FoundPoints FrameTracker::search(const GrayImage& image, double time_s) {
   FoundPoints found = finder_.find(image);
   const std::optional<PlaneMap> map = predicted(time_s);
   if (!board_.hasHalfTurnAmbiguity() || !map || found.empty()) return found;
-  // A board that looks the same upside down is counted from the same end as before.
+  // A board with half-turn symmetry keeps the numbering of the last view.
   FoundPoints other = turned(found, board_.pointCount());
   return meanDistance_px(other, board_, *map) < meanDistance_px(found, board_, *map) ? other : found;
 }
@@ -90,7 +90,7 @@ void FrameTracker::track(const GrayImage& image, const FrameTime& time) {
   const bool search_now = followed_++ >= options_.search_every_frames;
   if (!search_now) followed = follow(image, time.time_s);
   if (followed.empty()) found = search(image, time.time_s);
-  // What reaches out of the frame may be followed where no search finds it.
+  // Tracking may succeed without a search if the board is partly outside the frame.
   if (found.empty() && search_now) followed = follow(image, time.time_s);
   const bool tracked = found.empty() && !followed.empty();
   report(time, std::move(tracked ? followed : found), tracked);

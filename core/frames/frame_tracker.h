@@ -1,4 +1,5 @@
-// Follows the board from frame to frame: where the last two views put it, or by a search of all of the frame.
+// Tracking of the board from frame to frame: near its prediction from the last two views, or by a search of
+// the whole frame.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -13,38 +14,38 @@
 
 namespace evical {
 
-// When a frame was taken, on the camera's clock since the recording's start.
+// Time of a frame, on the camera's clock since the recording's start.
 struct FrameTime {
   double time_s = 0.0;
-  double exposure_s = 0.0;  // 0: not known
+  double exposure_s = 0.0;  // 0: unknown
 };
 
 class FrameTracker {
  public:
-  // Throws CalibrationError (BadInput) where the board's numbers make no board.
+  // Throws CalibrationError (BadInput) if the board is invalid.
   FrameTracker(std::string camera, const Board& board, const FrameOptions& options);
 
-  // Whether a frame of this time is wanted, at the rate of the options: asked of every frame, in order of time,
-  // before it is decoded.
+  // True if the frame at this time is needed for the rate of the options. Called for every frame, in order of
+  // time, before it is decoded.
   bool isDue(double time_s);
 
-  // The next frame, later than those before it; one that could not be decoded.
+  // Processes the next frame, later than those before it; or one that could not be decoded.
   void track(const GrayImage& image, const FrameTime& time);
   void skipUnreadable(const FrameTime& time);
 
-  // What was seen: the points in the sensor's own pixels, with velocities that neighbouring views tell and
-  // covariances that hold the motion while the frame was exposed. Views that are too blurred are left out, with
-  // an outcome that says so. The tracker is empty afterwards.
+  // The observations: points in the sensor's own pixels, with velocities from neighbouring views, and
+  // covariances that include the motion during the exposure. Views that are too blurred are excluded, with
+  // that outcome. The tracker is empty afterwards.
   BoardObservations finish();
 
-  // Of the finder, in a sentence; empty where nothing speaks against the board's numbers.
+  // The finder's doubt about the board's parameters, as a sentence; may be empty.
   std::string doubt() const { return finder_.doubt(); }
 
  private:
   struct Seen {
     FrameTime time;
     FoundPoints points;
-    std::size_t window = 0;  // its report
+    std::size_t window = 0;  // index of its report
   };
 
   std::optional<PlaneMap> predicted(double time_s) const;

@@ -18,16 +18,16 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kMostPixels = 200'000'000;  // more than any sensor has
+constexpr std::int64_t kMostPixels = 200'000'000;  // larger than any sensor
 constexpr double kWhitePart = 0.995;
 
 struct Layout {
   int type = CV_8UC1;
-  int to_gray = -1;  // cv::cvtColor's code; -1: it is gray
+  int to_gray = -1;  // cv::cvtColor's code; -1: already gray
 };
 
-// OpenCV names a Bayer pattern by its second row's second and third pixel, its newer aliases and everybody
-// else by the first row and column.
+// OpenCV names a Bayer pattern after its second row's second and third pixel, its newer aliases and everybody
+// else after the first row and column.
 Layout layoutOf(FrameFormat format) {
   switch (format) {
     case FrameFormat::Gray16:
@@ -57,8 +57,8 @@ void refuseAbsurdSize(const Resolution& size, const std::string& place) {
   if (size.known() && std::int64_t{size.width_px} * size.height_px <= kMostPixels) return;
   throw badInput(
       place,
-      fmt::format("says that it has {} x {} pixels, which no picture has", size.width_px, size.height_px),
-      "The file is damaged: leave this picture out, or copy it again");
+      fmt::format("claims a size of {} x {} pixels, which is implausible", size.width_px, size.height_px),
+      "Copy the damaged file again, or remove it");
 }
 
 cv::Mat eightBits(const cv::Mat& sixteen) {
@@ -91,11 +91,11 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
   if (step < needed || frame.bytes.size() < needed ||
       (height > 1 && (frame.bytes.size() - needed) / (height - 1) < step))
     throw badInput(place,
-                   fmt::format("has {} bytes, and {} x {} pixels of its format need {}", frame.bytes.size(),
+                   fmt::format("has {} bytes, but {} x {} pixels of its format need {}", frame.bytes.size(),
                                width, height, std::max(step, needed) * (height - 1) + needed),
-                   "The picture is truncated: leave it out, or copy the recording again");
+                   "Copy the recording again, or remove the truncated picture");
   if (layout.to_gray >= 0 && layout.type == CV_8UC1 && (width < 3 || height < 3))
-    throw badInput(place, "is too small for a Bayer pattern", "Leave this picture out");
+    throw badInput(place, "is too small for a Bayer pattern", "Remove this picture");
   const cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step);
   if (layout.to_gray < 0) return seen.clone();
   cv::Mat gray;
@@ -107,8 +107,8 @@ cv::Mat decoded(const Frame& frame, const std::string& place) {
   const std::string_view bytes(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
   const std::optional<Resolution> claimed_px = claimedPictureSize(bytes);
   if (!claimed_px)
-    throw badInput(place, "is neither a JPEG, PNG, PGM, TIFF nor BMP picture, or is cut off in its header",
-                   "Leave this picture out, or save it as PNG");
+    throw badInput(place, "is not a JPEG, PNG, PGM, TIFF or BMP picture, or is truncated in its header",
+                   "Save it as PNG, or remove it");
   refuseAbsurdSize(*claimed_px, place);
   cv::Mat picture;
   if (!isTruncatedJpeg(bytes)) {
@@ -116,12 +116,12 @@ cv::Mat decoded(const Frame& frame, const std::string& place) {
       picture = cv::imdecode(frame.bytes,
                              cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) {
-      picture.release();  // said below
+      picture.release();  // reported below
     }
   }
   if (picture.empty() || (picture.type() != CV_8UC1 && picture.type() != CV_16UC1))
     throw badInput(place, "is a damaged or truncated picture",
-                   "Leave this picture out, or copy the recording again");
+                   "Copy the recording again, or remove this picture");
   return picture;
 }
 
@@ -133,9 +133,9 @@ GrayImage decodeFrame(const Frame& frame, const std::string& place) {
   GrayImage image{{picture.cols, picture.rows}, {}};
   if (encoded && frame.size_px.known() && !(frame.size_px == image.size_px))
     throw badInput(place,
-                   fmt::format("has {} x {} pixels, and {} x {} were announced", image.size_px.width_px,
+                   fmt::format("has {} x {} pixels instead of the specified {} x {}", image.size_px.width_px,
                                image.size_px.height_px, frame.size_px.width_px, frame.size_px.height_px),
-                   "Leave this picture out: it is of another camera or damaged");
+                   "Remove this picture: it is damaged or from another camera");
   if (picture.type() == CV_16UC1) {
     if (!encoded && frame.big_endian != (std::endian::native == std::endian::big)) swapBytes(picture);
     picture = eightBits(picture);

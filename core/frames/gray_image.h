@@ -1,4 +1,4 @@
-// A frame as the finders see it: brightness, one byte a pixel.
+// A decoded frame for the finders: brightness, one byte per pixel.
 #pragma once
 
 #include "core/data/frame.h"
@@ -14,10 +14,10 @@ struct GrayImage {
   std::vector<std::uint8_t> pixels;  // row by row, without gaps
 };
 
-// Brightness of a frame in the sensor's own pixels; how an encoded picture wants to be turned for show is
-// ignored. Pictures of 16 bits are scaled so that their 99.5th percentile is white: of a camera's 10 or 12 bits
-// in such a container the high byte alone would be all but black. Throws CalibrationError (BadInput) with
-// `place` for a picture that is truncated, damaged, too large, or of another size than the frame says.
+// Brightness of a frame in the sensor's own pixels; the display orientation of an encoded picture is ignored.
+// Pictures of 16 bits are scaled so that their 99.5th percentile is white: with a camera's 10 or 12 bits in
+// such a container, the high byte alone would be nearly black. Throws CalibrationError (BadInput) with
+// `place` if a picture is truncated, damaged, too large, or differs from the frame's specified size.
 GrayImage decodeFrame(const Frame& frame, const std::string& place);
 
 }  // namespace evical

@@ -7,10 +7,10 @@
 
 namespace evical {
 
-// A turn shows as soon as the new events outweigh the old in the smoothed bins: halfway through these where a pixel
-// fires all the time, at once where it fires in short bursts.
+// A turn is detected as soon as the new events outweigh the old ones in the smoothed bins: after half of
+// these if a pixel fires continuously, immediately if it fires in short bursts.
 bool HalfPeriods::add(double balance) {
-  constexpr double kClear = 0.15;  // of what the last two periods reached
+  constexpr double kClear = 0.15;  // relative to the maximum of the last two periods
   last_[count_ % kSmoothed] = balance;
   const double smooth = std::accumulate(last_.begin(), last_.end(), 0.0);
   heights_[count_ % heights_.size()] = std::abs(smooth);

@@ -1,5 +1,5 @@
-// When a blinking light turns: half periods begin where brightening events take over from darkening ones, or the
-// other way round.
+// Detection of a blinking light's half periods: they begin when ON events start to outweigh OFF events, or
+// the other way round.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ class HalfPeriods {
   static constexpr int kBinsPerPeriod = 16;
   static constexpr int kTurn_bins = 3;
 
-  // Brightening less darkening events of the next bin, a period's sixteenth. True where the light has turned, kTurn_bins
-  // before this bin's end: those events are the first of the new half period.
+  // Number of ON minus OFF events of the next bin, a sixteenth of a period. True if the light has turned,
+  // kTurn_bins before this bin's end: the events since then are the first of the new half period.
   bool add(double balance);
 
  private:

@@ -19,7 +19,7 @@ struct FittedEllipse {
   Eigen::Matrix2d shape;  // d^T shape^-1 d = 1
 };
 
-// The conic through points around a first centre, by least squares: exact for an ellipse's own points.
+// The conic through points around an initial centre, by least squares: exact for points of an ellipse.
 std::optional<FittedEllipse> ellipseThrough(const Eigen::Matrix<double, kEdgePoints, 2>& points,
                                             const Eigen::Vector2d& around, double size) {
   Eigen::Matrix<double, kEdgePoints, 5> rows;

@@ -1,8 +1,8 @@
-// Views of the sensor's own pixels in ideal pixels (camera_model.h), once a lens is known.
+// Conversion of views from the sensor's own pixels to ideal pixels (camera_model.h) with a known lens.
 //
-// What a lens makes of a circle is not quite an ellipse, and the centre of the ellipse that fits it best is not
-// where the lens puts the centre of the undistorted one: near the corners of a picture by a wide lens that is
-// 0.2 px for a circle of 25 px. So it is the ellipse's edge that is undistorted, and fitted anew.
+// Through a lens, the image of a circle is not exactly an ellipse, and the centre of the best-fitting ellipse
+// is not the projection of the undistorted ellipse's centre: near the corners of a wide lens's picture the
+// difference is 0.2 px for a circle of 25 px. Therefore the ellipse's edge is undistorted, and fitted again.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -12,15 +12,15 @@
 
 namespace evical {
 
-// Nothing where the lens sees no such place.
+// Empty if the place is not visible through the lens.
 std::optional<CircleObservation> inIdealPixels(const CircleObservation& of_sensor,
                                                const CameraIntrinsics& camera);
 
-// All views; points that the lens does not see are left out.
+// All views; points outside the lens's view are excluded.
 BoardObservations inIdealPixels(const BoardObservations& of_sensor, const CameraIntrinsics& camera);
 
-// The same where the lens is known, and in the sensor's pixels where it is not; either way with the rows of a sensor
-// of this height in which the points were seen.
+// The same if the lens is known, else in the sensor's pixels; in both cases with the points' rows on a sensor
+// of this height.
 BoardObservations throughLens(BoardObservations of_sensor, int height_px,
                               const std::optional<CameraIntrinsics>& lens);
 

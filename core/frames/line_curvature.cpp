@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTerms = 6;  // 1, x, y, x^2 / 2, x y, y^2 / 2
 
-// What a picture makes of a plane around its origin, to the second order.
+// Map from a plane to the picture around its origin, to second order.
 class LocalMap {
  public:
   void add(const Eigen::Vector2d& in_plane, const Eigen::Vector2d& in_picture_px, double weight) {
@@ -22,7 +22,7 @@ class LocalMap {
     squares_ += weight * row * row.transpose();
     products_ += weight * row * in_picture_px.transpose();
   }
-  // False where two rows leave nothing to tell a second derivative by.
+  // False if points are in too few rows for second derivatives.
   bool solve() {
     constexpr double kLeastPivot = 1e-3;
     const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(squares_);
@@ -57,7 +57,7 @@ BentLines::BentLines(const FoundPoints& found, const Board& board) : step_m_(boa
 }
 
 BentLines::Neighbours BentLines::around(std::size_t index) const {
-  // Two neighbours each way, and no more of them where they are denser, as those of tags are.
+  // Two neighbours in each direction; for denser points, as of tags, the same number.
   constexpr double kReach_steps = 2.9;
   constexpr std::size_t kMostPoints = 25;
   std::vector<std::pair<double, std::size_t>> near;  // squared distance, index
@@ -75,8 +75,8 @@ BentLines::Neighbours BentLines::around(std::size_t index) const {
   return points;
 }
 
-// Straight lines of the board are straight ones of the plane that a homography makes of it: what bends them is how
-// places in the picture follow from those in the plane.
+// A homography maps straight lines of the board to straight lines of its plane. Their curvature follows from
+// the map from that plane to the picture.
 std::optional<std::array<BentLine, 2>> BentLines::through(std::size_t index) const {
   const Neighbours points = around(index);
   if (points.on_board_m.size() <= kTerms) return std::nullopt;
@@ -97,7 +97,7 @@ std::optional<std::array<BentLine, 2>> BentLines::through(std::size_t index) con
   LocalMap map;
   const Eigen::Vector2d middle = inPlane(middle_m);
   for (std::size_t k = 0; k < points.on_board_m.size(); ++k) {
-    // The nearest count most, for a lens has higher orders.
+    // The nearest points have the largest weight, since a lens has higher orders.
     const double weight = 1.0 / (0.3 + (points.on_board_m[k] - middle_m).squaredNorm() / (step_m_ * step_m_));
     map.add((inPlane(points.on_board_m[k]) - middle) / step_px, points.in_picture_px[k], weight * weight);
   }

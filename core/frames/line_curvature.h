@@ -1,4 +1,4 @@
-// How much the board's lines bend in a picture by a wide lens, told by the points that were found on them.
+// Curvature of the board's lines in a picture by a wide lens, from the points detected on them.
 #pragma once
 
 #include "core/frames/found_point.h"
@@ -11,7 +11,7 @@
 
 namespace evical {
 
-// Near a point a line runs along p = tangent s + normal curvature s^2 / 2.
+// Near a point, a line follows p = tangent s + normal curvature s^2 / 2.
 struct BentLine {
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
   double curvature_1_px = 0.0;
@@ -21,8 +21,8 @@ class BentLines {
  public:
   BentLines(const FoundPoints& found, const Board& board);
 
-  // The lines along the board's rows and columns through the point that was found at this index: a quadratic map of
-  // the board's plane, fitted to the points around it. Nothing where they are too few.
+  // The lines along the board's rows and columns through the detected point of this index: a quadratic map of
+  // the board's plane, fitted to the points around it. Empty if there are too few.
   std::optional<std::array<BentLine, 2>> through(std::size_t index) const;
 
  private:

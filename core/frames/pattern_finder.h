@@ -1,4 +1,4 @@
-// What the finders of the different boards have in common.
+// Common interface of the finders of different boards.
 #pragma once
 
 #include "core/frames/board_finder.h"
@@ -31,7 +31,7 @@ std::unique_ptr<PatternFinder> makeTagGridFinder(const Board& board, const Frame
 std::unique_ptr<PatternFinder> makeCharucoFinder(const Board& board, const FrameOptions& options);
 std::unique_ptr<PatternFinder> makeCircleFinder(const Board& board, const FrameOptions& options);
 
-// The map that found points make; nothing where they are too few.
+// The map from detected points; empty if there are too few.
 std::optional<PlaneMap> mapOf(const FoundPoints& points, const Board& board);
 
 }  // namespace evical

@@ -15,7 +15,7 @@ std::string encoded(const Frame& frame, const char* suffix, const std::vector<in
   std::vector<std::uint8_t> bytes;
   if (!cv::imencode(suffix, viewOf(frame.size_px, CV_8UC1, frame.bytes, frame.row_bytes), bytes, options))
     throw calibrationFailed("frame", std::string("cannot be written as ") + suffix,
-                            "Check that OpenCV can write such files");
+                            "Check that OpenCV supports this format");
   return {bytes.begin(), bytes.end()};
 }
 

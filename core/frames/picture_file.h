@@ -1,4 +1,4 @@
-// A frame as the bytes of a picture's file.
+// Encoding of a frame as a picture file.
 #pragma once
 
 #include "core/data/frame.h"
@@ -7,10 +7,10 @@
 
 namespace evical {
 
-// Of Gray8 frames. Compressed quickly rather than well.
+// For Gray8 frames. Fast, with moderate compression.
 std::string encodedPng(const Frame& frame);
 
-// With loss; quality 1 to 100.
+// Lossy; quality 1 to 100.
 std::string encodedJpeg(const Frame& frame, int quality);
 
 }  // namespace evical

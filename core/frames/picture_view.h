@@ -1,4 +1,4 @@
-// Pixels as OpenCV sees them. Only for this folder.
+// Pixels as OpenCV matrices without a copy. Internal to this folder.
 #pragma once
 
 #include "core/frames/gray_image.h"
@@ -7,7 +7,7 @@
 
 namespace evical {
 
-// OpenCV has no type for pixels that it must not write to: nothing may write to these, which stay where they are.
+// OpenCV does not have a type for read-only pixels: do not write to this matrix, whose pixels are not copied.
 inline const cv::Mat viewOf(const Resolution& size_px, int type, const std::vector<std::uint8_t>& bytes,
                             std::size_t row_bytes = cv::Mat::AUTO_STEP) {
   return {size_px.height_px, size_px.width_px, type, const_cast<std::uint8_t*>(bytes.data()), row_bytes};

@@ -8,9 +8,11 @@
 namespace evical {
 namespace {
 
-// Of slopes and bends against the mean: few points do not tell them, and far from all they are not to be trusted.
+// Regularisation of slopes and second derivatives: few points do not determine them, and extrapolation is
+// unreliable.
 constexpr double kRidge = 0.003;
-constexpr double kFarthest = 4.0;  // steps; what is further weighs less than a thousandth of what is nearest
+constexpr double kFarthest =
+    4.0;  // steps; further points have less than a thousandth of the nearest point's weight
 
 }  // namespace
 
@@ -34,7 +36,7 @@ PlaneMap::Place PlaneMap::plain(const Eigen::Vector2d& on_board_m) const {
                   image.z()};
 }
 
-// A surface of second order through the known points' remainders, the nearest first.
+// Second-order surface through the residuals of known points, with weights that decrease with distance.
 PlaneMap::Place PlaneMap::placeOf(const Eigen::Vector2d& on_board_m) const {
   Eigen::Matrix<double, 6, 6> sums = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 2> products = Eigen::Matrix<double, 6, 2>::Zero();

@@ -1,5 +1,5 @@
-// Where the board's points lie in a picture, told by some of them: a homography, and on top of it what the lens
-// bends, from the nearest known points.
+// Map from the board's plane to a picture, from some detected points: a homography, plus a correction for
+// lens distortion from the nearest known points.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace evical {
 
 class PlaneMap {
  public:
-  // Nothing where the points make no homography. `step_m` is a typical distance between neighbours.
+  // Empty if the points do not determine a homography. `step_m` is a typical distance between neighbours.
   static std::optional<PlaneMap> fit(std::vector<Eigen::Vector2d> on_board_m,
                                      const std::vector<Eigen::Vector2d>& in_picture_px, double step_m);
 
@@ -26,7 +26,7 @@ class PlaneMap {
   Place plain(const Eigen::Vector2d& on_board_m) const;
 
   Eigen::Matrix3d picture_from_board_ = Eigen::Matrix3d::Identity();
-  std::vector<Eigen::Vector2d> known_m_, left_px_;  // what the homography leaves
+  std::vector<Eigen::Vector2d> known_m_, left_px_;  // residuals of the homography
   double step_m_ = 1.0;
 };
 

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-constexpr double kReach = 3.0;  // of the smoothing, in its sigmas
+constexpr double kReach = 3.0;  // radius of the smoothing, in its sigmas
 
 struct Slope {
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
@@ -51,7 +51,7 @@ std::optional<MeasuredCorner> measureSaddle(const GrayImage& image, const Eigen:
                                             double sigma_px, double reach_px, double noise_sigma,
                                             double correlated_px) {
   constexpr int kMostIterations = 12;
-  constexpr double kSettled = 1e-3;  // of the smoothing's sigma
+  constexpr double kSettled = 1e-3;  // relative to the smoothing's sigma
   Eigen::Vector2d at = start_px;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     if (!isInside(image, at, kReach * sigma_px + 2.0)) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<MeasuredCorner> measureSaddle(const GrayImage& image, const Eigen:
     at += step;
     if (!((at - start_px).norm() <= reach_px)) return std::nullopt;
     if (step.norm() > kSettled * sigma_px) continue;
-    // White noise of so many pixels' size makes a gradient of this variance along either axis.
+    // Variance of a gradient along either axis for white noise of pixels of this size.
     const double variance =
         std::pow(noise_sigma * correlated_px, 2) / (8.0 * std::numbers::pi * std::pow(sigma_px, 4));
     return MeasuredCorner{at, variance * inverse * inverse.transpose()};

@@ -10,8 +10,8 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kFewest = 4;  // a plane's affine change has three
-constexpr double kNoise = 4.0;      // single points lie further off than the board's motion tells
+constexpr std::size_t kFewest = 4;  // an affine change of a plane needs three
+constexpr double kNoise = 4.0;      // outlier limit of single points relative to the board's motion
 
 struct Mean {
   int count = 0;

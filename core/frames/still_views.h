@@ -1,4 +1,4 @@
-// How far a board has moved between two pictures, and views of a board that stands still made one.
+// Movement of a board between two pictures, and merging of views of a board at rest.
 #pragma once
 
 #include "core/frames/views_from_frames.h"
@@ -8,16 +8,17 @@
 
 namespace evical {
 
-// RMS over the board's points; nothing where the two have too few in common. What noise makes of single points does not
-// count: only motion that bends the board no more than a change of its pose does.
+// RMS movement over the board's points; empty if the two have too few common points. Excludes noise of single
+// points: only motion that a change of pose can cause counts.
 std::optional<double> movement_px(const FoundPoints& from, const FoundPoints& to);
 
-// The later view with the numbers that the earlier gives to the points at their places: a board that looks the same
-// turned, or of which a part is seen, may be counted otherwise each time. Points that have moved by more are left out.
+// The later view, with points numbered as in the earlier view at the same places: the numbering of a
+// symmetric board, or of a part of a board, may change between views. Points that have moved further are
+// removed.
 FoundPoints numberedAs(const FoundPoints& earlier, const FoundPoints& later, double nearest_px);
 
-// Views one after the other in which the board moves by less than `still_px` become their mean. Their noise averages
-// out, `common_sigma_px` does not.
+// Replaces consecutive views in which the board moves by less than `still_px` by their mean. This reduces
+// noise, but not errors of `common_sigma_px`.
 std::vector<PointsInFrame> joinedWhileStill(const std::vector<PointsInFrame>& views, double still_px,
                                             double common_sigma_px);
 

@@ -39,7 +39,7 @@ class TagReader {
   explicit TagReader(int border_bits)
       : family_(tag36h11_create(), tag36h11_destroy),
         detector_(apriltag_detector_create(), apriltag_detector_destroy) {
-    const int more = border_bits - 1;  // than the family was made for
+    const int more = border_bits - 1;  // bits more than in the family's definition
     family_->width_at_border += 2 * more;
     family_->total_width += 2 * more;
     for (std::uint32_t bit = 0; bit < family_->nbits; ++bit) {
@@ -54,11 +54,12 @@ class TagReader {
   std::vector<SeenTag> read(const GrayImage& image) {
     constexpr int kManyPixels = 1'500'000;
     detector_->quad_decimate = image.size_px.pixelCount() > kManyPixels ? 2.0F : 1.0F;
-    // Kalibr's tags touch the small squares between them, and the detector sees them as one: bright pixels grow
-    // by one to the right and downwards. Of rendered grids 36 of 36 tags are so found where 13 were before.
+    // Kalibr's tags touch the small squares between them, and the detector merges them: bright pixels are
+    // dilated by one to the right and downwards. With this, 36 of 36 tags of rendered grids are detected
+    // instead of 13.
     cv::Mat grown;
     cv::dilate(viewOf(image), grown, cv::Mat::ones(2, 2, CV_8UC1));
-    const double shift_px = 0.5 + 0.5;  // by the growth; of a pixel's middle
+    const double shift_px = 0.5 + 0.5;  // dilation, and offset of pixel centres
     image_u8_t picture = {grown.cols, grown.rows, static_cast<int>(grown.step), grown.data};
     const std::unique_ptr<zarray_t, void (*)(zarray_t*)> detections(
         apriltag_detector_detect(detector_.get(), &picture), apriltag_detections_destroy);
@@ -116,14 +117,14 @@ class TagGridFinder : public PatternFinder {
     const int tags = board_.rows * board_.cols;
     if (largest_id_ >= tags)
       return fmt::format(
-          "a tag of number {} was seen, and a board of {} x {} tags has 0 to {}: rows and columns",
+          "tag {} was detected, but a board of {} x {} tags has tags 0 to {}: check rows and columns",
           largest_id_, board_.rows, board_.cols, tags - 1);
     constexpr int kEnoughPictures = 3;
     if (misfits_ >= kEnoughPictures && misfits_ > fits_)
-      return fmt::format("the tags that were seen do not lie as on a board of {} x {} tags: rows and columns",
+      return fmt::format("the detected tags do not fit a board of {} x {} tags: check rows and columns",
                          board_.rows, board_.cols);
     if (looks_ >= kEnoughPictures && 2 * other_border_ > looks_)
-      return fmt::format("the border of {} bit{} fits, not that of {}", border_ == 1 ? 2 : 1,
+      return fmt::format("a tag border of {} bit{} fits better than one of {}", border_ == 1 ? 2 : 1,
                          border_ == 1 ? "s" : "", border_);
     return {};
   }
@@ -132,7 +133,7 @@ class TagGridFinder : public PatternFinder {
   std::vector<SeenTag> readTags(const GrayImage& image) {
     if (border_ != 0) {
       std::vector<SeenTag> tags = readers_.at(border_).read(image);
-      // Where the border that was asked for shows less, the other may be the truth: to be said.
+      // If the requested border detects fewer tags, the other one may be correct: it is reported.
       const bool asked = options_.tag_border != TagBorder::Automatic;
       if (asked && looks_ < kMostLooks) {
         ++looks_;
@@ -140,7 +141,7 @@ class TagGridFinder : public PatternFinder {
       }
       return tags;
     }
-    // Either reader may find a few tags of the other's.
+    // Each reader may detect a few tags with the other border.
     std::vector<SeenTag> most;
     int border_of_most = 0;
     for (const int border : kBorders) {
@@ -167,14 +168,14 @@ class TagGridFinder : public PatternFinder {
     return corners;
   }
 
-  // Wrong rows and columns leave hardly a plane for tags of several rows.
+  // With wrong rows and columns, tags of several rows hardly fit one plane.
   void countMisfit(const std::vector<ReadPoint>& corners, const std::vector<ReadPoint>& agreeing) {
     constexpr std::size_t kEnoughTags = 4;
     if (corners.size() < kEnoughTags * kCorners) return;
     ++(5 * agreeing.size() < 4 * corners.size() ? misfits_ : fits_);
   }
 
-  // From the tags that were read to their neighbours, until no more corners are found.
+  // From the decoded tags to their neighbours, until no more corners are found.
   FoundPoints spread(const GrayImage& image, const PlaneMap& from_tags) const {
     FoundPoints found = measure(image, from_tags, 2.0 * options_.largest_move_px);
     constexpr int kMostRounds = 4;
@@ -195,9 +196,9 @@ class TagGridFinder : public PatternFinder {
   FrameOptions options_;
   std::map<int, TagReader> readers_;  // by border
   std::map<int, CornerPattern> patterns_;
-  int border_ = 0;  // 0: not known yet
+  int border_ = 0;  // 0: unknown
   int largest_id_ = -1, fits_ = 0, misfits_ = 0;
-  int looks_ = 0, other_border_ = 0;  // for the border that was not asked for, and how often it fits better
+  int looks_ = 0, other_border_ = 0;  // number of tests of the other border, and of its better fits
 };
 
 }  // namespace

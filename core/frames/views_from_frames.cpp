@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLongestGap_s = 0.5;  // a hand has turned round in more
+constexpr double kLongestGap_s = 0.5;  // in a longer time a hand may reverse its motion
 constexpr double kBlurShare = 0.1;
 
 const FoundPoint* pointOf(const PointsInFrame& frame, int point) {
@@ -25,7 +25,7 @@ std::optional<Eigen::Vector2d> between(const PointsInFrame& from, const PointsIn
   return (b->at_px - a->at_px) / gap_s;
 }
 
-// The parabola's slope where both neighbours are known.
+// Slope of the parabola if both neighbours are known.
 Eigen::Vector2d velocityOf(const std::vector<PointsInFrame>& frames, std::size_t k, int point) {
   std::optional<Eigen::Vector2d> before, after;
   if (k > 0) before = between(frames[k - 1], frames[k], point);
@@ -50,7 +50,7 @@ double medianSpeed(const BoardView& view) {
   return *middle;
 }
 
-// Over the frames whose exposure is known.
+// Mean over the frames with known exposure.
 double meanExposure_s(const std::vector<PointsInFrame>& frames) {
   double sum_s = 0.0;
   int count = 0;

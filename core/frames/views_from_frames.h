@@ -1,4 +1,5 @@
-// From points in frames to views of the board: velocities, what motion adds to covariances, what is too blurred.
+// Conversion of points in frames to views of the board: velocities, covariances with motion, rejection of
+// blurred views.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -18,9 +19,9 @@ struct ViewFromFrame {
   double speed_px_s = 0.0;  // median of its points
 };
 
-// A view for each frame. Velocities are differences to the frames before and after, where those are near enough
-// in time, and 0 where there is none. While a frame is exposed a point moves by velocity times exposure: a tenth
-// of that, along the motion, is taken for the error it leaves.
+// One view per frame. Velocities are differences to the frames before and after, if these are close enough
+// in time, else 0. During the exposure a point moves by velocity times exposure: a tenth
+// of that, along the motion, is added as an error.
 std::vector<ViewFromFrame> viewsFromFrames(const std::vector<PointsInFrame>& frames, int points_of_board);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Surface of active events (docs/maths.md, 5.2): for each pixel and polarity, when the last edge
+// Surface of active events (docs/maths.md, 5.2): for each pixel and polarity, the time at which the last edge
 // of a window passed.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace evical {
 
 struct ActivePixel {
   std::uint16_t x_px, y_px;
-  bool leading;  // a circle's leading edge passed, by polarity
+  bool leading;  // passed by a circle's leading edge, according to the polarity
 };
 
 class ActiveEventSurface {
@@ -20,13 +20,13 @@ class ActiveEventSurface {
   static constexpr float kNever_s = -1e9f;
   static bool active(float time_s) { return time_s > kNever_s; }
 
-  // Neighbours up to border_px away may be read at every pixel of the image.
+  // Neighbours up to border_px away can be read at every pixel of the image.
   ActiveEventSurface(const BurstWindow& window, int border_px);
 
   const std::vector<ActivePixel>& pixels() const { return pixels_; }
   int stride() const { return stride_; }
 
-  // Time since the window's middle, or kNever_s; neighbours follow at dy * stride() + dx.
+  // Time since the window's middle, or kNever_s; the neighbour (dx, dy) is at dy * stride() + dx.
   const float* at(bool leading, int x_px, int y_px) const {
     return times_s_[leading].data() + (y_px + border_px_) * stride_ + x_px + border_px_;
   }

@@ -71,7 +71,7 @@ class ExtentJudge {
     return stateOf(line, static_cast<int>(seen.size()));
   }
 
-  // From an edge inwards, the first line of the board that the image shows.
+  // First line of the board in the image, from an edge inwards.
   LineState firstInView(int from, int step, int lines, bool rows) const {
     for (int k = from; k >= 0 && k < lines; k += step) {
       const auto seen =

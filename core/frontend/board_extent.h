@@ -1,5 +1,5 @@
-// Does the lattice of circles end where the board does? A session may give too few or too many rows or
-// columns, and the board is detected nevertheless.
+// Check whether the lattice of circles ends at the board's edges. A session may specify too few or too many
+// rows or columns, and the board is detected nevertheless.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -7,8 +7,8 @@
 
 namespace evical {
 
-// Checks one window in which the board was tracked, and counts it. A board that is misplaced by one step has
-// circles beyond one edge and none at the other: that view does not count.
+// Checks one window in which the board was tracked, and adds to the counts. A board that is misplaced by one
+// step has circles beyond one edge and none at the opposite one: such a view is not counted.
 void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent);
 

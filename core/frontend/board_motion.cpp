@@ -17,7 +17,7 @@ Eigen::Matrix3d normaliser(const ImageFrame& frame) {
   return n;
 }
 
-// The same flow about another centre: the family is closed under shifts (conjugation of its generator).
+// The same flow relative to another centre: the family is closed under shifts (conjugation of its generator).
 PlaneFlow reframed(const PlaneFlow& f, const ImageFrame& from, const ImageFrame& to) {
   const double s = from.scale_px;
   Eigen::Matrix3d generator;
@@ -139,7 +139,7 @@ double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene) {
 }
 
 std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
-  constexpr double kLeastTravel_px = 1.2;  // an edge that stays within its pixel fires few events or none
+  constexpr double kLeastTravel_px = 1.2;  // an edge that stays within a pixel fires few events or none
   std::vector<int> expected;
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;

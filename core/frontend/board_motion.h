@@ -1,5 +1,6 @@
-// All circles of a window together: the board's homography at the window's middle, the velocity field of its
-// image, and the distance of burst medians outside or inside the true edges. Fitted to the bursts themselves.
+// Joint motion model of all circles in a window: the board's homography at the window's middle, the velocity
+// field of its image, and the distance of burst medians outside or inside the true edges. Fitted directly to
+// the bursts.
 #pragma once
 
 #include "core/frontend/board_scene.h"
@@ -39,7 +40,7 @@ struct BoardMotion {
   PlaneFlow velocity_px_s = PlaneFlow::Zero();
   PlaneFlow acceleration_px_s2 = PlaneFlow::Zero();
   double radius_offset_px = 0.0;  // of burst medians outside the edges, in pixels
-  double typical_events = 0.0;    // of a burst at an edge that crosses its pixel squarely; 0: not known yet
+  double typical_events = 0.0;    // of a burst at an edge that moves along its normal; 0: unknown
   double residual_rms_px = 0.0;
   int bursts = 0;
 
@@ -55,7 +56,7 @@ struct BoardMotion {
   }
 };
 
-// The board as it should be at another time, moving on as it does.
+// The board's motion extrapolated to another time.
 BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns);
 
 // Homography after a small plane flow: H <- (I + E) H.
@@ -97,17 +98,17 @@ inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vecto
 // Mean speed of the board's circles in the image, in the sensor's pixels.
 double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene);
 
-// Circles that are in the image and move far enough in a window of this half width to fire events.
+// Circles in the image that move enough within a window of this half width to fire events.
 std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s);
 inline int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
   return static_cast<int>(circlesExpected(motion, scene, half_window_s).size());
 }
 
-// Bursts no further than this from the window's middle are fitted at that speed.
+// Half width of the window of fitted bursts at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
 
 // Weight of a burst by the direction in which its edge crossed the pixel: if an edge only grazes a pixel, its
-// burst is short and comes too early. `leads` is the cosine between outward normal and motion, negative if
+// burst is short and too early. `leads` is the cosine between outward normal and motion, negative if
 // the polarity contradicts it.
 inline double crossingWeight(double leads, double events, double typical_events,
                              const TrackingOptions& options) {
@@ -120,7 +121,7 @@ inline double crossingWeight(double leads, double events, double typical_events,
 }
 
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
-// `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts are near the edges.
+// `first_gate_px` as in the options, or wider after a search. Empty if too few bursts are near the edges.
 std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
                                           const BoardScene& scene, double first_gate_px,
                                           const TrackingOptions& options);

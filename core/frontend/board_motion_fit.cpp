@@ -1,7 +1,7 @@
-// The joint fit of all circles of a window. Bursts are summed up by circle and sector of its outline: within
+// The joint fit of all circles in a window. Bursts are summed by circle and sector of its outline: within
 // a sector the normals agree to a few degrees, so the normal equations (25 unknowns) are built from a few
-// hundred sectors instead of thousands of bursts. Gradients keep every burst's own normal: the optimum is not
-// touched by it.
+// hundred sectors instead of thousands of bursts. Gradients use every burst's own normal, so the optimum is
+// unchanged.
 #include "core/frontend/board_motion.h"
 
 #include "core/frontend/outline_sector.h"
@@ -27,7 +27,7 @@ struct NormalEquations {
   NormalVector vector = NormalVector::Zero();
   double weighted_squares = 0.0, weight = 0.0;
   int bursts = 0;
-  std::vector<double> square_events;  // of bursts whose edges cross squarely
+  std::vector<double> square_events;  // of bursts at edges that move along their normals
 };
 
 // Sums of w t^k, of w r t^k n, and of w r over the bursts of one sector.
@@ -43,8 +43,8 @@ struct FitPoint {
   double x, y, t, inverse_scale, events, lead;
 };
 
-// The priors only fix what the bursts do not determine. Perspective terms are the least certain and the least
-// needed.
+// The priors only fix directions that the bursts do not determine. Perspective terms are the least certain
+// and the least important.
 NormalVector priorSigmas(const TrackingOptions& options) {
   NormalVector sigmas;
   for (int i = 0; i < kFlowTerms; ++i) {
@@ -59,13 +59,13 @@ NormalVector priorSigmas(const TrackingOptions& options) {
 
 void addPriors(const NormalVector& sigmas, const NormalVector& from_prior, double noise2,
                NormalEquations& equations) {
-  // Bursts count in units of the robust scale, so the priors do too.
+  // Bursts are weighted in units of the robust scale, so the priors are, too.
   const NormalVector weights = noise2 * sigmas.cwiseAbs2().cwiseInverse();
   equations.matrix.diagonal() += weights;
   equations.vector -= weights.cwiseProduct(from_prior);
 }
 
-// One circle and how it moves: the field to first order around its centre.
+// One circle and its motion: the field to first order around its centre.
 struct CircleMotion {
   CircleImage circle;
   Eigen::Vector2d velocity, acceleration;
@@ -177,7 +177,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
   constexpr double kSettled_px = 0.01;
   BoardMotion motion = start;
   const NormalVector sigmas = priorSigmas(options);
-  // The prediction is the prior of shift and velocity; acceleration is drawn towards zero.
+  // The prediction is the prior of shift and velocity; the prior of acceleration is zero.
   NormalVector from_prior = NormalVector::Zero();
   from_prior.segment<kFlowTerms>(2 * kFlowTerms) = motion.acceleration_px_s2;
   const double half_window_s = fitHalfWindow_s(boardSpeed_px_s(motion, scene), options);

@@ -1,5 +1,5 @@
-// A board's motion from a few of its points, if nothing better is available: when a search has circles, or
-// when only the centres of an earlier view are left.
+// A board's motion from a few of its points, if no better estimate is available: for the circles of a search,
+// or the centres of an earlier view.
 #pragma once
 
 #include "core/frontend/board_motion.h"
@@ -16,7 +16,8 @@ struct MovingPoint {
   Eigen::Vector2d centre_px, velocity_px_s;
 };
 
-// The plane flow that the velocities agree on; terms that a few points do not show are drawn towards zero.
+// The plane flow that fits the velocities; terms that a few points do not determine are regularised towards
+// zero.
 PlaneFlow fitPlaneFlow(const ImageFrame& frame, const std::vector<MovingPoint>& points);
 
 // The homography, with a frame around the points and their flow.

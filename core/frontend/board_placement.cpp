@@ -17,13 +17,13 @@
 namespace evical {
 namespace {
 
-// Placements with fewer circles than this part of the best one's are not worth a fit.
+// Placements with fewer circles than this share of the best one's are not fitted.
 constexpr double kNearlyBest = 0.8;
 
 // Tolerance of the board's axes for equal length (logarithm of the ratio) and perpendicularity (cosine).
 constexpr double kAxesTolerance = 0.2;
 
-// The board's two axes as the camera sees them must be about equally long and perpendicular.
+// The board's two axes in the camera's view must be about equally long and perpendicular.
 bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera) {
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k.diagonal().head<2>() = idealFocalLength_px(camera);
@@ -71,8 +71,8 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
   }
 }
 
-// Circles that the lattice missed or had assigned to an outlier: any circle where the homography predicts
-// one.
+// Adds circles that the lattice missed or had assigned to an outlier: any circle at a place that the
+// homography predicts.
 void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingPoint>& ideal,
               const Board& board, const GridOptions& options,
               std::vector<std::pair<int, std::size_t>>& placed) {
@@ -103,8 +103,8 @@ void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingP
 
 namespace {
 
-// The first of all motions that map the lattice onto the same places: if the board looks the same when
-// rotated, a rotated placement is not a rival.
+// The first of all motions that map the lattice onto the same places: if the board is unchanged by a
+// rotation, a rotated placement is not a rival.
 std::vector<Eigen::Matrix3d> withoutTwins(const std::vector<Eigen::Matrix3d>& motions,
                                           const std::vector<Eigen::Matrix3d>& onto_itself) {
   constexpr double kSame = 1e-9;

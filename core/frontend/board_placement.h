@@ -12,18 +12,18 @@ namespace evical {
 // One placement of the lattice on the board.
 struct BoardPlacement {
   std::vector<std::pair<int, std::size_t>> circles;  // board circle, index of the moving circle
-  BoardMotion motion;                                // rough: from centres and velocities alone
+  BoardMotion motion;                                // approximate: from centres and velocities only
 };
 
-// All placements with nearly the best number of circles on the board, most circles first. Where the camera is
-// known, only those that a camera can see: two equal, perpendicular axes behind the homography.
+// All placements with nearly the largest number of circles on the board, in descending order. If the camera
+// is known, only those that a camera can see: two equal, perpendicular axes behind the homography.
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);
 
 // Motions of the board plane that map the board's lattice onto itself, shifted or rotated, so that at least
-// `least_overlap` of its circles meet circles: placements that may be confused. The identity is the first.
-// Motions that differ by a rotation that leaves the whole lattice unchanged are one.
+// `least_overlap` of its circles coincide with circles: placements that may be confused. The identity is the
+// first. Motions that differ by a symmetry of the whole lattice are listed once.
 std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap);
 
 }  // namespace evical

@@ -15,12 +15,13 @@
 namespace evical {
 namespace {
 
-// Window lengths that are tried, as multiples of that in which edges travel as far as the options say.
+// Window lengths that are tried, relative to the one in which edges travel the distance of the options.
 constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
-constexpr double kSpeedHalfWindow_s = 0.04;  // in which the edges' typical speed is looked up
-constexpr double kSlowest_px_s = 10.0;       // what is slower counts as this
-constexpr std::size_t kMostPlacements = 48;  // that are fitted: each costs as much as a tracked window
-constexpr double kRoughGateFactor = 1.5;     // on the first gate: placements are rougher than predictions
+constexpr double kSpeedHalfWindow_s = 0.04;  // for the edges' typical speed
+constexpr double kSlowest_px_s = 10.0;       // lower limit of speeds
+constexpr std::size_t kMostPlacements = 48;  // largest number of fits: each costs as much as a tracked window
+constexpr double kRoughGateFactor =
+    1.5;  // factor on the first gate: placements are less accurate than predictions
 
 CandidateSource otherThan(CandidateSource source) {
   return source == CandidateSource::RingVote ? CandidateSource::NormalFlow : CandidateSource::RingVote;
@@ -32,7 +33,7 @@ std::vector<CircleCandidate> findCandidates(const BurstWindow& window, Candidate
   return voteForCircles(window, options);
 }
 
-// A fitted placement: how many circles it explains, and how many of those in view it does not.
+// A fitted placement: the number of circles that it explains, and of those in view that it does not.
 struct Judged {
   BoardMotion motion;
   int measured = 0, missing = 0;
@@ -110,7 +111,7 @@ void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene
   search.ended = search.motion ? SearchStage::Done : SearchStage::JointFit;
 }
 
-// Searches around one instant, which share its typical speed and a window's memory.
+// Searches around one instant, which share the typical speed and a window's memory.
 class Searcher {
  public:
   Searcher(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,

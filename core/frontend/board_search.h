@@ -1,5 +1,5 @@
-// Finds the board in one window from nothing: circle candidates, moving circles, lattice, placement, and the
-// joint fit that decides between placements.
+// Search for the board in one window without a prediction: circle candidates, moving circles, lattice,
+// placement, and the joint fit that selects a placement.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -19,7 +19,7 @@ namespace evical {
 // Stages of a search, in this order.
 enum class SearchStage { Bursts, Candidates, Circles, Lattice, Placement, JointFit, Done };
 
-// Everything a drawing may want to show.
+// Results of all stages, for drawings.
 struct BoardSearch {
   CandidateSource source = CandidateSource::NormalFlow;
   SearchStage ended = SearchStage::Bursts;  // the stage that failed; Done: the board was found
@@ -33,17 +33,17 @@ struct BoardSearch {
   std::optional<BoardMotion> motion;
 };
 
-// One search for each source of candidates that was tried, in order: the options' method first, and
-// the other where that does not show the board. Each tries window lengths until one shows the board,
-// and is its last try.
+// One search for each source of candidates that was tried, in order: the options' method first, and the other
+// one if it does not find the board. Each tries several window lengths until one finds the board; its last
+// attempt is returned.
 std::vector<BoardSearch> searchBoard(const BurstHistory& history, std::int64_t middle_ns,
                                      const BoardScene& scene, const FrontEndOptions& options);
 
-// No search looks at bursts further than this from the middle, however slowly edges move.
+// Largest distance of bursts from the middle in any search, however slowly edges move.
 inline constexpr double kSearchReach_s = 0.08;
 
-// Normal flow around an instant, for drawings: in a window of this length, or as a search by
-// flow sees it at first.
+// Normal flow around an instant, for drawings: in a window of this length, or in the first window of a search
+// by flow.
 struct FlowAround {
   double half_window_s = 0.0;
   NormalFlowStages arcs;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min() / 2;
 constexpr std::int64_t kLongPause_ns = 1'000'000'000;
-constexpr double kSearchIntervalGrowth = 1.2;  // by each search that finds nothing
+constexpr double kSearchIntervalGrowth = 1.2;  // per search without result
 
 }  // namespace
 
@@ -85,7 +85,7 @@ WindowSlot BoardTracker::nextSlot() const {
   return {next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
 }
 
-// Long times without motion have no windows to process.
+// Skips long times without motion, which have no windows to process.
 void BoardTracker::skipEmptyTime(std::int64_t until_ns) {
   if (motion_) return;
   const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
@@ -193,12 +193,13 @@ void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trac
   WindowTrace anew =
       trackWindow({history_, scene_, options_, start_ns_}, slot, shifted(*trace.motion, *shift), window_);
   if (!anew.held() || anew.report.circles <= trace.report.circles) return;
-  // The extent's counts stay: if the board has more rows than the session states, placements change for ever.
+  // The counts of the extent are kept: if the board has more rows than the session states, placements keep
+  // changing.
   renumberTrack(*shift);
   trace = std::move(anew);
 }
 
-// Circles seen since the placement was last certain, with their present numbers.
+// Circles seen since the placement was last confirmed, with their present numbers.
 void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
   const std::vector<int> now = renumbering(scene_.board, shift);
   const auto begin = observations_.views.begin() + static_cast<std::ptrdiff_t>(open_begin_);
@@ -219,7 +220,7 @@ void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
       observations_.views.end());
 }
 
-// Views of a board that no window distinguished from its rivals do not count.
+// Views of a board that no window distinguished from its rivals are discarded.
 void BoardTracker::endTrack() {
   std::vector<BoardView>& views = observations_.views;
   if (!placement_watch_.isTold() && open_begin_ < views.size()) {

@@ -1,6 +1,6 @@
 // The front end over time: events in, board views out, in bounded memory. The board is searched once, then
-// tracked from window to window; windows that were missed before it was found are tracked backwards. Tracking
-// keeps checking the placement that was found, and replaces it if windows contradict it.
+// tracked from window to window; windows before the detection are tracked backwards. Tracking
+// keeps checking the placement, and replaces it if windows contradict it.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -29,18 +29,18 @@ class BoardTracker {
 
   // Events in time order, inside the resolution.
   void add(EventSpan events);
-  // The same for who extracts bursts elsewhere, e.g. in another thread: bursts as a BurstExtractor hands them
-  // out, and its completeUntil_ns() after them.
+  // The same for a caller that extracts bursts elsewhere, for example in another thread: the output of a
+  // BurstExtractor, and its completeUntil_ns() after it.
   void addBursts(const std::vector<EdgeCrossing>& bursts, std::int64_t first_event_ns,
                  std::int64_t complete_until_ns);
   BoardObservations finish();
 
-  void stopWith(std::stop_token stop) { stop_ = std::move(stop); }  // then what is left is not looked at
-  void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; null: nobody
+  void stopWith(std::stop_token stop) { stop_ = std::move(stop); }        // skips the remaining windows
+  void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; may be null
 
   const BoardScene& scene() const { return scene_; }
   const BurstHistory& history() const { return history_; }
-  // Views so far; complete except for windows that may still be found backwards.
+  // Views so far; complete except for windows that may still be found by backwards tracking.
   const BoardObservations& observations() const { return observations_; }
 
  private:
@@ -62,7 +62,7 @@ class BoardTracker {
   BoardScene scene_;
   FrontEndOptions options_;
   std::int64_t start_ns_;
-  std::optional<BurstExtractor> extractor_;  // only where events come in, not bursts
+  std::optional<BurstExtractor> extractor_;  // only if the input is events, not bursts
   BurstHistory history_;
   BurstWindow window_;
   std::int64_t complete_until_ns_;

@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// Bursts come in no order of place: their pixels are asked for so many bursts before their turn.
+// Bursts are not ordered by place: their pixels are prefetched this many bursts ahead.
 constexpr std::size_t kBurstsFetchedAhead = 16;
 constexpr std::int64_t kSlice_ns = 5'000'000;  // storage only: results do not depend on it
 
@@ -34,7 +34,7 @@ std::vector<EdgeCrossing> BurstHistory::emptySlice() {
 std::vector<EdgeCrossing>& BurstHistory::sliceAt(std::int64_t index) {
   if (slices_.empty() || slices_.back().index < index)
     return slices_.emplace_back(Slice{index, emptySlice()}).bursts;
-  // Without empty times the place is known.
+  // Without empty slices, the index gives the place.
   const auto place = static_cast<std::size_t>(std::max<std::int64_t>(index - slices_.front().index, 0));
   if (place < slices_.size() && slices_[place].index == index) return slices_[place].bursts;
   const auto found = firstFrom(index);

@@ -1,4 +1,4 @@
-// The bursts around one instant, ready to be asked for by place.
+// The bursts around one instant, indexed by place.
 #pragma once
 
 #include "core/frontend/board_scene.h"
@@ -14,8 +14,8 @@
 
 namespace evical {
 
-// Recent bursts in slices of time, so that any window of the kept history can be gathered. Time without bursts
-// takes no room.
+// Recent bursts in slices of time, so that any window of the history can be gathered. Time without bursts
+// needs no memory.
 class BurstHistory {
  public:
   void add(const std::vector<EdgeCrossing>& bursts);
@@ -24,7 +24,7 @@ class BurstHistory {
   // Appends all bursts with begin_ns <= time < end_ns.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeCrossing>& bursts) const;
   std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
-  // End of the time without bursts from this time on, to a slice's accuracy; nothing without later bursts.
+  // End of the time without bursts from this time on, to a slice's accuracy; empty without later bursts.
   std::optional<std::int64_t> nextAfter(std::int64_t from_ns) const;
   bool empty() const { return slices_.empty(); }
 
@@ -40,22 +40,22 @@ class BurstHistory {
   Slices::const_iterator firstFrom(std::int64_t index) const;
 
   Slices slices_;                                 // ascending, none of them empty
-  std::vector<std::vector<EdgeCrossing>> spare_;  // memory of slices that were dropped, for those to come
+  std::vector<std::vector<EdgeCrossing>> spare_;  // memory of dropped slices, for new ones
 };
 
 // Drops isolated bursts: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
 // included.
 void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeCrossing>& bursts);
 
-// A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the
-// same where nothing is known).
+// A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (equal to the sensor's for
+// an unknown camera).
 struct WindowBurst {
   float x_px, y_px;
   float ideal_x_px, ideal_y_px;
   PixelStretch stretch;
   float time_s;  // since the window's middle
-  float events;  // that the edge fired here
-  float lead;    // +1 if a circle's leading edge fires so, -1 if its trailing edge does
+  float events;  // fired by the edge here
+  float lead;    // +1 for the polarity of a circle's leading edge, -1 for its trailing edge
 };
 
 // Bursts sorted into cells of 8 x 8 pixels.
@@ -66,7 +66,7 @@ class BurstWindow {
   explicit BurstWindow(const BoardScene& scene);
 
   void assign(const std::vector<EdgeCrossing>& bursts, std::int64_t middle_ns);
-  // The history's bursts no further than half_window_s from the middle.
+  // Selects the history's bursts within half_window_s of the middle.
   void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
   // The same without isolated bursts (keepSupported).
   void fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
@@ -90,7 +90,7 @@ class BurstWindow {
   bool dark_circles_;
   int columns_, rows_;
   std::int64_t middle_ns_ = 0;
-  std::vector<EdgeCrossing> gathered_;  // kept for its memory
+  std::vector<EdgeCrossing> gathered_;  // kept to reuse its memory
   std::vector<WindowBurst> bursts_;
   std::vector<std::uint32_t> cell_begin_;  // columns_ * rows_ + 1
 };

@@ -1,4 +1,4 @@
-// A place where a circle of the board may be: what candidate sources hand to the moving-circle fit.
+// Candidate place of a circle of the board: passed from candidate sources to the moving-circle fit.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The lattice of moving circles, by the front end's options.
+// The lattice of moving circles, with the front end's options.
 #pragma once
 
 #include "core/frontend/detection_options.h"

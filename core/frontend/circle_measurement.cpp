@@ -21,7 +21,7 @@ struct EdgePoint {
   double time_s, scale, weight;
   double leads;         // +1 at leading edges, -1 at trailing ones
   std::uint32_t burst;  // index into the window
-  bool used = false;    // by the last round of the fit
+  bool used = false;    // in the last iteration of the fit
 };
 
 void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, const BoardMotion& motion,
@@ -31,7 +31,7 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
   const Eigen::Vector2d acceleration = motion.accelerationAt(circle.centre_px);
   const double speed = velocity.norm() + 0.5 * half_slot_s * acceleration.norm();
   const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
-  // Wider than the fit's last gate by the largest deviation of a circle from the board's fit.
+  // Limit of gates: the fit's last gate plus the largest deviation of a circle from the board's fit.
   const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
   const double reach = circle.sensor_radius_px + gate_px + speed * half_slot_s * sensor_scale;
   const Eigen::Vector2d& middle = circle.sensor_centre_px;
@@ -61,7 +61,8 @@ struct CentreFit {
   unsigned sectors = 0;
 };
 
-// Residuals are linear in the shift if it is small compared with the radius; a few rounds settle the weights.
+// Residuals are linear in the shift if it is small compared with the radius; a few iterations settle the
+// weights.
 CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const TrackingOptions& options,
                     std::vector<EdgePoint>& points) {
   CentreFit fit;
@@ -135,7 +136,7 @@ CircleVerdict judge(const CircleImage& circle, const CentreFit& fit, std::size_t
   return CircleVerdict::Measured;
 }
 
-// Measures one circle after the other; keeps the memory of one for the next.
+// Measures one circle after the other; reuses the memory.
 class CircleMeter {
  public:
   CircleMeter(const BurstWindow& window, const BoardMotion& motion, const MeasuredSlot& slot,
@@ -149,7 +150,7 @@ class CircleMeter {
     const CentreFit fit = fitCentre(circle, motion_, options_, points_);
     const CircleVerdict verdict = judge(circle, fit, points_.size(), options_);
     if (verdict != CircleVerdict::Measured) return verdict;
-    // The window's scatter, not one circle's: a dozen points do not determine their noise.
+    // Scatter of the whole window: a dozen points of one circle do not determine their noise.
     const double noise2 = std::max(motion_.residual_rms_px * motion_.residual_rms_px, 1e-3);
     out = observation(circle, fit, motion_, noise2, slot_.start_ns);
     const double scale = circle.largest_radius_px / circle.sensor_radius_px;
@@ -188,20 +189,21 @@ const char* circleVerdictName(CircleVerdict verdict) {
     case CircleVerdict::TooFewInliers:
       return "too few bursts on its edge";
     case CircleVerdict::TooShortArc:
-      return "too little of its outline";
+      return "outline too incomplete";
     case CircleVerdict::OffTheBoard:
-      return "off the board's fit";
+      return "too far from the board's fit";
     case CircleVerdict::TooUnsure:
       break;
   }
-  return "too unsure";
+  return "centre too uncertain";
 }
 
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
                                               const BoardScene& scene, const MeasuredSlot& slot,
                                               const TrackingOptions& options, MeasurementTrace* trace) {
   std::vector<CircleObservation> circles;
-  circles.reserve(static_cast<std::size_t>(scene.board.pointCount()));  // views are kept
+  circles.reserve(
+      static_cast<std::size_t>(scene.board.pointCount()));  // reserved exactly, since views are kept
   CircleMeter meter(window, motion, slot, options);
   if (trace)
     trace->verdicts.assign(static_cast<std::size_t>(scene.board.pointCount()), CircleVerdict::OutsideImage);

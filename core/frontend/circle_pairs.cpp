@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNoPartner = static_cast<std::size_t>(-1);
 
-// Which kinds are paired in each round.
+// Kinds of clusters that are paired in each round.
 bool pairedInRound(int round, const EventCluster& leading, const EventCluster& trailing) {
   const bool run = leading.kind == ClusterKind::Run, chase = trailing.kind == ClusterKind::Chase;
   const bool any_lead = leading.kind == ClusterKind::Other, any_trail = trailing.kind == ClusterKind::Other;
@@ -33,8 +33,8 @@ bool othersBetween(const std::vector<EventCluster>& clusters, std::size_t a, std
   return false;
 }
 
-// The motion of a circle from the motion of its edges, n . v = |v_n|; speeds of nearly flat planes are wild,
-// so large errors count less.
+// Motion of a circle from the motion of its edges, n . v = |v_n|; speeds of nearly flat planes are
+// unreliable, so large errors are down-weighted.
 Eigen::Vector2d circleVelocity(const std::vector<const NormalFlow*>& flows,
                                const Eigen::Vector2d& direction) {
   std::vector<double> speeds;
@@ -107,7 +107,7 @@ std::optional<CircleCandidate> circleOf(const EventCluster& leading, const Event
   return circle;
 }
 
-// Best partner of each cluster among those still alone, and how far it is.
+// Best partner of each unpaired cluster, and its distance.
 struct Partner {
   std::size_t cluster = kNoPartner;
   double distance_px = std::numeric_limits<double>::infinity();

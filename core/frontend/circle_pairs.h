@@ -1,4 +1,4 @@
-// Circle candidates from pairs of arcs: one that leads and one that follows (docs/maths.md, 5.2).
+// Circle candidates from pairs of arcs: a leading and a trailing one (docs/maths.md, 5.2).
 #pragma once
 
 #include "core/frontend/circle_candidate.h"
@@ -15,15 +15,14 @@ struct ArcPair {
   CircleCandidate circle;
 };
 
-// What the published chain finds on its way; for drawings.
+// Intermediate results of the published method; for drawings.
 struct NormalFlowStages {
   NormalFlowField flow;
   std::vector<EventCluster> clusters;
   std::vector<ArcPair> pairs;
 };
 
-// Pairs arcs that move alike, one behind the other. Nearest first, mutually; arcs of
-// a clear kind before others.
+// Pairs arcs that move alike, one behind the other. Mutual nearest neighbours; arcs of a clear kind first.
 std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, const NormalFlowField& field,
                                   const FrontEndOptions& options);
 

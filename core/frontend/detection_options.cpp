@@ -5,163 +5,169 @@
 namespace evical {
 namespace {
 
-constexpr std::tuple kBurstFields{Field{"least_events", &BurstOptions::least_events, 2, within(1, 20), "",
-                                        "Events that an edge must fire at a pixel to count."},
-                                  Field{"longest_gap_s", &BurstOptions::longest_gap_s, 0.15,
-                                        within(1e-3, 1.0), "s", "A longer pause always ends a burst."},
-                                  Field{"shortest_gap_s", &BurstOptions::shortest_gap_s, 0.004,
-                                        within(0.0, 0.1), "s", "A shorter pause never ends a burst."},
-                                  Field{"gap_to_pace", &BurstOptions::gap_to_pace, 6.0, within(1.5, 100.0),
-                                        "", "A pause of this many mean intervals of the burst ends it."},
-                                  Field{"longest_burst_s", &BurstOptions::longest_burst_s, 1.0,
-                                        within(1e-2, 1.0), "s", "A burst that lasts longer is cut."}};
+constexpr std::tuple kBurstFields{
+    Field{"least_events", &BurstOptions::least_events, 2, within(1, 20), "",
+          "Smallest number of events of an edge at a pixel."},
+    Field{"longest_gap_s", &BurstOptions::longest_gap_s, 0.15, within(1e-3, 1.0), "s",
+          "Longest pause between events of a burst."},
+    Field{"shortest_gap_s", &BurstOptions::shortest_gap_s, 0.004, within(0.0, 0.1), "s",
+          "Pause up to which events always belong to the same burst."},
+    Field{"gap_to_pace", &BurstOptions::gap_to_pace, 6.0, within(1.5, 100.0), "",
+          "Pause that ends a burst, in mean intervals of the burst."},
+    Field{"longest_burst_s", &BurstOptions::longest_burst_s, 1.0, within(1e-2, 1.0), "s",
+          "Longest burst; longer ones are split."}};
 constexpr auto kBurstDefaults = defaultsOf<BurstOptions, kBurstFields>();
 
 constexpr std::tuple kDetectionFields{
     Choice{"method", &DetectionOptions::method, CandidateSource::NormalFlow,
            std::array{"ring_vote", "normal_flow"},
-           "Where circle candidates come from when nothing is tracked.", Level::Public},
+           "Source of circle candidates in a search without tracking.", Level::Public},
     Switch{"try_both", &DetectionOptions::try_both, true,
-           "Where the method's source does not show the board, try the other.", Level::Expert},
+           "Use the other source of candidates if the method's source does not find the board.",
+           Level::Expert},
     Field{"window_travel_px", &DetectionOptions::window_travel_px, 2.5, within(0.5, 20.0), "px",
-          "Windows are laid so that the board's edges travel about this far in one.", Level::Expert},
+          "Distance that the board's edges travel in one window, approximately.", Level::Expert},
     Field{"shortest_window_s", &DetectionOptions::shortest_window_s, 0.005, within(1e-3, 0.1), "s",
-          "No window is shorter.", Level::Expert},
+          "Shortest window.", Level::Expert},
     Field{"longest_window_s", &DetectionOptions::longest_window_s, 0.05, within(5e-3, 0.2), "s",
-          "No window is longer.", Level::Expert},
+          "Longest window.", Level::Expert},
     Field{"search_interval_s", &DetectionOptions::search_interval_s, 0.05, within(0.0, 2.0), "s",
-          "While the board is lost, search the whole image this often."},
+          "Interval of searches in the whole image while the board is lost."},
     Field{"longest_search_interval_s", &DetectionOptions::longest_search_interval_s, 0.5, within(0.0, 10.0),
           "s",
-          "Searches that find nothing become rarer, up to this interval; history_s brings back what they "
-          "miss."},
+          "Longest interval of searches; it grows while they fail. Windows in between are tracked backwards "
+          "within history_s."},
     Field{"history_s", &DetectionOptions::history_s, 2.0, within(0.0, 30.0), "s",
-          "How far back a found board is tracked backwards in time."},
+          "Time over which a detected board is tracked backwards."},
     Field{"least_window_bursts", &DetectionOptions::least_window_bursts, 60, within(1, 100000), "",
-          "A window with fewer edge bursts is not looked at."},
+          "Smallest number of edge bursts in a window; other windows are skipped."},
     Field{"smallest_radius_px", &DetectionOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
-          "Smallest circle looked for.", Level::Expert},
+          "Radius of the smallest circle in a search.", Level::Expert},
     Field{"largest_radius_px", &DetectionOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
-          "Largest circle looked for.", Level::Expert}};
+          "Radius of the largest circle in a search.", Level::Expert}};
 constexpr auto kDetectionDefaults = defaultsOf<DetectionOptions, kDetectionFields>();
 
 constexpr std::tuple kRingVoteFields{
     Field{"radius_step", &RingVoteOptions::radius_step, 1.12, within(1.02, 1.5), "",
-          "Ratio of neighbouring radii."},
+          "Ratio of consecutive radii in the search."},
     Field{"ring_half_width_px", &RingVoteOptions::ring_half_width_px, 0.75, within(0.3, 3.0), "px",
-          "Half the ring's thickness."},
+          "Half the thickness of the ring of votes."},
     Field{"least_score", &RingVoteOptions::least_score, 0.18, within(0.02, 1.0), "",
-          "Signed vote over ring area from which a place is a candidate."},
+          "Smallest signed vote of a candidate, relative to the ring's area."},
     Field{"least_support", &RingVoteOptions::least_support, 3, within(1, 9), "",
-          "Bursts of one polarity in a 3x3 neighbourhood, itself included, for a burst to vote."},
+          "Smallest number of bursts of one polarity in the 3x3 neighbourhood of a voting burst, itself "
+          "included."},
     Field{"most_candidates", &RingVoteOptions::most_candidates, 1500, within(10, 5000), "",
-          "Only the best this many are fitted."},
+          "Largest number of fitted candidates, best first."},
     Field{"window_travel_px", &RingVoteOptions::window_travel_px, 2.5, within(0.5, 20.0), "px",
-          "Edges should travel about this far in a searched window."}};
+          "Distance that edges travel in a searched window, approximately."}};
 constexpr auto kRingVoteDefaults = defaultsOf<RingVoteOptions, kRingVoteFields>();
 
 constexpr std::tuple kMovingCircleFields{
     Field{"first_gate_px", &MovingCircleOptions::first_gate_px, 2.5, within(0.5, 10.0), "px",
-          "Bursts this near the edge, at first."},
+          "Largest distance of fitted bursts from the edge, first iteration."},
     Field{"last_gate_px", &MovingCircleOptions::last_gate_px, 1.2, within(0.3, 10.0), "px",
-          "Bursts this near the edge, at last."},
+          "Largest distance of fitted bursts from the edge, last iteration."},
     Field{"robust_scale_px", &MovingCircleOptions::robust_scale_px, 0.5, within(0.05, 5.0), "px",
           "Scale of the Cauchy weight."},
     Field{"largest_rms_px", &MovingCircleOptions::largest_rms_px, 0.8, within(0.1, 5.0), "px",
-          "A worse fit is dropped."},
+          "Largest residual RMS of an accepted fit."},
     Field{"least_bins", &MovingCircleOptions::least_bins, 8, within(1, 16), "",
-          "Of 16 sectors that must hold bursts."},
+          "Smallest number of the outline's 16 sectors with bursts."},
     Field{"least_bursts_per_polarity", &MovingCircleOptions::least_bursts_per_polarity, 4, within(0, 1000),
-          "", "Bursts that the leading and the trailing arc must have."},
+          "", "Smallest number of bursts on the leading and on the trailing arc."},
     Field{"least_polarity_cosine", &MovingCircleOptions::least_polarity_cosine, -0.2, within(-1.0, 1.0), "",
-          "Bursts on the wrong side of the motion by more than this are left out."},
-    Field{"iterations", &MovingCircleOptions::iterations, 8, within(1, 50), "", "Gauss-Newton steps."}};
+          "Smallest cosine between normal and motion for the burst's polarity; other bursts are excluded."},
+    Field{"iterations", &MovingCircleOptions::iterations, 8, within(1, 50), "",
+          "Gauss-Newton iterations of the fit."}};
 constexpr auto kMovingCircleDefaults = defaultsOf<MovingCircleOptions, kMovingCircleFields>();
 
 constexpr std::tuple kGridFields{
     Field{"shortest_step_radii", &GridOptions::shortest_step_radii, 2.2, within(2.0, 20.0), "radii",
-          "Nearest neighbours, at least."},
+          "Smallest distance of neighbours, in circle radii."},
     Field{"longest_step_radii", &GridOptions::longest_step_radii, 5.0, within(2.1, 40.0), "radii",
-          "Nearest neighbours, at most."},
+          "Largest distance of neighbours, in circle radii."},
     Field{"largest_radius_ratio", &GridOptions::largest_radius_ratio, 1.54, within(1.05, 4.0), "",
-          "Between neighbours."},
+          "Largest ratio of the radii of neighbours."},
     Field{"step_tolerance", &GridOptions::step_tolerance, 0.22, within(0.05, 0.45), "steps",
-          "How far a neighbour may be off."},
+          "Largest deviation of a neighbour from its predicted place."},
     Field{"least_sine", &GridOptions::least_sine, 0.6, within(0.1, 1.0), "",
-          "Of the angle between a lattice's two directions."},
+          "Smallest sine of the angle between a lattice's two directions."},
     Field{"least_partial", &GridOptions::least_partial, 0.4, within(0.1, 1.0), "",
-          "Part of the circles that makes a partial grid.", Level::Expert},
+          "Smallest share of the circles in a partial grid.", Level::Expert},
     Field{"least_circles", &GridOptions::least_circles, 6, within(4, 1000), "",
-          "A grid with fewer circles is none.", Level::Expert},
+          "Smallest number of circles in a grid.", Level::Expert},
     Field{"ambiguity_margin", &GridOptions::ambiguity_margin, 2, within(0, 100), "",
-          "An incomplete grid needs this many circles more than its runner-up placement."},
+          "Number of circles by which a partial grid's placement must exceed the second-best one."},
     Field{"least_rival_overlap", &GridOptions::least_rival_overlap, 0.5, within(0.1, 1.0), "",
-          "Other placements that share this part of the circles are held against the one that was found."},
+          "Smallest overlap of rival placements that are compared with the accepted one, as a share of the "
+          "circles."},
     Field{"most_missing", &GridOptions::most_missing, 0.2, within(0.0, 1.0), "",
-          "Circles that should be seen and are not, as part of those that are, for a board to be believed."},
+          "Largest ratio of missing to detected circles for an accepted board."},
     Field{"look_every_windows", &GridOptions::look_every_windows, 10, within(1, 10000), "",
-          "Once circles have told how the board lies, one in so many tracked windows is asked again; every "
-          "one before that."},
+          "Interval of placement checks after confirmation, in tracked windows; every window is checked "
+          "before."},
     Field{"contradicting_looks", &GridOptions::contradicting_looks, 2, within(1, 1000), "",
-          "A board is laid anew where so many looks in a row show it laid another way."}};
+          "Number of consecutive contradicting checks after which the placement is replaced."}};
 constexpr auto kGridDefaults = defaultsOf<GridOptions, kGridFields>();
 
 constexpr std::tuple kTrackingFields{
     Field{"fit_travel_px", &TrackingOptions::fit_travel_px, 3.0, within(0.5, 20.0), "px",
-          "The board's motion is fitted to bursts while edges travel this far."},
+          "Distance that edges travel within the window of the motion fit."},
     Field{"longest_fit_half_window_s", &TrackingOptions::longest_fit_half_window_s, 0.06, within(1e-3, 0.5),
-          "s", "But to bursts no further away in time than this."},
+          "s", "Longest half window of the motion fit."},
     Field{"first_gate_px", &TrackingOptions::first_gate_px, 3.0, within(0.5, 20.0), "px",
-          "Bursts this near an edge, at first."},
+          "Largest distance of fitted bursts from an edge, first iteration."},
     Field{"last_gate_px", &TrackingOptions::last_gate_px, 1.0, within(0.3, 20.0), "px",
-          "Bursts this near an edge, at last."},
+          "Largest distance of fitted bursts from an edge, last iteration."},
     Field{"gate_ratio", &TrackingOptions::gate_ratio, 0.6, within(0.1, 1.0), "",
-          "By which the gate narrows from step to step."},
+          "Ratio of the gates of consecutive iterations."},
     Field{"robust_scale_px", &TrackingOptions::robust_scale_px, 0.4, within(0.05, 5.0), "px",
           "Scale of the Cauchy weight."},
     Field{"iterations", &TrackingOptions::iterations, 8, within(2, 50), "",
-          "Gauss-Newton steps of the joint fit."},
+          "Gauss-Newton iterations of the joint fit."},
     Field{"least_polarity_cosine", &TrackingOptions::least_polarity_cosine, 0.35, within(0.0, 1.0), "",
-          "Cosine between edge normal and motion below which an edge is left out: it grazes pixels."},
+          "Smallest cosine between edge normal and motion; other edges graze pixels and are excluded."},
     Field{"full_polarity_cosine", &TrackingOptions::full_polarity_cosine, 0.7, within(0.0, 1.0), "",
-          "Cosine from which an edge has its full weight."},
+          "Smallest cosine between edge normal and motion at which an edge has its full weight."},
     Field{"least_event_part", &TrackingOptions::least_event_part, 0.8, within(0.0, 1.0), "",
-          "Bursts with fewer events than this part of a typical one are left out: their edges graze the "
-          "pixel."},
+          "Smallest number of events relative to a typical burst; other bursts are of edges that graze the "
+          "pixel, and excluded."},
     Field{"full_event_part", &TrackingOptions::full_event_part, 1.0, within(0.0, 1.0), "",
-          "Bursts from this part of the typical number of events have their full weight."},
+          "Smallest number of events relative to a typical burst at which a burst has its full weight."},
     Field{"least_arc", &TrackingOptions::least_arc, 0.25, within(0.05, 1.0), "",
-          "Part of a circle's 16 sectors that must hold bursts."},
+          "Smallest share of a circle's 16 sectors with bursts."},
     Field{"least_circle_bursts", &TrackingOptions::least_circle_bursts, 8, within(3, 1000), "",
-          "Bursts that a circle must have."},
+          "Smallest number of bursts of a circle."},
     Field{"least_inliers", &TrackingOptions::least_inliers, 0.6, within(0.0, 1.0), "",
-          "Part of the bursts around a circle's edge that must lie on it, within the robust scale."},
+          "Smallest share of inliers among the bursts around a circle's edge, within the robust scale."},
     Field{"largest_centre_sigma_px", &TrackingOptions::largest_centre_sigma_px, 0.5, within(0.05, 5.0), "px",
-          "A circle's centre less sure than this is left out."},
+          "Largest sigma of a circle's centre; other circles are excluded."},
     Field{"largest_centre_shift_px", &TrackingOptions::largest_centre_shift_px, 1.5, within(0.2, 10.0), "px",
-          "A circle this far off the board's fit is left out."},
+          "Largest distance of a circle from the board's fit; other circles are excluded."},
     Field{"radius_offset_sigma_px", &TrackingOptions::radius_offset_sigma_px, 0.15, within(0.01, 2.0), "px",
-          "How far one circle's radius may differ from what all show."},
+          "Prior sigma of one circle's radius offset relative to that of all circles."},
     Field{"prediction_sigma_px", &TrackingOptions::prediction_sigma_px, 4.0, within(0.1, 50.0), "px",
-          "How far the prediction from the window before is trusted."},
+          "Prior sigma of the position predicted from the window before."},
     Field{"velocity_sigma_px_s", &TrackingOptions::velocity_sigma_px_s, 150.0, within(1.0, 1e5), "px/s",
-          "How far the velocity may differ from the prediction."},
+          "Prior sigma of the predicted velocity."},
     Field{"acceleration_sigma_px_s2", &TrackingOptions::acceleration_sigma_px_s2, 1500.0, within(1.0, 1e6),
-          "px/s^2", "How large accelerations are."},
+          "px/s^2", "Prior sigma of accelerations."},
     Field{"longest_gap_s", &TrackingOptions::longest_gap_s, 0.3, within(0.0, 5.0), "s",
-          "A lost board is predicted for this long before it is searched anew."}};
+          "Time over which a lost board is predicted before it is searched again."}};
 constexpr auto kTrackingDefaults = defaultsOf<TrackingOptions, kTrackingFields>();
 
 constexpr std::tuple kExtentFields{
     Field{"every_windows", &ExtentOptions::every_windows, 5, within(1, 1000), "",
-          "One in so many tracked windows is looked at."},
-    Field{"least_line", &ExtentOptions::least_line, 0.6, within(0.3, 1.0), "",
-          "Part of a row or column that must lie in the image to be judged, and of that part that must be "
-          "seen to be there."},
+          "Interval of the checks, in tracked windows."},
+    Field{
+        "least_line", &ExtentOptions::least_line, 0.6, within(0.3, 1.0), "",
+        "Smallest share of a row or column in the image for a check, and smallest share of detected circles "
+        "in it."},
     Field{"least_views", &ExtentOptions::least_views, 15, within(1, 100000), "",
-          "Views looked at without which nothing is said."},
+          "Smallest number of checked views for a report."},
     Field{"largest_share", &ExtentOptions::largest_share, 0.25, within(0.0, 1.0), "",
-          "Part of the views that may contradict the session's rows or columns."}};
+          "Largest share of views that may contradict the session's rows or columns."}};
 constexpr auto kExtentDefaults = defaultsOf<ExtentOptions, kExtentFields>();
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The front end's options, one table a stage. Lengths in px are the sensor's own pixels.
+// The front end's options, one table per stage. Lengths in px are the sensor's own pixels.
 #pragma once
 
 #include "core/base/option_struct.h"
@@ -21,7 +21,7 @@ struct BurstOptions {
 
 enum class CandidateSource { RingVote, NormalFlow };
 
-// The front end as a whole: where candidates come from, how windows are laid.
+// The front end as a whole: source of candidates, length and interval of windows.
 struct DetectionOptions {
   CandidateSource method;
   bool try_both;
@@ -56,7 +56,7 @@ struct RingVoteOptions {
   static const OptionTable<RingVoteOptions>& table();
 };
 
-// Moving circles, one by one (docs/maths.md, 5.3).
+// Separate fits of moving circles (docs/maths.md, 5.3).
 struct MovingCircleOptions {
   double first_gate_px;
   double last_gate_px;
@@ -94,7 +94,7 @@ struct GridOptions {
   static const OptionTable<GridOptions>& table();
 };
 
-// All circles of a window together, and from window to window.
+// Joint fit of all circles in a window, and tracking from window to window.
 struct TrackingOptions {
   double fit_travel_px;
   double longest_fit_half_window_s;
@@ -124,7 +124,7 @@ struct TrackingOptions {
   static const OptionTable<TrackingOptions>& table();
 };
 
-// Does the board have the rows and columns that the session says?
+// Check of the board's rows and columns against the session.
 struct ExtentOptions {
   int every_windows;
   double least_line;

@@ -27,7 +27,7 @@ DrawingCanvas::DrawingCanvas(Resolution resolution_px, int wanted_width_px)
               scalar(kBackground)) {}
 
 cv::Point DrawingCanvas::fixed(const Eigen::Vector2d& pixel) const {
-  // OpenCV's integers would overflow further outside the picture.
+  // Avoids overflow of OpenCV's integers further outside the picture.
   constexpr double kFarthest_px = 1e5;
   const Eigen::Vector2d p =
       ((pixel.array() + 0.5) * factor_ - 0.5).cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);

@@ -23,7 +23,7 @@ class DrawingCanvas {
 
   int factor() const { return factor_; }
 
-  // Brightness 0..1 of the colour; a pixel hit twice keeps the brighter.
+  // Brightness 0..1 of the colour; a pixel that is drawn twice keeps the brighter one.
   void pixel(int x_px, int y_px, Colour colour, double brightness);
   void line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Colour colour, int thickness = 1);
   void arrow(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Colour colour);
@@ -32,7 +32,8 @@ class DrawingCanvas {
   void cross(const Eigen::Vector2d& centre, Colour colour);
   void label(const Eigen::Vector2d& beside, const std::string& text, Colour colour);
 
-  // One line above the picture, one below: coloured words. Last of all: they cover what sticks out.
+  // One line above the picture and one below: coloured words. Call it last: they cover drawings outside the
+  // picture.
   void title(const std::string& text);
   void legend(const std::vector<std::pair<std::string, Colour>>& words);
 

@@ -9,19 +9,19 @@
 namespace evical {
 namespace {
 
-// A burst lasts from some 1.2 px before the edge is in the pixel's middle to 1.2 px after. An edge that slows
-// down evenly and turns back D px after the middle leaves a pause of 2 sqrt(D - 1.2), in units of the time to
-// turn from 1 px away, after a second half of sqrt(D) - sqrt(D - 1.2): 3.5 times as long where D is 2 px, from where
-// on even blurred edges have crossed. Edges that do not turn leave longer pauses.
+// A burst lasts from about 1.2 px before the edge is in the pixel's middle to 1.2 px after. An edge with
+// constant deceleration that turns back D px after the middle leaves a pause of 2 sqrt(D - 1.2), in units of
+// the time to turn from 1 px away, after a second half of sqrt(D) - sqrt(D - 1.2): 3.5 times as long for a D
+// of 2 px, beyond which even blurred edges have crossed. Edges that do not turn leave longer pauses.
 constexpr double kRestToHalfCrossing = 3.5;
 // Limit for any pause: longer waits delay the windows for the slowest pixel.
 constexpr double kLongestRest_s = 0.6;
 
-// Pixels come in no order, and a sensor's do not fit into a processor's cache: they are prefetched so many
-// events ahead.
+// Pixels are in no order, and those of a sensor do not fit into a processor's cache: they are prefetched this
+// many events ahead.
 constexpr std::size_t kFetchedAhead = 16;
 
-// The edge was out of the pixel's reach.
+// True if the edge was out of the pixel's reach.
 bool isRest(std::int64_t pause_ns, std::int64_t half_crossing_ns) {
   return pause_ns > nanosecondsFrom(kLongestRest_s) ||
          static_cast<double>(pause_ns) >= kRestToHalfCrossing * static_cast<double>(half_crossing_ns);
@@ -29,7 +29,7 @@ bool isRest(std::int64_t pause_ns, std::int64_t half_crossing_ns) {
 
 }  // namespace
 
-// Its own length, one rest or gap, and one check interval that may have just begun.
+// Sum of the burst's length, one rest or gap, and one check interval that may have just begun.
 double longestHandOut_s(const BurstOptions& options) {
   return options.longest_burst_s + std::max(kLongestRest_s, options.longest_gap_s) +
          2.0 * options.longest_gap_s;
@@ -59,7 +59,7 @@ void BurstExtractor::fetch(std::uint32_t index) const {
 
 void BurstExtractor::start(std::uint32_t index, const Event& event) {
   Pixel& pixel = pixels_[index];
-  // A pixel that has a burst under way already waits in the queue.
+  // A pixel with a current burst is already in the queue.
   if (pixel.events == 0) checks_.push_back({index, event.time_ns + check_interval_ns_});
   pixel.first_ns = event.time_ns;
   pixel.length_ns = 0;
@@ -85,8 +85,8 @@ void BurstExtractor::extend(std::uint32_t index, const Event& event) {
   times_ns[pixel.kept++] = pixel.length_ns;
 }
 
-// A burst's first events may be noise from long before it: what pausedAt asks of
-// the next event, asked backwards.
+// Index of the first event of the burst itself: events before it may be earlier noise. Same criterion as in
+// pausedAt, backwards in time.
 int BurstExtractor::ownBegin(const Burst& burst) const {
   int begin = 0;
   for (const int last = burst.pixel.kept - 1; begin + 3 <= last; ++begin) {
@@ -135,7 +135,7 @@ bool BurstExtractor::pausedAt(const Pixel& pixel, std::int64_t time_ns) const {
   const std::int64_t since_first_ns = time_ns - pixel.first_ns, gap_ns = since_first_ns - pixel.length_ns;
   if (gap_ns > longest_gap_ns_ || since_first_ns > longest_burst_ns_) return true;
   if (gap_ns <= shortest_gap_ns_ || pixel.events < 3) return false;
-  // Longer than so many mean intervals.
+  // Longer than this many mean intervals.
   return static_cast<double>(gap_ns) * (pixel.events - 1) > gap_to_pace_ * pixel.length_ns;
 }
 

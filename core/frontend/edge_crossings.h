@@ -17,19 +17,19 @@
 namespace evical {
 
 struct EdgeCrossing {
-  std::int64_t time_ns;      // median of its events' times, of those too that a turning edge did not fire
+  std::int64_t time_ns;      // median of its events' times, including those missing at a turning edge
   std::int32_t duration_ns;  // from its first to its last event
   std::uint16_t x_px, y_px;
-  std::uint16_t events;  // as many as an edge fires here that does not turn
+  std::uint16_t events;  // number that an edge without turning fires here
   bool brighter;
 };
 
-// The longest that a burst's median waits until the burst is handed out.
+// Longest delay between a burst's median and its output.
 double longestHandOut_s(const BurstOptions& options);
 
-// Turns events into bursts, in one pass and constant memory. A burst ends with an event of the other polarity
-// or with a pause that is long compared with its pace. Bursts in which the edge was not in the middle of its
-// pixel are dropped.
+// Converts events to bursts, in one pass and constant memory. A burst ends with an event of the other
+// polarity or with a pause that is long compared with its mean interval. Bursts in which the edge was not in
+// the middle of its pixel are discarded.
 class BurstExtractor {
  public:
   BurstExtractor(Resolution resolution_px, const BurstOptions& options);
@@ -39,7 +39,7 @@ class BurstExtractor {
   void add(EventSpan events, std::vector<EdgeCrossing>& bursts);
   void finish(std::vector<EdgeCrossing>& bursts);
 
-  // Bursts with a median before this time have all been handed out.
+  // Bursts with a median before this time have all been output.
   std::int64_t completeUntil_ns() const { return complete_until_ns_; }
   std::uint64_t eventCount() const { return event_count_; }
 
@@ -47,11 +47,11 @@ class BurstExtractor {
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;
   static constexpr int kKeptTimes = 16;  // thinned by halves when a burst has more events
 
-  // Half a line of the processor's memory, its times a line of their own: an event touches these two.
+  // Half a cache line, with a line for its times: an event touches these two.
   struct alignas(32) Pixel {
     std::int64_t first_ns = 0;
     std::int32_t length_ns = 0;  // from the first event to the last
-    std::uint16_t events = 0;    // 0: no burst under way
+    std::uint16_t events = 0;    // 0: no current burst
     std::uint8_t kept = 0;
     std::uint8_t stride_log2 : 7 = 0;
     bool brighter : 1 = false;
@@ -67,7 +67,7 @@ class BurstExtractor {
     Pixel& pixel;
     const KeptTimes& times_ns;
 
-    std::int64_t timeOf_ns(double kept_event) const;  // between two kept ones, in proportion
+    std::int64_t timeOf_ns(double kept_event) const;  // interpolated between two kept ones
   };
   struct Check {
     std::uint32_t pixel;

@@ -12,16 +12,15 @@ namespace {
 
 constexpr std::tuple kEdgeSlopeFields{
     Field{"radius_px", &EdgeSlopeOptions::radius_px, 2, within(1, 5), "px",
-          "Half width of the neighbourhood that a plane is fitted to."},
+          "Half width of the neighbourhood of the plane fit."},
     Field{"largest_error_px", &EdgeSlopeOptions::largest_error_px, 0.6, within(0.05, 5.0), "px",
-          "A neighbour that is off the plane by more than the edge needs for this distance is dropped."},
+          "Largest deviation of a neighbour from the plane, as a distance that the edge travels."},
     Field{"least_share", &EdgeSlopeOptions::least_share, 0.6, within(0.2, 1.0), "",
-          "Part of the neighbourhood that must lie on the plane."},
-    Field{
-        "longest_crossing_s", &EdgeSlopeOptions::longest_crossing_s, 0.12, within(1e-3, 1.0), "s",
-        "Edges that take longer to cross the neighbourhood are left out: they may have changed their speed."},
+          "Smallest share of inliers in the neighbourhood."},
+    Field{"longest_crossing_s", &EdgeSlopeOptions::longest_crossing_s, 0.12, within(1e-3, 1.0), "s",
+          "Longest time of an edge in the neighbourhood; slower edges may have changed their speed."},
     Field{"fastest_px_s", &EdgeSlopeOptions::fastest_px_s, 4000.0, within(10.0, 1e6), "px/s",
-          "Faster edges are a lamp's flicker."}};
+          "Largest speed of edges; faster ones are flicker of a lamp."}};
 constexpr auto kEdgeSlopeDefaults = defaultsOf<EdgeSlopeOptions, kEdgeSlopeFields>();
 
 constexpr int kRefits = 3;
@@ -51,7 +50,7 @@ void EdgeSlopeFinder::add(const std::vector<EdgeCrossing>& bursts, std::int64_t 
     for (const EdgeCrossing& burst : bursts)
       next_ns_ = std::min(next_ns_ == std::numeric_limits<std::int64_t>::min() ? burst.time_ns : next_ns_,
                           burst.time_ns);
-    // Bursts come in order of their ends: earlier ones may follow.
+    // Bursts are in order of their ends: earlier medians may follow.
     next_ns_ = std::max(next_ns_ - margin_ns_, std::numeric_limits<std::int64_t>::min() + 2 * margin_ns_);
   }
   while (next_ns_ + window_ns_ + margin_ns_ <= std::min(complete_until_ns, newest_ns_)) {

@@ -1,7 +1,6 @@
 // Slopes of the times at which edges pass, from planes through the burst times of neighbouring pixels
-// (docs/maths.md, 16.1; R. Benosman et al., "Event-based visual flow", TNNLS 2014). Unlike normal_flow.h it
-// has no window in which an edge would have to cross the neighbourhood: slow edges get as much time as fast
-// ones.
+// (docs/maths.md, 16.1; R. Benosman et al., "Event-based visual flow", TNNLS 2014). Unlike normal_flow.h,
+// edges do not have to cross the neighbourhood within a window: slow edges have as much time as fast ones.
 #pragma once
 
 #include "core/base/option_struct.h"
@@ -31,15 +30,16 @@ struct EdgeSlopeOptions {
   static const OptionTable<EdgeSlopeOptions>& table();
 };
 
-// Bursts in, slopes of one window of time after the other out; bounded memory.
+// Bursts in, slopes of consecutive windows of time out; bounded memory.
 class EdgeSlopeFinder {
  public:
-  // Slopes of bursts with begin_ns <= time < begin_ns + window; windows in order, those without slopes too.
+  // Slopes of bursts with begin_ns <= time < begin_ns + window; windows in order, including those without
+  // slopes.
   using Sink = std::function<void(std::int64_t begin_ns, std::span<const EdgeSlope> slopes)>;
 
   EdgeSlopeFinder(Resolution resolution_px, const EdgeSlopeOptions& options, double window_s, Sink sink);
 
-  // `complete_until_ns`: bursts before have all been handed in (BurstExtractor::completeUntil_ns).
+  // `complete_until_ns`: bursts before it have all been added (BurstExtractor::completeUntil_ns).
   void add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns);
   void finish();
 

@@ -17,7 +17,7 @@ double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
 }
 
-// Which flow sits at a pixel, per polarity, with a border as wide as a cluster's steps.
+// Index of the flow at each pixel and polarity, with a border as wide as a cluster's steps.
 class FlowImage {
  public:
   FlowImage(const NormalFlowField& field, Resolution resolution_px, int reach_px)
@@ -27,7 +27,8 @@ class FlowImage {
     for (std::uint32_t i = 0; i < field.size(); ++i) planes_[field[i].leading][cellOf(field[i])] = i;
   }
 
-  // The flow at the pixel and all connected to it, removed from the image; empty if it was removed before.
+  // The flow at the pixel and all flow connected to it, removed from the image; empty if it was removed
+  // before.
   std::vector<std::uint32_t> takeConnected(const NormalFlowField& field, std::uint32_t first) {
     std::vector<std::uint32_t>& plane = planes_[field[first].leading];
     std::vector<std::uint32_t> flows;

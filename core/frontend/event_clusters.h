@@ -1,4 +1,4 @@
-// Connected regions of normal flow and what part of a moving circle they look like (docs/maths.md, 5.2; S.
+// Connected regions of normal flow, classified as parts of a moving circle (docs/maths.md, 5.2; S.
 // Chen et al., "eKalibr", 2501.05688).
 #pragma once
 
@@ -14,8 +14,8 @@
 namespace evical {
 
 enum class ClusterKind {
-  Run,    // flows diverge: an arc that leads
-  Chase,  // flows converge: an arc that follows
+  Run,    // flows diverge: leading arc
+  Chase,  // flows converge: trailing arc
   Other,
 };
 

@@ -1,4 +1,4 @@
-// Who watches the front end at work, for drawings and live views.
+// Observer of the front end, for drawings and live views.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ class BurstWindow;
 struct BoardSearch;
 struct WindowTrace;
 
-// Gets every window when it is processed. Called from the thread that adds events.
+// Receives every window when it is processed. Called from the thread that adds events.
 class FrontEndObserver {
  public:
   virtual ~FrontEndObserver() = default;

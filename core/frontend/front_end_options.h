@@ -1,4 +1,4 @@
-// All options of the front end, a struct a stage.
+// All options of the front end, one struct per stage.
 #pragma once
 
 #include "core/frontend/detection_options.h"

@@ -31,8 +31,8 @@ struct CircleSums {
   unsigned sectors = 0;
 };
 
-// One pass over the points; the radius' own scale loosens the gate for large
-// circles, which tilt makes elliptic.
+// One pass over the points; the scale of the radius widens the gate for large circles, which tilt makes
+// elliptic.
 CircleSums sumUp(const std::vector<CirclePoint>& points, const MovingCircle& circle, double gate_px,
                  const MovingCircleOptions& options, bool normal_equations) {
   CircleSums sums;
@@ -77,8 +77,8 @@ std::optional<MovingCircle> fitFrom(MovingCircle circle, const std::vector<Circl
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     CircleSums sums = sumUp(points, circle, gateAt(iteration, first_radius_px, options), options, true);
     if (sums.bursts < 8) return std::nullopt;
-    // Velocities are in px/s: a prior of 0 +- 1000 px/s, and a whole gate for the
-    // rest, keep the matrix regular.
+    // Velocities are in px/s: a prior of 0 +- 1000 px/s, and one of a whole gate for the other parameters,
+    // keep the matrix regular.
     sums.matrix.diagonal() += (Vector5() << 1e-3, 1e-3, 1e-7, 1e-7, 1e-3).finished();
     const Vector5 step = sums.matrix.ldlt().solve(sums.vector);
     if (!step.allFinite()) return std::nullopt;
@@ -127,7 +127,8 @@ double typicalEdgeSpeed_px_s(const BurstWindow& window) {
         if (t == kNever) continue;
         const float left = centre[-1], right = centre[1], up = centre[-stride], down = centre[stride];
         if (left == kNever || right == kNever || up == kNever || down == kNever) continue;
-        // An edge passes in order: the middle pixel is between its neighbours or near them.
+        // Criterion for the order of an edge's passing times: the middle pixel's is between its neighbours'
+        // or near them.
         const float a = 0.5f * (right - left), b = 0.5f * (down - up);
         const float slope2 = a * a + b * b;
         const float bend = std::abs(left + right - 2.0f * t) + std::abs(up + down - 2.0f * t);

@@ -1,5 +1,5 @@
-// A circle that moves at constant velocity through a window, fitted to burst medians (docs/maths.md, 5.3):
-// accurate enough to find the board's lattice; the joint fit of the board models the ellipses.
+// A circle with constant velocity in a window, fitted to burst medians (docs/maths.md, 5.3):
+// accurate enough for the board's lattice; the joint fit of the board models the ellipses.
 #pragma once
 
 #include "core/frontend/burst_window.h"
@@ -26,11 +26,11 @@ struct MovingCircle {
 // if there are too few.
 double typicalEdgeSpeed_px_s(const BurstWindow& window);
 
-// `speed_px_s` > 0 is tried in several multiples if the candidate has no speed.
+// If the candidate has no speed, several multiples of `speed_px_s` > 0 are tried.
 std::optional<MovingCircle> fitMovingCircle(const BurstWindow& window, const CircleCandidate& candidate,
                                             double speed_px_s, const MovingCircleOptions& options);
 
-// All candidates; of circles that overlap, the better one stays. Best first.
+// Fits of all candidates; the better one of overlapping circles is kept. Best first.
 std::vector<MovingCircle> fitMovingCircles(const BurstWindow& window,
                                            const std::vector<CircleCandidate>& candidates, double speed_px_s,
                                            const MovingCircleOptions& options);

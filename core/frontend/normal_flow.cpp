@@ -56,7 +56,7 @@ void visitNeighbours(const float* centre, int stride, int radius, Visit&& visit)
   }
 }
 
-// False unless enough of the neighbourhood is on a plane, the pixel itself included.
+// False if too little of the neighbourhood is on a plane, or if the pixel itself is not.
 bool fitPlane(const float* centre, int stride, int least_inliers, const NormalFlowOptions& options,
               Plane& plane) {
   PlaneSums sums;

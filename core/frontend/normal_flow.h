@@ -21,9 +21,9 @@ struct NormalFlow {
 
 using NormalFlowField = std::vector<NormalFlow>;
 
-// Flow (a, b) / (a^2 + b^2) where a plane t = a x + b y + c fits the neighbourhood. A surface with a border
-// of at least plane_radius_px. Deviations from the plane are compared with the distance that the edge covers
-// in that time, so slow and fast edges are treated alike.
+// Flow (a, b) / (a^2 + b^2) at pixels where a plane t = a x + b y + c fits the neighbourhood. The surface
+// needs a border of at least plane_radius_px. Deviations from the plane are compared with the distance that
+// the edge travels in that time, so slow and fast edges are treated alike.
 NormalFlowField estimateNormalFlow(const ActiveEventSurface& surface, const NormalFlowOptions& options);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Which part of a circle's outline an edge belongs to: sixteen sectors, without an angle's cost.
+// Sector of a circle's outline that an edge belongs to: sixteen sectors, without computing an angle.
 #pragma once
 
 #include <Eigen/Core>

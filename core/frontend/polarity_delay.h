@@ -1,7 +1,7 @@
-// Delay of pixels for edges that brighten them, minus that for edges that darken them: a sign of little
-// light, or of slow biases. Bursts are behind their edge by its pixels' delay times its speed. Of a circle's
-// leading and trailing edge one brightens and one darkens, so circles seem to grow or to shrink with their
-// speed:
+// Delay of pixels for edges that brighten them, minus that for edges that darken them: a sign of low light,
+// or of slow biases. Bursts are behind their edge by the pixel's delay times the edge's speed. Of a circle's
+// leading and trailing edges one brightens and one darkens, so circles seem to grow or to shrink in
+// proportion to their speed:
 //   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright ones.
 // docs/maths.md, 10.1.
 #pragma once
@@ -19,7 +19,7 @@ class PolarityDelayFit {
   // both in the sensor's pixels. Edges that hardly move are ignored.
   void add(double speed_px_s, double radius_offset_px);
 
-  // Nothing of few windows, or of one speed. The sigma is of windows whose errors are independent.
+  // Empty for few windows, or for one speed. The sigma assumes independent errors of windows.
   std::optional<PolarityDelay> result(CircleShade shade) const;
 
  private:

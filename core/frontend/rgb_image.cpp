@@ -13,8 +13,8 @@ void writePng(const std::filesystem::path& path, const RgbImage& image) {
   png.height = static_cast<png_uint_32>(image.height_px);
   png.format = PNG_FORMAT_RGB;
   if (!png_image_write_to_file(&png, path.c_str(), 0, image.rgb.data(), 0, nullptr)) {
-    throw badInput(path.string(), std::string("the image cannot be written: ") + png.message,
-                   "Choose a directory that exists, is writable and has room.");
+    throw badInput(path.string(), std::string("image cannot be written: ") + png.message,
+                   "Choose an existing, writable folder with free disk space");
   }
 }
 

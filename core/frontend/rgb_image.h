@@ -1,4 +1,4 @@
-// A picture, and the one way it leaves the program.
+// A picture, and its output as a PNG file.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLevelRadius_px = 13.0;  // larger circles are looked for in an image of half the size
+constexpr double kLevelRadius_px = 13.0;  // larger circles are searched in an image of half the size
 
 struct Vote {
   float x, y;
@@ -18,7 +18,7 @@ struct RingPoint {
   float ux, uy;         // from centre to burst, unit
 };
 
-// Bursts of one pyramid level: one vote a cell and polarity.
+// Bursts of one pyramid level: one vote per cell and polarity.
 struct PyramidLevel {
   int shift = 0, width = 0, height = 0;
   std::vector<std::uint32_t> cells;  // y * width + x

@@ -1,6 +1,7 @@
 // Circle candidates by signed votes: a burst at the leading edge votes along the line from the circle's
-// centre, one at the trailing edge against it. Over a moving circle's ring the votes add up to a vector along
-// the motion; over texture they cancel. Needs no flow and no complete outline (docs/maths.md, 5.1).
+// centre, one at the trailing edge in the opposite direction. Over a moving circle's ring the votes add up to
+// a vector along the motion; over texture they cancel. Needs neither flow nor a complete outline
+// (docs/maths.md, 5.1).
 #pragma once
 
 #include "core/frontend/burst_window.h"
@@ -11,7 +12,7 @@
 
 namespace evical {
 
-// Best candidates first, by the largest radius the image allows.
+// Best candidates first; the largest radius is limited by the image.
 std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const FrontEndOptions& all);
 
 }  // namespace evical

@@ -12,8 +12,8 @@
 namespace evical {
 namespace {
 
-// The lattice around the board's present placement, as far as any rival reaches. Each place is measured once,
-// and every rival counts its own places.
+// The lattice around the board's present placement, extended to all rivals. Each place is measured once, and
+// each rival sums its own places.
 class LatticeAround {
  public:
   LatticeAround(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts, const BoardScene& scene)
@@ -27,7 +27,7 @@ class LatticeAround {
         most = most.cwiseMax(place);
       }
     }
-    // By an even number of rows, so that rows stay in or out of step.
+    // Extended by an even number of rows, so that the stagger of rows is unchanged.
     rows_before_ = 2 * static_cast<int>(std::ceil(-0.5 * least.y() - kSlack));
     columns_before_ = static_cast<int>(std::ceil(-least.x() / columnStep() - kSlack));
     scene_.board.rows = rows_before_ + static_cast<int>(std::ceil(most.y() - kSlack)) + 1;
@@ -48,7 +48,7 @@ class LatticeAround {
       expected_[static_cast<std::size_t>(circle)] = 1;
   }
 
-  // Score of the board of so many circles with this shift.
+  // Score of the board with this number of circles and this shift.
   PlacementScore score(const Eigen::Matrix3d& shift, int circle_count) const {
     PlacementScore score;
     score.shift = shift;
@@ -67,7 +67,7 @@ class LatticeAround {
 
   double columnStep() const { return scene_.board.type == BoardType::AsymmetricCircles ? 2.0 : 1.0; }
 
-  // In spacings, from the first circle of the present placement.
+  // Place in spacings, relative to the first circle of the present placement.
   Eigen::Vector2d placeOf(const Eigen::Matrix3d& shift, int circle) const {
     return (shift * board_.point_m(circle).homogeneous()).hnormalized() / board_.spacing_m;
   }
@@ -79,7 +79,7 @@ class LatticeAround {
   }
 
   BoardScene scene_;
-  Board board_ = scene_.board;  // without what is around it
+  Board board_ = scene_.board;  // without the surrounding lattice
   BoardMotion motion_;
   int rows_before_ = 0, columns_before_ = 0;
   std::vector<std::uint8_t> measured_, expected_;  // by circle of the surrounding lattice
@@ -132,14 +132,15 @@ void PlacementWatch::begin() {
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
                                                     const BoardScene& scene, const TrackingOptions& options) {
   if (trace.report.circles + options_.ambiguity_margin >= scene.board.pointCount()) {
-    agreed(options_.contradicting_looks);  // at once: no rival explains more
+    agreed(options_.contradicting_looks);  // immediately: no rival explains more
     return std::nullopt;
   }
   const std::vector<PlacementScore> rivals =
       rivalPlacements(*trace.motion, shifts_, window, scene, trace.report.half_width_s, options);
   const auto isLaid = [](const PlacementScore& rival) { return rival.shift.isIdentity(0.0); };
   const PlacementScore laid = *std::find_if(rivals.begin(), rivals.end(), isLaid);
-  // Sorted by value. One that is ahead only because it misses less may be so because some of the board is covered.
+  // Sorted by value. A rival that is better only by fewer missing circles is ignored: part of the board may
+  // be covered.
   const auto best = std::find_if(rivals.begin(), rivals.end(),
                                  [&](const PlacementScore& rival) { return rival.measured > laid.measured; });
   if (best != rivals.end() && best->value() > laid.value() + options_.ambiguity_margin)

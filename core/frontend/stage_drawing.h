@@ -1,5 +1,5 @@
-// Pictures of the front end's stages, one window each, enlarged by a whole factor so that pixels stay pixels.
-// A separate library (evical_drawing): the front end itself draws nothing.
+// Pictures of the front end's stages, one window each, enlarged by an integer factor so that pixels stay
+// sharp. A separate library (evical_drawing): the front end itself does not draw.
 #pragma once
 
 #include "core/frontend/board_search.h"
@@ -12,22 +12,22 @@
 namespace evical {
 
 struct DrawingStyle {
-  int width_px = 1000;            // about; the factor is whole
-  double covariance_sigmas = 30;  // of a measured centre's ellipse: true ones are too small to see
-  double arrow_s = 0.1;           // velocity arrows are this long
+  int width_px = 1000;            // approximate, since the factor is an integer
+  double covariance_sigmas = 30;  // of a measured centre's ellipse: ellipses of 1 sigma are too small to see
+  double arrow_s = 0.1;           // duration of motion that velocity arrows show
 };
 
-// Bursts alone: brighter edges warm, darker edges cool, older ones fainter.
+// Bursts only: brightening edges in warm colours, darkening edges in cool ones, older ones fainter.
 RgbImage drawBursts(const BurstWindow& window, const BoardScene& scene, const std::string& title,
                     const DrawingStyle& style = {});
 
-// From the top of a search to its end: candidates (grey), moving circles with their velocities (green,
-// yellow), the lattice (white), and where found the board's circles with their numbers (magenta). `arcs`, if
-// given, are drawn in place of the candidates: leading, trailing and other flow, and the pairs.
+// All stages of a search: candidates (grey), moving circles with their velocities (green,
+// yellow), the lattice (white), and if found the board's circles with their numbers (magenta). `arcs`, if
+// given, are drawn instead of the candidates: leading, trailing and other flow, and the pairs.
 RgbImage drawSearch(const BurstWindow& window, const BoardSearch& search, const BoardScene& scene,
                     const NormalFlowStages* arcs = nullptr, const DrawingStyle& style = {});
 
-// The fitted board, or where there is no fit the predicted one: projected ellipses with velocities, and the
+// The fitted board, or the predicted one if there is no fit: projected ellipses with velocities, and the
 // measured centres with numbers and covariance.
 RgbImage drawTrackedWindow(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                            const DrawingStyle& style = {});

@@ -29,8 +29,8 @@ StageImageWriter::StageImageWriter(std::filesystem::path directory, int every_nt
   std::error_code error;
   std::filesystem::create_directories(directory_, error);
   if (error)
-    throw badInput(directory_.string(), "the directory for images cannot be made: " + error.message(),
-                   "Choose another directory.");
+    throw badInput(directory_.string(), "folder for images cannot be created: " + error.message(),
+                   "Choose another folder");
 }
 
 void StageImageWriter::windowTracked(const BurstWindow& window, const WindowTrace& trace) {

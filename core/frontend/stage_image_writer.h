@@ -1,4 +1,4 @@
-// Writes a picture of every n-th window that the front end looks at.
+// Writes a picture of every n-th window that the front end processes.
 #pragma once
 
 #include "core/frontend/front_end_observer.h"
@@ -11,12 +11,12 @@ namespace evical {
 class BurstHistory;
 struct BoardScene;
 
-// search_0000.png, search_0001.png, ... and window_0000.png, ...: numbered by the searches and windows
-// themselves, so that the numbers of two runs agree for any every_nth.
+// search_0000.png, search_0001.png, ... and window_0000.png, ...: numbered by searches and windows, so that
+// the numbers of two runs agree for any every_nth.
 class StageImageWriter : public FrontEndObserver {
  public:
-  // Makes the directory. `scene` and `history` are the tracker's and outlive the writer; without a history
-  // searches are drawn without bursts.
+  // Creates the folder. `scene` and `history` are the tracker's and must outlive the writer; without a
+  // history searches are drawn without bursts.
   StageImageWriter(std::filesystem::path directory, int every_nth, const BoardScene& scene,
                    const BurstHistory* history = nullptr, const FrontEndOptions& options = {});
 

@@ -12,9 +12,9 @@
 namespace evical {
 namespace {
 
-// Predictions over windows without the board are worse: their first gate is wider.
+// Predictions across windows without the board are less accurate: their first gate is wider.
 constexpr double kLostGateFactor = 2.0;
-// Bursts are gathered a little wider than the predicted speed asks for: the fit may find a slower board.
+// Bursts are gathered in a wider window than the predicted speed requires: the fit may find a slower board.
 constexpr double kFitReach = 1.5;
 
 double fitReach_s(const BoardMotion& prediction, const BoardScene& scene, const TrackingOptions& options) {

@@ -13,7 +13,7 @@
 
 namespace evical {
 
-// A window's own time: neighbours do not overlap.
+// The time interval of a window: neighbours do not overlap.
 struct WindowSlot {
   std::int64_t begin_ns = 0, end_ns = 0;
 
@@ -30,13 +30,13 @@ struct TrackingInput {
   std::int64_t start_ns = 0;  // zero of the times in seconds
 };
 
-// Part of the circles that should be seen which must be, for a tracked board to be gone on from.
+// Smallest share of the expected circles in a tracked board from which tracking continues.
 inline constexpr double kLeastExpected = 0.5;
 
 enum class TrackingEnd {
-  NoFit,             // too few bursts where edges should be
-  TooFewCircles,     // than make a grid
-  TooFewOfExpected,  // of those that should be seen
+  NoFit,             // too few bursts at expected edges
+  TooFewCircles,     // fewer than a grid needs
+  TooFewOfExpected,  // too small a share of the expected ones
   Held,              // good enough to continue from
 };
 
@@ -46,20 +46,20 @@ struct WindowTrace {
   BoardMotion prediction;
   std::optional<BoardMotion> motion;  // fitted
   TrackingEnd ended = TrackingEnd::NoFit;
-  int expected = 0;  // circles that should be seen
+  int expected = 0;  // number of circles that should be visible
   std::vector<CircleObservation> circles;
-  MeasurementTrace measurement;  // where asked for
+  MeasurementTrace measurement;  // if requested
 
   bool held() const { return ended == TrackingEnd::Held; }
 };
 
-// Outcome of a tracked window with so many circles.
+// Outcome of a tracked window with this number of circles.
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options);
 
 enum class TraceDetail { Result, Everything };
 
-// Tracks the board from its motion at another time, or at the slot's middle. `window` is left with the bursts
-// that were looked at.
+// Tracks the board from its motion at another time, or at the slot's middle. Afterwards `window` contains the
+// bursts of the slot.
 WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, const BoardMotion& last,
                         BurstWindow& window, TraceDetail detail = TraceDetail::Result);
 
@@ -67,8 +67,8 @@ WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, cons
 const BoardView* viewToTrackFrom(const BoardObservations& observations, double time_s,
                                  const TrackingOptions& options);
 
-// The board's motion at a view. Views keep less of it than the tracker does, so it is fitted once
-// more to the bursts around.
+// The board's motion at a view. Views store less than the tracker does, so the motion is fitted again to the
+// bursts around it.
 std::optional<BoardMotion> motionAtView(const TrackingInput& input, const BoardView& view);
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-// The rotation that turns directions into those that belong to them: W. Kabsch, "A solution for the best rotation to relate
-// two sets of vectors", 1976.
+// Rotation that best maps source directions to target directions: W. Kabsch, "A solution for the best
+// rotation to relate two sets of vectors", 1976.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@ namespace evical {
 struct BestRotation {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // target_from_source
   Eigen::Vector3d strengths;                             // singular values, the largest first
-  Eigen::Vector3d main_axis;                             // of the largest one, in the target's frame
+  Eigen::Vector3d main_axis;  // of the largest singular value, in the target's frame
 };
 
 // Rotation for the sum of weight * target * source^T over all pairs; with determinant -1 the best reflection.

@@ -42,7 +42,7 @@ void validateTags(const Board& board) {
                  "Measure the black edge of a tag on the print, in metres");
 }
 
-// To the nearest other one.
+// Distance to the nearest other point.
 double gap_m(const std::vector<Eigen::Vector2d>& points_m, std::size_t of) {
   double least_m2 = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points_m.size(); ++i)
@@ -50,7 +50,7 @@ double gap_m(const std::vector<Eigen::Vector2d>& points_m, std::size_t of) {
   return std::sqrt(least_m2);
 }
 
-// Extent across the longest direction, one sigma over that along it.
+// Ratio of the extents (one sigma) across and along the longest direction.
 double roundness(const std::vector<Eigen::Vector2d>& points_m) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& each : points_m) mean += each / static_cast<double>(points_m.size());
@@ -62,23 +62,24 @@ double roundness(const std::vector<Eigen::Vector2d>& points_m) {
 
 void validatePoints(const Board& board) {
   constexpr std::size_t kLeast = 4;
-  constexpr double kNarrowest = 0.01;  // a line determines no pose
+  constexpr double kNarrowest = 0.01;  // a line does not determine a pose
   const std::vector<Eigen::Vector2d>& points_m = board.given_m;
   if (points_m.size() < kLeast)
     throw badInput("board.points_m", std::to_string(points_m.size()) + " points are too few for a pose",
-                   "Give at least four, better dozens");
+                   "Give at least 4 points, preferably dozens");
   std::set<std::pair<double, double>> taken;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     if (!points_m[i].allFinite())
-      throw badInput("board.points_m", "point " + std::to_string(i) + " has no place",
+      throw badInput("board.points_m", "point " + std::to_string(i) + " has no finite coordinates",
                      "Give x and y of each point, in metres");
     if (!taken.emplace(points_m[i].x(), points_m[i].y()).second)
-      throw badInput("board.points_m", "point " + std::to_string(i) + " is where another one is",
-                     "Give each point's own place");
+      throw badInput("board.points_m",
+                     "point " + std::to_string(i) + " has the same coordinates as another one",
+                     "Remove or correct the duplicate");
   }
   if (!(roundness(points_m) > kNarrowest))
-    throw badInput("board.points_m", "all points lie on one line, of which no pose can be told",
-                   "Give points beside it");
+    throw badInput("board.points_m", "all points are on one line, which does not determine a pose",
+                   "Add points away from this line");
 }
 
 }  // namespace
@@ -128,7 +129,7 @@ Eigen::Vector2d Board::extent_m() const {
     }
     default:
       return point_m(rows - 1, cols - 1)
-          .cwiseMax(point_m(rows - 2, cols - 1));  // of staggered rows one ends later
+          .cwiseMax(point_m(rows - 2, cols - 1));  // one of two staggered rows extends further
   }
 }
 
@@ -179,7 +180,7 @@ void validate(const Board& board) {
   const int least = tags ? 1 : board.type == BoardType::Charuco ? 3 : 2;
   if (board.rows < least || board.cols < least || board.rows > kMostRows || board.cols > kMostRows) {
     throw badInput(
-        "board", "rows and cols must each lie in " + std::to_string(least) + ".." + std::to_string(kMostRows),
+        "board", "rows and cols must each be in " + std::to_string(least) + ".." + std::to_string(kMostRows),
         board.hasCircles() ? "Count the circles: an asymmetric board's rows are the staggered lines"
                            : (tags ? "Count the tags"
                                    : "Count a checkerboard's inner corners, a ChArUco board's "
@@ -190,7 +191,7 @@ void validate(const Board& board) {
   }
   if (board.hasCircles()) validateCircles(board);
   if (!board.hasCircles() && board.radius_m != 0.0)
-    throw badInput("board.radius_m", "is of circles, and this board has none", "Remove it");
+    throw badInput("board.radius_m", "applies to circles, which this board does not have", "Remove it");
   if (board.hasTags()) validateTags(board);
 }
 

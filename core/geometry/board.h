@@ -1,8 +1,8 @@
-// The printed target: a grid of circles, a checkerboard, a grid of tags, or any points whose places are given.
-// Its points are what cameras measure: centres of circles, or corners, which are circles of radius 0. Board
-// (= world) frame: x along a row, y down the columns, z into the board; metres. Its origin is the first circle's
-// centre, the checkerboard's first inner corner, the top left corner of the AprilGrid's top left tag, or that of
-// the given places.
+// The printed target: a grid of circles, a checkerboard, a grid of tags, or any points with given places. Its
+// points are what cameras measure: centres of circles, or corners, which are circles of radius 0. Board (=
+// world) frame: x along a row, y down the columns, z into the board; metres. Its origin is the first circle's
+// centre, the checkerboard's first inner corner, the top left corner of the AprilGrid's top left tag, or that
+// of the given places.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilG
 inline constexpr std::array kBoardTypeNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
                                                "aprilgrid",          "charuco",           "points"};
 static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Points) + 1);
-// All but the last have a pattern, which can be drawn, printed and found.
+// All types except the last have a pattern, which can be drawn, printed and detected.
 inline constexpr std::span<const char* const> kPatternNames(kBoardTypeNames.data(),
                                                             kBoardTypeNames.size() - 1);
 constexpr const char* boardTypeName(BoardType type) {
@@ -30,17 +30,17 @@ enum class CircleShade { Dark, Bright };  // dark circles on a bright board, or 
 
 struct Board {
   BoardType type = BoardType::AsymmetricCircles;
-  // Number of circles; of a checkerboard's inner corners; of an AprilGrid's tags; of a ChArUco board's
-  // squares. For given points: as many rows as points, with one point each.
+  // Number of circles; of inner corners of a checkerboard; of tags of an AprilGrid; of squares of a ChArUco
+  // board. Given points: as many rows as points, with one point each.
   int rows = 11;
   int cols = 4;
   // Circles: distance between two rows (asymmetric: half the distance within a row). Squares: their edge.
-  // Tags: distance from one to the next. Given points: usual distance of neighbours.
+  // Tags: distance from one to the next. Given points: typical distance of neighbours.
   double spacing_m = 0.05;
   double radius_m = 0.02;  // of circles; 0: the points are corners
   CircleShade circles = CircleShade::Dark;
   double tag_size_m = 0.0;               // edge of a tag's black square: AprilGrid, ChArUco
-  std::vector<Eigen::Vector2d> given_m;  // of type Points, by index
+  std::vector<Eigen::Vector2d> given_m;  // type Points only, by index
 
   bool operator==(const Board&) const = default;
 
@@ -55,23 +55,25 @@ struct Board {
   const char* sizeKey() const { return hasPattern() ? "spacing_m" : "points_m"; }
 
   int pointCount() const;
-  // Index of circles and of corners between squares; tags' corners have none.
+  // Index of circles and of corners between squares; tags' corners do not have one.
   int index(int row, int col) const { return row * pointsInRow() + col; }
   int pointsInRow() const { return type == BoardType::Charuco ? cols - 1 : cols; }
 
-  // Asymmetric circles: ((2 col + row mod 2) s, row s); symmetric ones and corners between squares: (col s, row s).
+  // Asymmetric circles: ((2 col + row mod 2) s, row s); symmetric ones and corners between squares: (col s,
+  // row s).
   Eigen::Vector2d point_m(int row, int col) const;
-  // Circles and corners row by row. Of an AprilGrid four a tag, as Kalibr counts them: tags row by row from the
-  // bottom left, corners from the bottom left against the clock.
+  // Circles and corners row by row. AprilGrid: four per tag, as Kalibr counts them: tags row by row from the
+  // bottom left, corners counterclockwise from the bottom left.
   Eigen::Vector2d point_m(int index) const;
 
-  // The corner with the least x and y; that of the outermost points from it; and how far the print reaches beyond them.
+  // The corner with the smallest x and y; the opposite corner relative to it; and the margin of the print
+  // around the points.
   Eigen::Vector2d corner_m() const;
   Eigen::Vector2d extent_m() const;
   double printBeyond_m() const;
 
-  // True if the pattern turned by 180 degrees is the same pattern: symmetric circles, asymmetric ones with an
-  // even number of rows, checkerboards whose rows and columns are both even or both odd. Such a board does for
+  // True if the pattern is unchanged by a rotation of 180 degrees: symmetric circles, asymmetric ones with an
+  // even number of rows, checkerboards whose rows and columns are both even or both odd. Use such a board for
   // intrinsics only.
   bool hasHalfTurnAmbiguity() const;
 };
@@ -82,9 +84,9 @@ Board boardOfPoints(std::vector<Eigen::Vector2d> given_m);
 // All points, by index.
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board);
 
-// Throws CalibrationError (BadInput, place "board") when the numbers make no board: fewer than 2 rows or
-// columns (of tags: than 1), more than 100 of either, no size, circles or tags that touch; given points that are
-// fewer than four, on a line, or two in one place.
+// Throws CalibrationError (BadInput, place "board") if the numbers are invalid: fewer than 2 rows or columns
+// (tags: fewer than 1), more than 100 of either, no size, circles or tags that touch; given points that are
+// fewer than four, on a line, or coincident.
 void validate(const Board& board);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// The numbers of a camera; what they do to points is in camera_model.h.
+// Parameters of a camera; camera_model.h has the projection.
 #pragma once
 
 #include "core/geometry/resolution.h"

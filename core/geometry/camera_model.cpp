@@ -27,7 +27,7 @@ Eigen::Vector2d distortPinhole(const CameraIntrinsics& camera, const Eigen::Vect
              : distortEquidistant(camera.distortion, n, jacobian, jacobian_distortion);
 }
 
-// Like project, but of focal length 1 and principal point 0.
+// Like project, with focal length 1 and principal point 0.
 std::optional<Eigen::Vector2d> pinholeImage(const CameraIntrinsics& camera, const Eigen::Vector3d& point,
                                             Eigen::Matrix<double, 2, 3>* by_point,
                                             DistortionJacobian* by_coefficients) {
@@ -168,7 +168,7 @@ void validate(const CameraIntrinsics& camera, const std::string& place) {
   }
   if (!camera.principal_point_px.allFinite()) throw badInput(place, "principal_point_px must be two numbers");
   for (const double d : camera.distortion) {
-    if (!std::isfinite(d)) throw badInput(place, "distortion holds something that is not a number");
+    if (!std::isfinite(d)) throw badInput(place, "distortion contains a value that is not a finite number");
   }
   const IntrinsicsBounds bounds = intrinsicsBounds(camera.model);
   const auto names = distortionNames(camera.model);
@@ -176,7 +176,7 @@ void validate(const CameraIntrinsics& camera, const std::string& place) {
     const double lower = bounds.lower[4 + k], upper = bounds.upper[4 + k];
     if (camera.distortion[k] < lower || camera.distortion[k] > upper)
       throw badInput(place,
-                     fmt::format("{} is {}, and {} makes a camera with {} to {} only", names[k],
+                     fmt::format("{} is {}, but {} needs a value from {} to {}", names[k],
                                  camera.distortion[k], cameraModelName(camera.model), lower, upper),
                      "Check the model, and the order of its coefficients");
   }

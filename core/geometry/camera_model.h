@@ -1,12 +1,13 @@
-// Cameras: pinholes with radial-tangential or equidistant (fisheye) distortion, OpenCV's equations and order of
-// coefficients; and for wide lenses the double sphere (V. Usenko, N. Demmel, D. Cremers, "The double sphere camera
-// model", 3DV 2018), the enhanced unified model, EUCM (B. Khomutenko, G. Garcia, P. Martinet, RA-L 2016), and the
-// unified model with radial-tangential distortion, omni (C. Mei, P. Rives, ICRA 2007). docs/maths.md, 3.1. Camera
-// frame: z forward, x right, y down; pixels with the centre of the top-left pixel at (0, 0).
+// Cameras: pinholes with radial-tangential or equidistant (fisheye) distortion, OpenCV's equations and order
+// of coefficients; and for wide lenses the double sphere (V. Usenko, N. Demmel, D. Cremers, "The double
+// sphere camera model", 3DV 2018), the enhanced unified model, EUCM (B. Khomutenko, G. Garcia, P. Martinet,
+// RA-L 2016), and the unified model with radial-tangential distortion, omni (C. Mei, P. Rives, ICRA 2007).
+// docs/maths.md, 3.1. Camera frame: z forward, x right, y down; pixels with the centre of the top-left pixel
+// at (0, 0).
 //
-// "Ideal" pixels are where a camera without distortion, with the same scale on its axis, would see a point: u = f x /
-// z + cx with idealFocalLength_px. In ideal pixels, and only there, the image of a circle is an exact conic. Towards
-// 90 degrees off axis they go to infinity: there are none beyond 85 degrees.
+// "Ideal" pixels are where a camera without distortion, with the same scale on its axis, would see a point: u
+// = f x / z + cx with idealFocalLength_px. Only in ideal pixels is the image of a circle an exact conic.
+// Towards 90 degrees off axis they go to infinity: they are undefined beyond 85 degrees.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
@@ -21,9 +22,9 @@ namespace evical {
 // Columns of the Jacobian with respect to the intrinsics: fx fy cx cy d0 d1 d2 d3 d4.
 using IntrinsicsJacobian = Eigen::Matrix<double, 2, 9>;
 
-// Pixel of a point in the camera frame; nothing where the camera does not see it: for pinholes what is not in front or
-// beyond the distortion's range, for the wide models, which see to more than 90 degrees off axis, where two directions
-// would have one pixel.
+// Pixel of a point in the camera frame; empty if the camera does not see it. Pinholes do not see points
+// behind the camera or beyond the distortion's range. Wide models, which see more than 90 degrees off axis,
+// do not see directions that would share a pixel with another one.
 std::optional<Eigen::Vector2d> project(const CameraIntrinsics& camera, const Eigen::Vector3d& point_in_camera,
                                        Eigen::Matrix<double, 2, 3>* jacobian_point = nullptr,
                                        IntrinsicsJacobian* jacobian_intrinsics = nullptr);
@@ -33,26 +34,25 @@ std::optional<Eigen::Vector2d> project(const CameraIntrinsics& camera, const Eig
 Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised,
                         Eigen::Matrix2d* jacobian = nullptr);
 
-// (x/z, y/z) of the ray through a pixel; nothing without a ray, or if it is more than 85 degrees from the
-// axis.
+// (x/z, y/z) of the ray through a pixel; empty without a ray, or if it is more than 85 degrees from the axis.
 std::optional<Eigen::Vector2d> unproject(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 
-// The same ray as a unit vector, of the wide models at any angle.
+// The same ray as a unit vector; for the wide models at any angle.
 std::optional<Eigen::Vector3d> unprojectRay(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 
-// Pixels by x/z and y/z on the axis: the focal length, but 1 / (1 + xi) of it where a model has spheres' centres apart.
+// Pixels per x/z and y/z on the axis: the focal length, times 1 / (1 + xi) for models with two spheres.
 Eigen::Vector2d idealFocalLength_px(const CameraIntrinsics& camera);
 
 std::optional<Eigen::Vector2d> idealPixel(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 Eigen::Vector2d pixelFromIdeal(const CameraIntrinsics& camera, const Eigen::Vector2d& ideal_pixel);
 
-// d(ideal pixel)/d(pixel) at an ideal pixel: how much larger a small figure is in ideal pixels.
+// d(ideal pixel)/d(pixel) at an ideal pixel: local magnification of ideal pixels.
 Eigen::Matrix2d idealPixelScale(const CameraIntrinsics& camera, const Eigen::Vector2d& ideal_pixel);
 
-// Throws CalibrationError (BadInput) when the numbers make no camera; `place` goes into the message.
+// Throws CalibrationError (BadInput) if the parameters are invalid; `place` is part of the message.
 void validate(const CameraIntrinsics& camera, const std::string& place);
 
-// A pinhole of focal length 1: its image coordinates are those of rays on the plane z = 1.
+// A pinhole of focal length 1: its image coordinates are rays on the plane z = 1.
 const CameraIntrinsics& normalisedCamera();
 
 }  // namespace evical

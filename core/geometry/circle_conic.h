@@ -21,7 +21,7 @@ struct ProjectedCircle {
   Eigen::Matrix<double, 2, 3> by_centre, by_normal;  // derivatives with respect to p and n
 };
 
-// Nothing unless the whole circle is in front of the camera.
+// Empty unless the whole circle is in front of the camera.
 std::optional<ProjectedCircle> projectCircle(const CameraIntrinsics& camera,
                                              const Eigen::Vector3d& centre_in_camera_m,
                                              const Eigen::Vector3d& normal_in_camera, double radius_m);

@@ -7,7 +7,7 @@
 
 namespace evical {
 
-// The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").
+// The two world directions of gravity's tilt in the report ("gravity.direction.1", ".2").
 inline Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d down = gravity.normalized();
   const Eigen::Vector3d seed = std::abs(down.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();

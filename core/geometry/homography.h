@@ -1,4 +1,4 @@
-// Homography of a plane onto another, as by a camera without distortion.
+// Homography between planes, such as the image of a plane in a camera without distortion.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +9,10 @@
 
 namespace evical {
 
-// A homography takes no fewer points.
+// Smallest number of points for a homography.
 inline constexpr std::size_t kLeastForHomography = 4;
 
-// Homography from points to points (normalised direct linear transform); nothing if degenerate.
+// Homography from points to points (normalised direct linear transform); empty if degenerate.
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
                                              const std::vector<Eigen::Vector2d>& to);
 

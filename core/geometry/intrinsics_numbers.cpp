@@ -25,7 +25,7 @@ IntrinsicsBounds intrinsicsBounds(CameraModel model) {
     bounds.lower[4 + coefficient] = lower;
     bounds.upper[4 + coefficient] = upper;
   };
-  constexpr double kLargestShift = 0.99;  // at 1 a sphere's centre is on the other one
+  constexpr double kLargestShift = 0.99;  // at 1 a sphere's centre is on the other sphere
   constexpr double kLargestBeta = 100.0, kLargestMirror = 100.0;
   if (model == CameraModel::DoubleSphere) {
     bound(0, -kLargestShift, kLargestShift);

@@ -1,5 +1,5 @@
 // Intrinsics as nine plain numbers, for solvers: in the order of IntrinsicsJacobian (camera_model.h), fx fy
-// cx cy d0 d1 d2 d3 d4; pixels, and coefficients without unit. What the models are called, and their coefficients.
+// cx cy d0 d1 d2 d3 d4; pixels, and coefficients without unit. Names of models and coefficients.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
@@ -18,10 +18,10 @@ struct IntrinsicsBounds {
 };
 IntrinsicsBounds intrinsicsBounds(CameraModel model);
 
-// "k1", "p1", ... by coefficient; empty where the model has none.
+// "k1", "p1", ... by coefficient; empty for coefficients that the model does not have.
 std::array<const char*, 5> distortionNames(CameraModel model);
 
-// At most; radtan does without the fifth (k3) where it is 0.
+// Largest number of coefficients; radtan omits the fifth (k3) if it is 0.
 int coefficientCount(CameraModel model);
 
 // Names of the models in files, in the order of CameraModel.
@@ -29,6 +29,6 @@ inline constexpr std::initializer_list<const char*> kCameraModelNames = {
     "pinhole_radtan", "pinhole_equidistant", "double_sphere", "eucm", "omni_radtan"};
 
 const char* cameraModelName(CameraModel model);
-const char* cameraModelTitle(CameraModel model);  // for people: "Pinhole, equidistant"
+const char* cameraModelTitle(CameraModel model);  // for display: "Pinhole, equidistant"
 
 }  // namespace evical

@@ -11,7 +11,8 @@ struct Shifted {
   int count;
 };
 
-// Turns of the lattice, each also sheared: a tilted board's shortest steps may not be its square's sides.
+// Rotations of the lattice, each also sheared: the shortest steps of a tilted board may not be the sides of
+// its squares.
 std::vector<LatticeMap> latticeMaps() {
   constexpr std::array<LatticeMap, 5> kShears = {
       {{1, 0, 0, 1}, {1, 1, 0, 1}, {1, -1, 0, 1}, {1, 0, 1, 1}, {1, 0, -1, 1}}};

@@ -25,8 +25,8 @@ std::map<LatticePlace, int> boardLattice(const Board& board);
 
 using LatticePlacement = std::vector<std::pair<int, std::size_t>>;  // board circle, index of the circle
 
-// Placements that put at least `nearly` (a part) as many circles on the board as the best one, most circles
-// first.
+// Placements with at least `nearly` (a ratio) as many circles on the board as the best one, in descending
+// order.
 std::vector<LatticePlacement> layOnBoard(const CircleLattice& lattice, const Board& board, double nearly);
 
 }  // namespace evical

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr int kColumns = 41, kRows = 31;  // of rays that are fitted to
+constexpr int kColumns = 41, kRows = 31;  // grid of fitted rays
 
 struct DetectionSetup {
   Eigen::Vector2d pixel;
@@ -27,7 +27,7 @@ struct Sights {
   bool whole_image = true;
 };
 
-// Rays of pixels over the whole image, edges included; those that `model` can see.
+// Rays of pixels over the whole image including its edges, as far as `model` can project them.
 Sights sightsOf(const CameraIntrinsics& camera, CameraModel model, int columns, int rows) {
   const double least_z = isSphereModel(model) ? -1.0 : std::cos(85.0 * kRadPerDeg);
   Sights sights;
@@ -36,7 +36,7 @@ Sights sightsOf(const CameraIntrinsics& camera, CameraModel model, int columns, 
       const Eigen::Vector2d pixel((camera.resolution_px.width_px - 1.0) * col / (columns - 1),
                                   (camera.resolution_px.height_px - 1.0) * row / (rows - 1));
       const auto ray = unprojectRay(camera, pixel);
-      if (!ray) continue;  // nor does the camera itself see anything there
+      if (!ray) continue;  // no ray in the camera's own model either
       if (ray->z() >= least_z)
         sights.seen.push_back({pixel, *ray});
       else
@@ -63,7 +63,7 @@ struct Misfit {
   double sum_px2 = 0.0, worst_px = 0.0;
 };
 
-// Infinite where the camera does not see one of the rays at all.
+// Infinite if the camera cannot project one of the rays.
 Misfit misfitOf(const CameraIntrinsics& camera, const std::vector<DetectionSetup>& sights) {
   constexpr double kNotSeen = std::numeric_limits<double>::infinity();
   Misfit misfit;
@@ -101,7 +101,7 @@ CameraIntrinsics startOf(const CameraIntrinsics& camera, CameraModel model, int 
   if (model != camera.model) return plain;
   CameraIntrinsics start = camera;
   for (std::size_t i = static_cast<std::size_t>(coefficients); i < 5; ++i) start.distortion[i] = 0.0;
-  // Those coefficients alone may cover less than the image.
+  // These coefficients alone may not cover the whole image.
   return std::isfinite(misfitOf(start, sights).sum_px2) ? start : plain;
 }
 

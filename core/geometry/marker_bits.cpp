@@ -27,15 +27,16 @@ PatternBits bitsOf(const cv::aruco::Dictionary& dictionary, int id) {
   return bits;
 }
 
-// The largest set of a family: its smaller ones are the beginnings of it.
+// The largest set of a family: smaller sets are its first markers.
 cv::Ptr<cv::aruco::Dictionary> dictionaryOf(const std::string& name) {
   constexpr std::array kSets = {cv::aruco::DICT_4X4_1000, cv::aruco::DICT_5X5_1000, cv::aruco::DICT_6X6_1000,
                                 cv::aruco::DICT_7X7_1000, cv::aruco::DICT_ARUCO_ORIGINAL};
   const std::vector<std::string>& names = markerNames();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw badInput("markers", "'" + name + "' is no dictionary", "Use 4x4, 5x5, 6x6, 7x7 or original");
-  // OpenCV 4.7 and later hand it out by value.
+    throw badInput("markers", "'" + name + "' is not a marker dictionary",
+                   "Use 4x4, 5x5, 6x6, 7x7 or original");
+  // OpenCV 4.7 and later return it by value.
   return cv::makePtr<cv::aruco::Dictionary>(
       cv::aruco::getPredefinedDictionary(kSets.at(static_cast<std::size_t>(found - names.begin()))));
 }
@@ -51,7 +52,7 @@ std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count) 
   const cv::Ptr<cv::aruco::Dictionary> all = dictionaryOf(dictionary);
   if (count > all->bytesList.rows)
     throw badInput("board",
-                   fmt::format("needs {} markers, and the dictionary has {}", count, all->bytesList.rows),
+                   fmt::format("needs {} markers, but the dictionary has {}", count, all->bytesList.rows),
                    "Use fewer rows or columns");
   std::vector<PatternBits> markers;
   for (int id = 0; id < count; ++id) markers.push_back(bitsOf(*all, id));

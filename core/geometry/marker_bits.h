@@ -12,8 +12,8 @@ using PatternBits = std::vector<std::vector<bool>>;
 inline constexpr const char* kUsualMarkers = "5x5";
 const std::vector<std::string>& markerNames();  // of dictionaries
 
-// The first `count` markers by number. Throws CalibrationError (BadInput) where there is no such dictionary, or it has
-// fewer.
+// The first `count` markers by number. Throws CalibrationError (BadInput) if the dictionary does not exist,
+// or has fewer.
 std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// A board's measured length: with a ruler, from one circle's centre to that of another in the same line.
+// A length measured on the board with a ruler, from one circle's centre to another in the same line.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -6,9 +6,9 @@
 namespace evical {
 
 struct MeasuredLength {
-  int spacings = 10;  // between the circles: from the first of 11 rows to the last there are 10
+  int spacings = 10;  // between the circles: 10 from the first of 11 rows to the last
   double length_m = 0.5;
-  double std_m = 0.0005;  // of ruler and eye; 0: exact
+  double std_m = 0.0005;  // of the ruler reading; 0: exact
 
   bool operator==(const MeasuredLength&) const = default;
 
@@ -16,10 +16,11 @@ struct MeasuredLength {
   double relativeStd() const { return std_m / length_m; }
 };
 
-// In the board's longest line.
+// Number of spacings in the board's longest line.
 int mostSpacings(const Board& board);
 
-// Throws CalibrationError (BadInput, place "board.measured...") where the board has no such line, or nobody measures so.
+// Throws CalibrationError (BadInput, place "board.measured...") if the board has no such line, or a value is
+// implausible.
 void validate(const MeasuredLength& measured, const Board& board);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// Distortion of (x/z, y/z) by lenses of pinhole cameras; OpenCV's equations (docs/maths.md, 3.1).
+// Distortion of (x/z, y/z) for pinhole cameras; OpenCV's equations (docs/maths.md, 3.1).
 #pragma once
 
 #include <Eigen/Core>
@@ -20,13 +20,13 @@ Eigen::Vector2d distortEquidistant(const std::array<double, 5>& coefficients,
                                    const Eigen::Vector2d& normalised, Eigen::Matrix2d* jacobian,
                                    DistortionJacobian* by_coefficients);
 
-// Past the radius where a distortion folds back, a point would seem to come in again from outside.
+// Beyond the radius where a distortion folds back, points would move inwards again.
 inline bool foldsBack(const Eigen::Matrix2d& jacobian) {
   return !(jacobian.determinant() > 0.0) || jacobian.trace() <= 0.0;
 }
 
-// The point whose distortion is `target`, by Newton's iteration from `start`; nothing if it does not
-// converge. `distort`: (normalised, &jacobian) -> distorted.
+// The point whose distortion is `target`, by Newton's iteration from `start`; empty if it does not converge.
+// `distort`: (normalised, &jacobian) -> distorted.
 template <class Distort>
 std::optional<Eigen::Vector2d> undistorted(const Eigen::Vector2d& target, const Eigen::Vector2d& start,
                                            Distort&& distort) {

@@ -103,7 +103,7 @@ CircleLattice findCircleLattice(const std::vector<LatticeCircle>& circles, const
   CircleLattice best;
   std::vector<bool> settled(circles.size(), false);
   for (std::size_t seed = 0; seed < circles.size(); ++seed) {
-    if (settled[seed]) continue;  // already inside a lattice that was grown
+    if (settled[seed]) continue;  // already part of another lattice
     const std::vector<std::size_t> near = neighboursOf(seed, circles, options);
     CircleLattice best_here;
     for (const std::size_t p : near) {

@@ -1,5 +1,5 @@
-// Orders circles into a lattice: from a seed circle and two neighbours outwards, each step predicted by its
-// neighbours. Outliers and missing circles are normal.
+// Ordering of circles in a lattice: from a seed circle and two neighbours outwards, with each step predicted
+// by its neighbours. Tolerates outliers and missing circles.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +17,10 @@ struct LatticeCircle {
 struct LatticeOptions {
   double shortest_step_radii = 0.0;  // between neighbours, in their radii
   double longest_step_radii = 0.0;
-  double largest_radius_ratio = 0.0;  // of neighbours
-  double step_tolerance = 0.0;        // of a step, to where its neighbours predict it
+  double largest_radius_ratio = 0.0;  // between neighbours
+  double step_tolerance = 0.0;        // distance from the predicted place, relative to a step
   double least_sine = 0.0;            // between the lattice's two directions
-  int least_circles = 0;              // that a lattice has
+  int least_circles = 0;              // of a lattice
 };
 
 struct LatticeNode {
@@ -30,7 +30,7 @@ struct LatticeNode {
 
 using CircleLattice = std::vector<LatticeNode>;
 
-// The lattice with the most circles; empty if no three circles make one.
+// The lattice with the most circles; empty if no three circles form one.
 CircleLattice findCircleLattice(const std::vector<LatticeCircle>& circles, const LatticeOptions& options);
 
 }  // namespace evical

@@ -14,7 +14,7 @@ namespace {
 struct RayPixel {
   Eigen::Vector2d pixel;
   Eigen::Vector3d ray;                  // unit
-  Eigen::Matrix<double, 2, 3> by_turn;  // of the camera that looks along it
+  Eigen::Matrix<double, 2, 3> by_turn;  // with respect to a rotation of the camera
 };
 
 std::optional<RayPixel> rayPixel(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel) {

@@ -12,13 +12,13 @@
 
 namespace evical {
 
-// Pixels at the middles of columns x rows cells, row by row, and how those of their
-// rays move with the intrinsics.
+// Pixels at the centres of columns x rows cells, row by row, and the derivatives of their rays' projections
+// with respect to the intrinsics.
 class ProjectionChange {
  public:
   struct Place {
     Eigen::Vector2d pixel;
-    std::optional<IntrinsicsJacobian> by_intrinsics;  // nothing where there is no ray
+    std::optional<IntrinsicsJacobian> by_intrinsics;  // empty if there is no ray
   };
 
   ProjectionChange(const CameraIntrinsics& camera, int columns, int rows);
@@ -30,11 +30,11 @@ class ProjectionChange {
 
 struct ProjectionDifference {
   double rms_px = 0.0, max_px = 0.0;
-  int places = 0;  // compared
+  int places = 0;  // number of compared places
 };
 
-// Differences of `other` from `camera` at the middles of columns x rows cells, row by row, for the same rays.
-// Nothing without a ray, or if `other` does not see it. The image's size is that of `camera`.
+// Differences of `other` from `camera` at the centres of columns x rows cells, row by row, for the same rays.
+// Empty if there is no ray, or if `other` does not see it. The image's size is that of `camera`.
 std::vector<std::optional<Eigen::Vector2d>> projectionDifferences(const CameraIntrinsics& camera,
                                                                   const CameraIntrinsics& other, int columns,
                                                                   int rows);

@@ -5,7 +5,7 @@
 namespace evical {
 namespace {
 
-// Below it the series with two terms of sine and cosine are exact to double precision.
+// Below this, the series of sine and cosine with two terms are exact in double precision.
 constexpr double kSmallAngle2 = 1e-8;  // rad^2
 
 // Weights of skew(v) and its square in Rodrigues' formula and its derivative.

@@ -21,7 +21,8 @@ Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_r
 void so3ExpAndRightJacobian(const Eigen::Vector3d& rotation_vector_rad, Eigen::Matrix3d& exponential,
                             Eigen::Matrix3d& right_jacobian);
 
-// The shortest rotation that turns one direction into another. Compiled once: Eigen's needs a singular value decomposition.
+// The shortest rotation from one direction to another. Not inlined: Eigen's version needs a singular value
+// decomposition.
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 Eigen::Quaterniond quaternionExp(const Eigen::Vector3d& rotation_vector_rad);

@@ -154,7 +154,8 @@ RotationSample evaluate(const So3Spline& spline, double time_s, RotationOrder or
 
 namespace {
 
-// Control points on the data, linearly interpolated on the sphere: a start from which Gauss-Newton converges.
+// Control points at the data, linearly interpolated on the sphere: a start value from which Gauss-Newton
+// converges.
 void interpolateControlPoints(std::span<const double> times_s, std::span<const Quaterniond> rotations,
                               So3Spline& spline) {
   std::vector<std::size_t> order(times_s.size());
@@ -216,8 +217,8 @@ So3Spline fitSo3Spline(std::span<const double> times_s, std::span<const Quaterni
   So3Spline spline = makeUniformSo3Spline(begin_s, end_s, knot_spacing_s);
   if (times_s.empty()) return spline;
   interpolateControlPoints(times_s, rotations, spline);
-  constexpr int kIterations = 5;        // quadratic from so near; the last step is rounding
-  constexpr double kSmoothness = 1e-8;  // enough to tie unconstrained points, too little to move the others
+  constexpr int kIterations = 5;        // converges quadratically; the last step is rounding
+  constexpr double kSmoothness = 1e-8;  // constrains points without data, does not move the others
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     NormalEquations equations(spline.control_points.size());
     for (std::size_t i = 0; i < times_s.size(); ++i) {

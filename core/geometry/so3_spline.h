@@ -17,7 +17,7 @@ namespace evical {
 struct CumulativeWeights;  // spline_basis.h
 
 struct So3Spline {
-  double start_s = 0.0;  // time of the first segment's begin
+  double start_s = 0.0;  // start time of the first segment
   double knot_spacing_s = 0.02;
   std::vector<Eigen::Quaterniond> control_points;
 
@@ -26,8 +26,8 @@ struct So3Spline {
   bool contains(double time_s) const { return time_s >= start_s && time_s <= endTime_s(); }
 };
 
-// A time in a uniform spline: the segment (clamped to those there are) and u within it. Outside the spline u
-// leaves [0, 1], and evaluating there continues the first or last segment's polynomial.
+// A time in a uniform spline: the segment (clamped to the existing ones) and u within it. Outside the spline,
+// u leaves [0, 1], and evaluation extrapolates the first or last segment's polynomial.
 struct SplinePlace {
   int segment = 0;
   double u = 0.0;
@@ -38,7 +38,7 @@ SplinePlace placeInSpline(const So3Spline& spline, double time_s);
 // Number of segments of this spacing that cover [begin_s, end_s].
 int segmentsToCover(double begin_s, double end_s, double knot_spacing_s);
 
-// All control points the same; covers [begin_s, end_s], starting at begin_s.
+// All control points equal; covers [begin_s, end_s], starting at begin_s.
 So3Spline makeUniformSo3Spline(double begin_s, double end_s, double knot_spacing_s,
                                const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
 
@@ -70,7 +70,7 @@ class So3Segment {
                 RotationJacobians* jacobians = nullptr) const;
 
  private:
-  // A_1 .. A_3, and how they turn with d_1 .. d_3.
+  // A_1 .. A_3, and their derivatives with respect to d_1 .. d_3.
   struct Factors {
     std::array<Eigen::Matrix3d, 3> rotations, by_step;
   };
@@ -88,8 +88,9 @@ RotationSample evaluate(const So3Spline& spline, double time_s,
                         RotationOrder order = RotationOrder::Acceleration,
                         RotationJacobians* jacobians = nullptr);
 
-// Least squares fit to rotations at times (ascending or not) within the spline's range, by Gauss-Newton from
-// the interpolated rotations; a weak pull towards constant angular velocity bridges stretches without data.
+// Least squares fit to rotations at times (in any order) within the spline's range, by Gauss-Newton from the
+// interpolated rotations; weak regularisation towards constant angular velocity bridges stretches without
+// data.
 So3Spline fitSo3Spline(std::span<const double> times_s, std::span<const Eigen::Quaterniond> rotations,
                        double begin_s, double end_s, double knot_spacing_s);
 

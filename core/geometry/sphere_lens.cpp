@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Row = Eigen::RowVector3d;
 
-// (x, y) / value, with what that value depends on: two coefficients at most.
+// (x, y) / value, with the derivatives of the value: two coefficients at most.
 struct Depth {
   double value;
   Row by_point;
@@ -19,7 +19,7 @@ struct Depth {
   bool seen;
 };
 
-// z / d where x / (alpha d + (1 - alpha) z) turns back.
+// z / d at which x / (alpha d + (1 - alpha) z) has its maximum.
 double lowestCosine(double alpha) {
   return alpha > 0.5 ? -(1.0 - alpha) / alpha : -alpha / (1.0 - alpha);
 }
@@ -75,7 +75,7 @@ SphereImage divided(const Vector3d& p, const Depth& depth) {
   return out;
 }
 
-// k1 k2 p1 p2, which follow xi.
+// k1 k2 p1 p2, after xi.
 std::array<double, 5> radtanOf(const CameraIntrinsics& omni) {
   const auto& d = omni.distortion;
   return {d[1], d[2], d[3], d[4], 0.0};
@@ -93,7 +93,7 @@ SphereImage omniImage(const CameraIntrinsics& camera, const Vector3d& p) {
   return out;
 }
 
-// z of the direction (m, z) that x / (alpha d + (1 - alpha) z) takes to m; d^2 = beta rho^2 + z^2.
+// z of the direction (m, z) whose image x / (alpha d + (1 - alpha) z) is m; d^2 = beta rho^2 + z^2.
 std::optional<double> unifiedZ(double alpha, double beta, double m2) {
   const double root2 = 1.0 - (2.0 * alpha - 1.0) * beta * m2;
   if (!(root2 >= 0.0)) return std::nullopt;
@@ -102,7 +102,7 @@ std::optional<double> unifiedZ(double alpha, double beta, double m2) {
   return (1.0 - beta * alpha * alpha * m2) / divisor;
 }
 
-// From a direction as seen from a point xi behind the unit sphere's centre to that from the centre.
+// Converts a direction from a point xi behind the unit sphere's centre to the direction from the centre.
 std::optional<Vector3d> fromSphere(double xi, const Vector2d& m, double z) {
   const double m2 = m.squaredNorm();
   const double root2 = z * z + (1.0 - xi * xi) * m2;

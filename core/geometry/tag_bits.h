@@ -20,7 +20,7 @@ class TagBits {
   std::bitset<kTagSide_bits * kTagSide_bits> bright_;
 };
 
-// The first `count` tags by number; fewer where the family has no more: 587.
+// The first `count` tags by number; at most the 587 of the family.
 std::vector<TagBits> firstTags(int count);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// The reference IMU's motion in the world (= board) frame, and that of cameras carried by it.
+// Motion of the reference IMU in the world (= board) frame, and of cameras attached to it.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"

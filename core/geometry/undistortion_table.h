@@ -10,7 +10,7 @@ namespace evical {
 
 struct CameraIntrinsics;
 
-// The ideal pixel of every pixel, row by row; NaN without one.
+// The ideal pixel of every pixel, row by row; NaN if there is none.
 class UndistortionTable {
  public:
   UndistortionTable() = default;

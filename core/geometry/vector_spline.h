@@ -1,4 +1,4 @@
-// Uniform cubic B-spline in R^3, same knots and segments as so3_spline.h.
+// Uniform cubic B-spline in R^3, with the knots and segments of so3_spline.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct VectorSpline {
   bool contains(double time_s) const { return time_s >= start_s && time_s <= endTime_s(); }
 };
 
-// Value and time derivatives, with the four weights they have of the control points segment .. segment + 3:
+// Value and time derivatives, with their weights of the control points segment .. segment + 3:
 // the Jacobian with respect to control point k is weight[k] times the identity.
 struct VectorSample {
   Eigen::Vector3d value, velocity, acceleration;
@@ -31,13 +31,13 @@ VectorSample evaluate(const VectorSpline& spline, double time_s);
 VectorSample evaluateVectorSegment(const double* p0, const double* p1, const double* p2, const double* p3,
                                    double u, double knot_spacing_s);
 
-// All control points the same; covers [begin_s, end_s], starting at begin_s.
+// All control points equal; covers [begin_s, end_s], starting at begin_s.
 VectorSpline makeUniformVectorSpline(double begin_s, double end_s, double knot_spacing_s,
                                      const Eigen::Vector3d& value = Eigen::Vector3d::Zero());
 
-// Linear least squares to values at times within [begin_s, end_s]. `smoothness` weighs the
-// integrated squared second difference of the control points against one sample; the default
-// only bridges stretches without data.
+// Linear least squares fit to values at times within [begin_s, end_s]. `smoothness` is the weight of the
+// integrated squared second difference of the control points relative to one sample; the default only bridges
+// stretches without data.
 VectorSpline fitVectorSpline(std::span<const double> times_s, std::span<const Eigen::Vector3d> values,
                              double begin_s, double end_s, double knot_spacing_s, double smoothness = 1e-8);
 

@@ -24,7 +24,7 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// The gyroscope's own rotation in the form of poses.
+// The gyroscope's own rotation as a list of poses.
 std::vector<CameraPose> turnsOf(const GyroRotation& gyro) {
   constexpr double kStep_s = 0.02;
   std::vector<CameraPose> poses;
@@ -45,7 +45,7 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
   const std::optional<KnownNumber>& known = imu.prior.time_offset;
   const bool given = isGiven(known);
   const std::string offsets =
-      given   ? fmt::format("the time offset of {:.4f} s that is given", known->value)
+      given   ? fmt::format("the given time offset of {:.4f} s", known->value)
       : known ? fmt::format("any time offset within {:.1f} s of {:.4f} s", options.time_offset_search_s,
                             known->value)
               : fmt::format("any time offset up to {:.1f} s", options.time_offset_search_s);
@@ -54,7 +54,7 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
   if (peaks.empty()) {
     throw calibrationFailed(
         imu.name,
-        fmt::format("its samples and those of the reference do not overlap for {:.1f} s at {}",
+        fmt::format("its samples overlap with the reference's for less than {:.1f} s at {}",
                     options.least_overlap_s, offsets),
         "Check the clocks, or " + advice);
   }
@@ -70,9 +70,9 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
         imu.name,
         fmt::format("its rotation rates do not agree with the reference's at {} (correlation {:.2f})",
                     offsets, peaks.front().correlation),
-        "Check that both are on one rigid rig and recorded at the same time, or " + advice);
+        "Check that both are on the same rigid rig and were recorded at the same time, or " + advice);
   }
-  // What was estimated is what the reference seems to turn too much: minus the further one's bias.
+  // The estimated bias is that of the reference relative to this IMU: minus this IMU's bias.
   RelativeRotation& hand_eye = best->hand_eye;
   hand_eye.gyroscope_bias_rad_s =
       -(hand_eye.reference_from_sensor.conjugate() * hand_eye.gyroscope_bias_rad_s);

@@ -1,6 +1,6 @@
 // Poses of further IMUs on the rig. Rotation and time offset as for a camera (docs/maths.md, 8.7): a
-// gyroscope also measures its rotation between two moments. Then lever arm l and accelerometer bias b, linear
-// given the reference's motion:
+// gyroscope also measures its rotation between two instants. Then lever arm l and accelerometer bias b, which
+// are linear for a known motion of the reference:
 //   R f - R_wb^T (p'' - g) = ([a]x + [w]x [w]x) l + R b        with R = reference_from_imu.rotation.
 #pragma once
 
@@ -17,11 +17,11 @@ namespace evical {
 
 struct ImuRotation {
   RelativeRotation
-      hand_eye;  // the IMU in the camera's place; the bias is that of the further gyroscope, in its own frame
+      hand_eye;  // of the IMU instead of a camera; the bias is the further gyroscope's, in its own frame
   double correlation = 0.0;  // of the two gyroscopes' rates
 };
 
-// `reference` with its bias removed. Throws CalibrationFailed if they do not overlap or do not agree.
+// `reference` without its bias. Throws CalibrationFailed if they do not overlap or do not agree.
 ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, const GyroRotation& reference,
                                   const InitialisationOptions& options, const RunContext& context);
 
@@ -32,7 +32,7 @@ struct LeverArm {
   double std_m = 0.0;  // of the worst direction
 };
 
-// `state` with trajectory and gravity.
+// `state` must have trajectory and gravity.
 LeverArm solveLeverArm(const ImuData& imu, std::int64_t start_ns, const ImuRotation& rotation,
                        const CalibrationState& state, const InitialisationOptions& options);
 

@@ -35,8 +35,9 @@ void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& t
   std::vector<double> intervals_s;
   for (std::size_t k = 1; k < times_ns.size(); ++k)
     intervals_s.push_back(secondsSince(times_ns[k - 1], times_ns[k]));
-  // Batches of 5 that were stamped as they arrived put circles 220 times their noise off. Those of up to 200 count, with gaps
-  // of ten periods that are half of the time or more; rarer ones are losses. Chosen to be far from jitter, not measured.
+  // Batches of 5 that were stamped on arrival displaced circles by 220 times their noise. Batches of up to
+  // 200 are detected, if gaps of ten periods cover half of the time or more; fewer gaps are lost samples.
+  // Chosen far from jitter, not measured.
   constexpr double kGap_periods = 10.0, kLeastTime = 0.5;
   constexpr std::size_t kLargestBatch = 200;
   const double period_s = medianOf(intervals_s);
@@ -51,16 +52,18 @@ void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& t
   if (gaps * kLargestBatch < intervals_s.size() || in_gaps_s < kLeastTime * whole_s) return;
   throw calibrationFailed(
       imu,
-      fmt::format("samples are stamped in batches of about {}, {:.3g} ms apart and then none for {:.3g} ms: "
-                  "as they arrived, not as they were measured",
+      fmt::format("samples are stamped in batches of about {}, {:.3g} ms apart and followed by {:.3g} ms "
+                  "without samples: "
+                  "on arrival instead of at the time of measurement",
                   times_ns.size() / std::max<std::size_t>(gaps, 1), 1e3 * period_s,
                   1e3 * in_gaps_s / static_cast<double>(gaps)),
-      "Have the driver stamp each sample, or spread the stamps of a batch over its time");
+      "Configure the driver to stamp each sample, or distribute the stamps of a batch over its duration");
 }
 
 }  // namespace
 
-// Drivers that stamp a message's samples when it arrives: their steps cannot be distinguished from motion.
+// Detects drivers that stamp a message's samples on arrival: steps of their stamps cannot be distinguished
+// from motion.
 void checkStampsApart(const ImuData& imu) {
   std::vector<std::int64_t> rates_ns, forces_ns;
   for (const ImuSample& sample : imu.samples) {
@@ -79,8 +82,8 @@ void checkAxesAlive(const ImuData& imu) {
                     [&](const ImuSample& sample) { return axis.of(sample) != first; }))
       continue;
     throw calibrationFailed(imu.name,
-                            fmt::format("{} stays at {:.4g} throughout: the axis is dead", axis.name, first),
-                            "Check the IMU and what reads it");
+                            fmt::format("{} is constant at {:.4g}: the axis is dead", axis.name, first),
+                            "Check the IMU and its driver");
   }
 }
 
@@ -88,12 +91,13 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
                          const InitialisationOptions& options, const RunContext& context) {
   const RotationAgreement& rotation = agreement.rotation;
   const std::string& imu = input.imus[input.reference_imu].name;
-  // Rotations of single views are wrong by 1 to 3 mrad, which is all there is in a recording that hardly moves.
+  // Rotations of single views have errors of 1 to 3 mrad, which dominate in a recording with hardly any
+  // motion.
   constexpr double kBeyondNoise_rad = 0.01;
   if (rotation.pairs == 0 || rotation.rest_rad < kBeyondNoise_rad) return;
-  // If motion about one axis dominates, a wrong hand leaves little, but a reflection then leaves less. A
-  // mirrored gyroscope left 33 % of such a motion, where 40 % are allowed, and its reflection less than a
-  // fifth of that. Half of the residual, and a quarter of the limit from which handedness is tested at all,
+  // If motion about one axis dominates, wrong handedness leaves a small residual, but a reflection a smaller
+  // one. A mirrored gyroscope left 33 % of such a motion, of 40 % that are allowed, and its reflection less
+  // than a fifth of that. Half of the residual, and a quarter of the limit from which handedness is tested,
   // are chosen, not measured.
   constexpr double kFarBetter = 0.5, kMuchBetter = 0.2, kSuspicious = 0.25;
   const bool unexplained = rotation.rotated >= options.largest_unexplained_motion;
@@ -104,28 +108,29 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
   if (!unexplained && !left_handed) return;
   if (left_handed) {
     const std::string proof = fmt::format(
-        "the best rotation leaves {:.0f} % of what the gyroscope turns, the best reflection {:.0f} %",
+        "the best rotation leaves {:.0f} % of the gyroscope's rotation, the best reflection {:.0f} %",
         100.0 * rotation.rotated, 100.0 * rotation.reflected);
     const auto cause = findWrongAxes(input, true, options, context);
     throw calibrationFailed(
         imu, (cause ? cause->problem : "the gyroscope's axes seem left-handed") + " (" + proof + ")",
-        cause ? cause->advice : "Change the sign of one axis, or swap two, where they are recorded")
+        cause ? cause->advice : "Change the sign of one axis, or swap two axes, in the recording software")
         .repairedBy(cause ? cause->repair : std::nullopt);
   }
   throw calibrationFailed(
       imu,
-      fmt::format(
-          "the IMU's samples seem to be of another recording than {}'s events, or the clocks further "
-          "apart than was looked for: however they are mounted, {:.0f} % of what the gyroscope turns is "
-          "not in the images (correlation of rates {:.2f})",
-          agreement.camera, 100.0 * rotation.rotated, agreement.correlation),
-      "Check which files belong together, and the clocks");
+      fmt::format("the IMU's samples seem to be from another recording than the events of {}, or the clock "
+                  "offset exceeds "
+                  "the search range: for any mounting, {:.0f} % of the gyroscope's rotation is "
+                  "not visible in the images (correlation of rates {:.2f})",
+                  agreement.camera, 100.0 * rotation.rotated, agreement.correlation),
+      "Check that the files belong together, and the clocks");
 }
 
 void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
                              const InitialisationOptions& options, const RunContext& context) {
   const ImuData& imu = input.imus[input.reference_imu];
-  // Gravity is most of the spread, and agrees where only what moves does not: ask early (chosen, not measured).
+  // Gravity dominates the spread and agrees even if only the motion is wrong: test from a low limit on
+  // (chosen, not measured).
   constexpr double kSuspicious = 0.25;
   if (gravity.acceleration_misfit_m_s2 <
       kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))

@@ -1,5 +1,5 @@
-// Camera, gyroscope and accelerometer must measure the same motion. If they do not, possible causes are
-// tried, and CalibrationFailed is thrown with the most probable one: a result would have large errors.
+// Checks that camera, gyroscope and accelerometer measure the same motion. If they do not, possible causes
+// are tested, and CalibrationFailed is thrown with the most probable one: a result would have large errors.
 #pragma once
 
 #include "core/base/progress.h"
@@ -9,14 +9,14 @@
 
 namespace evical {
 
-// No batches of samples that are stamped alike, and no axis that never changes.
+// Rejects batches of samples with stamps of their arrival, and axes that never change.
 void checkStampsApart(const ImuData& imu);
 void checkAxesAlive(const ImuData& imu);
 
 void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,
                          const InitialisationOptions& options, const RunContext& context);
 
-// Fails only where the accelerometer's axes, read another way, agree far better.
+// Fails only if another reading of the accelerometer's axes agrees far better.
 void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
                              const InitialisationOptions& options, const RunContext& context);
 

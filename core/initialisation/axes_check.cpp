@@ -84,7 +84,7 @@ class AxesTrial {
 };
 
 // Rates were negated for the trial if the gyroscope is left-handed. The frame is the accelerometer's, so if
-// the two do not match, the gyroscope's axes are changed. Axes are those of the samples as recorded, which
+// the two do not match, the gyroscope's axes are changed. Axes are those of the recorded samples, which
 // the session may already have rotated.
 AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, const std::string& imu,
                   const std::string& proof) {
@@ -98,26 +98,26 @@ AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, co
   };
   if (left_handed_gyroscope && as_is)
     return {"the angular rates seem negated: " + proof,
-            "Change the sign of all three where they are recorded", read("gyroscope", -identity)};
+            "Change the sign of all three axes in the recording software", read("gyroscope", -identity)};
   if (left_handed_gyroscope && negated)
     return {
-        "the IMU's axes seem left-handed, mirrored along one or with two swapped, in gyroscope and "
-        "accelerometer alike: " +
+        "the IMU's axes seem left-handed (one axis mirrored, or two swapped) in both gyroscope and "
+        "accelerometer: " +
             proof,
-        "Change the sign of one axis, or swap two, of both where they are recorded"};
+        "Change the sign of one axis, or swap two axes, of both sensors in the recording software"};
   if (left_handed_gyroscope)
-    return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: read as {}, {}",
+    return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: if read as {}, {}",
                         axesWords(gyroscope), proof),
-            "Record them as the accelerometer's", read("gyroscope", gyroscope)};
+            "Record them in the accelerometer's frame", read("gyroscope", gyroscope)};
   if (negated)
-    return {
-        "the accelerations seem negated: " + proof,
-        "Change their sign (at rest an accelerometer shows +g upwards); acceleration_unit: -g does it for g",
-        read("accelerometer", -identity)};
-  return {fmt::format("the axes of accelerometer and gyroscope seem permuted against each other: with the "
-                      "accelerometer's read as {}, or the gyroscope's as {}, {}",
+    return {"the accelerations seem negated: " + proof,
+            "Change their sign (at rest, an accelerometer measures +g upwards), or set acceleration_unit: -g "
+            "for values in g",
+            read("accelerometer", -identity)};
+  return {fmt::format("the axes of accelerometer and gyroscope seem permuted relative to each other: if the "
+                      "accelerometer's are read as {}, or the gyroscope's as {}, {}",
                       axesWords(reading), axesWords(gyroscope), proof),
-          "Record both in one frame", read("gyroscope", gyroscope)};
+          "Record both sensors in one frame", read("gyroscope", gyroscope)};
 }
 
 }  // namespace
@@ -143,11 +143,11 @@ std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_
     if (best.isIdentity() && !left_handed_gyroscope) return std::nullopt;
     const std::string proof =
         best.isIdentity()
-            ? fmt::format("with that, accelerations agree to {:.2g} m/s^2", least_m_s2)
+            ? fmt::format("after this change, accelerations agree to {:.2g} m/s^2", least_m_s2)
             : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", least_m_s2, as_is_m_s2);
     return causeOf(best, left_handed_gyroscope, input.imus[input.reference_imu].name, proof);
   } catch (const CalibrationError&) {
-    return std::nullopt;  // it fails for another reason, with any axes
+    return std::nullopt;  // fails for another reason, independent of the axes
   }
 }
 

@@ -1,6 +1,6 @@
-// Wrong axes of an IMU, if camera, gyroscope and accelerometer cannot be parts of one right-handed rig. Every
-// permutation and sign of the accelerometer's axes is tried (48), and the one under which accelerations agree
-// with positions is reported.
+// Detection of wrong axes of an IMU, if camera, gyroscope and accelerometer cannot be parts of one
+// right-handed rig. All 48 permutations and signs of the accelerometer's axes are tested, and the one with
+// which accelerations agree with positions is reported.
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,10 +15,10 @@ namespace evical {
 
 struct AxesCause {
   std::string problem, advice;
-  std::optional<Repair> repair = {};  // where one sensor alone is read wrongly
+  std::optional<Repair> repair = {};  // if only one sensor's axes are wrong
 };
-// `left_handed_gyroscope`: only a reflection of the camera's rotation is the gyroscope's. Nothing where no reading
-// is better by far.
+// `left_handed_gyroscope`: the gyroscope's rotation is a reflection of the camera's. Empty if no reading is
+// far better.
 std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_handed_gyroscope,
                                        const InitialisationOptions& options, const RunContext& context);
 

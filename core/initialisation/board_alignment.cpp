@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-// One view: where the body was, and the camera before the board.
+// One view: poses of the body, and of the camera relative to the board.
 struct Moment {
   std::size_t sight;
   RigidTransform world_from_body, board_from_camera;
@@ -43,7 +43,8 @@ MeanPose meanRotation(std::span<const BoardSight> sights, const std::vector<Mome
   return meanPose(rotations, rotations[rotations.size() / 2], kSpread, kRounds);
 }
 
-// R_wb t_c - t_wB = R_wB p_Bc - p_wb of every view, outliers reweighted; unknown are t_wB and each t_c.
+// Solves R_wb t_c - t_wB = R_wB p_Bc - p_wb over all views, with robust weights; unknown are t_wB and each
+// t_c.
 class Translations {
  public:
   Translations(std::span<const BoardSight> sights, const std::vector<Moment>& moments,
@@ -96,7 +97,7 @@ class Translations {
 
   Eigen::VectorXd weighted(const std::vector<double>& weights) const {
     constexpr double kOpen = 1e-6;   // undetermined values stay at zero
-    constexpr double kGiven = 1e12;  // and known values stay
+    constexpr double kGiven = 1e12;  // given values are fixed
     const Eigen::Index size = columnOf(sights_.size());
     Eigen::MatrixXd normal = kOpen * Eigen::MatrixXd::Identity(size, size);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);

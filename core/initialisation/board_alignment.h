@@ -1,8 +1,8 @@
-// Place of a further board in the world, and of its cameras on the body (docs/maths.md, 8.12). The body's
-// place is known from other cameras' views of the world's board, and at those moments
+// Pose of a further board in the world, and of its cameras on the body (docs/maths.md, 8.12). The body's
+// pose is known from other cameras' views of the world's board, and at those times
 //   world_from_body(t) body_from_camera = world_from_board board_from_camera(t),
-// with the rotation of body_from_camera known by hand-eye. Both translations follow from one linear system:
-// the body must rotate about two axes.
+// with the rotation of body_from_camera known from hand-eye calibration. Both translations follow from one
+// linear system: the body must rotate about two axes.
 #pragma once
 
 #include "core/data/calibration_priors.h"
@@ -27,12 +27,12 @@ struct BoardSight {
 struct BoardAlignment {
   RigidTransform world_from_board;
   std::vector<Eigen::Vector3d> cameras_in_body_m;
-  int views = 0;          // that determine it
-  double agreeing = 0.0;  // share of them near where the others put it, by how the better ones scatter
+  int views = 0;          // number of views used
+  double agreeing = 0.0;  // share of consistent views, relative to the scatter of the better ones
   double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
 };
 
-// From views within `gap_s` of the body's known places; nothing if fewer than `least_views`.
+// From views within `gap_s` of known poses of the body; empty if there are fewer than `least_views`.
 std::optional<BoardAlignment> alignBoard(const CameraTrajectory& body, std::span<const BoardSight> sights,
                                          double gap_s, int least_views);
 

@@ -28,14 +28,14 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
                           found.median_reprojection_px, 0.0});
   if (found.rejected > static_cast<int>(found.poses.size())) {
     result.warnings.push_back(fmt::format(
-        "{}: the circles of most views ({} of {}) fit the board worse than {:.2f} px; check the "
+        "{}: the circles of most views ({} of {}) fit the board with errors above {:.2f} px; check the "
         "intrinsics and the board",
         camera.name, found.rejected, camera.observations.views.size(), options.largest_reprojection_px));
   }
   return std::move(found.poses);
 }
 
-// Hand-eye from one candidate offset, then once more with the poses that the gyroscope believes.
+// Hand-eye calibration from one candidate offset, then again with the poses that agree with the gyroscope.
 std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options,
                                    const SensorPrior& prior) {
@@ -52,19 +52,19 @@ void warnOfPeaks(const CameraData& camera, const std::vector<TimeOffsetPeak>& pe
   const std::optional<KnownNumber>& known = camera.prior.time_offset;
   if (isGiven(known)) {
     if (best.correlation < options.clear_peak_correlation)
-      result.warnings.push_back(
-          fmt::format("{}: rotation rates of camera and gyroscope agree weakly (correlation {:.2f}) at the "
-                      "time offset of {:.4f} s that is given; check it",
-                      camera.name, best.correlation, known->value));
+      result.warnings.push_back(fmt::format(
+          "{}: rotation rates of camera and gyroscope agree weakly (correlation {:.2f}) at the given "
+          "time offset of {:.4f} s; check this offset",
+          camera.name, best.correlation, known->value));
   } else if (best.correlation < options.clear_peak_correlation) {
     result.warnings.push_back(fmt::format(
-        "{}: no clear time offset: rotation rates of camera and gyroscope agree weakly (correlation "
-        "{:.2f}); rotate more, or give a wider initialisation.time_offset_search_s",
+        "{}: the time offset is not clear: rotation rates of camera and gyroscope agree weakly (correlation "
+        "{:.2f}); rotate more, or increase initialisation.time_offset_search_s",
         camera.name, best.correlation));
   } else if (peaks.size() > 1 && best.correlation - peaks[1].correlation < options.clear_peak_lead) {
     result.warnings.push_back(fmt::format(
         "{}: the motion nearly repeats itself: time offsets of {:.3f} s and {:.3f} s correlate almost "
-        "equally ({:.3f} and {:.3f}); whole rotations speak for {:.3f} s; move irregularly",
+        "equally ({:.3f} and {:.3f}), and complete rotations agree with {:.3f} s; move irregularly",
         camera.name, best.time_offset_s, peaks[1].time_offset_s, best.correlation, peaks[1].correlation,
         chosen_s));
   }
@@ -77,18 +77,18 @@ AlignedCamera bestAlignment(const CameraData& camera, const std::vector<CameraPo
   for (const TimeOffsetPeak& peak : peaks) {
     context.throwIfStopped();
     std::optional<AlignedCamera> found = align(poses, gyro, peak.time_offset_s, options, camera.prior);
-    // The more significant one stays unless the other is better by more than chance.
+    // The more significant peak is kept unless another is better by more than chance.
     if (found && (!best || found->hand_eye.cost < options.better_alignment * best->hand_eye.cost))
       best = std::move(found);
   }
   if (!best) {
-    throw calibrationFailed(camera.name, "too few pairs of views to find the camera's rotation",
+    throw calibrationFailed(camera.name, "there are too few pairs of views to estimate the camera's rotation",
                             "Record longer, with the board in view");
   }
   return std::move(*best);
 }
 
-// Swaps and drops poses that contradict the gyroscope, and repeats the hand-eye without them.
+// Swaps and drops poses that contradict the gyroscope, and repeats the hand-eye calibration without them.
 void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t start_ns,
                  const GyroRotation& gyro, const InitialisationOptions& options, AlignedCamera& aligned,
                  Initialisation& result) {
@@ -114,7 +114,7 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
   }
   const auto views = static_cast<int>(aligned.poses.size()) + dropped;
   result.steps.push_back({"planar poses", camera.name,
-                          fmt::format("the gyroscope turned {} views to the plane's other pose and "
+                          fmt::format("the gyroscope swapped {} views to the plane's other pose and "
                                       "contradicts {} of {}",
                                       swapped, dropped, views),
                           static_cast<double>(dropped) / views, 0.0});
@@ -124,8 +124,8 @@ bool isClear(const std::vector<TimeOffsetPeak>& peaks, const InitialisationOptio
   return !peaks.empty() && peaks.front().correlation >= options.clear_peak_correlation;
 }
 
-// Within the range that the options give, or where rates agree nowhere in it, as far as they allow. Far away, short
-// overlaps agree by chance, so that there most of what both have recorded must.
+// Peaks within the options' range; if rates do not agree in it, within the widest range. For large offsets,
+// short overlaps agree by chance, so that at least half of the data must overlap there.
 std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std::vector<CameraPose>& poses,
                                             const GyroRotation& gyro, const InitialisationOptions& options,
                                             Initialisation& result) {
@@ -133,7 +133,7 @@ std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std:
   if (isClear(peaks, options) || camera.prior.time_offset ||
       options.widest_time_offset_search_s <= options.time_offset_search_s)
     return peaks;
-  constexpr double kLeastShare = 0.5;  // chosen: where little overlaps, little agrees by chance
+  constexpr double kLeastShare = 0.5;  // chosen: short overlaps can agree by chance
   InitialisationOptions wide = options;
   wide.time_offset_search_s = options.widest_time_offset_search_s;
   wide.least_overlap_s = std::max(
@@ -142,9 +142,9 @@ std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std:
   std::vector<TimeOffsetPeak> further = correlateTimeOffset(poses, gyro, wide, camera.prior);
   if (!isClear(further, options)) return peaks;
   if (!peaks.empty() && further.front().significance <= peaks.front().significance) return peaks;
-  result.warnings.push_back(fmt::format(
-      "{}: the time offset lies beyond initialisation.time_offset_search_s ({:g} s): found at {:.3f} s",
-      camera.name, options.time_offset_search_s, further.front().time_offset_s));
+  result.warnings.push_back(
+      fmt::format("{}: the time offset exceeds initialisation.time_offset_search_s ({:g} s): it is {:.3f} s",
+                  camera.name, options.time_offset_search_s, further.front().time_offset_s));
   return further;
 }
 
@@ -162,7 +162,7 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   const std::vector<TimeOffsetPeak> peaks = timeOffsetPeaks(camera, poses, gyro, options, result);
   if (peaks.empty()) {
     throw calibrationFailed(camera.name,
-                            "too few pairs of views overlap with the gyroscope to find the time offset",
+                            "too few pairs of views overlap with the gyroscope to estimate the time offset",
                             "Record longer, with the board in view");
   }
   const double offset_s = stopwatch.restart_s();

@@ -1,4 +1,4 @@
-// One camera against the reference IMU's gyroscope: its poses, time offset and rotation
+// Alignment of one camera with the reference IMU's gyroscope: its poses, time offset and rotation
 // (docs/maths.md, 8.2 to 8.4).
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace evical {
 
-// Steps and warnings go into `result`. Throws CalibrationFailed, with what to do.
+// Adds steps and warnings to `result`. Throws CalibrationFailed with advice.
 AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& input, const GyroRotation& gyro,
                           const InitialisationOptions& options, const RunContext& context,
                           Initialisation& result);

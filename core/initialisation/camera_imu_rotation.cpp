@@ -15,8 +15,8 @@ namespace {
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
-// Rotation that turns the camera's rotation vectors into the gyroscope's (G.
-// Wahba's problem, by SVD), reweighted.
+// Rotation from the camera's rotation vectors to the gyroscope's (G.
+// Wahba's problem, by SVD), with robust weights.
 void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eigen::Vector3d>& felt,
                   double scale_rad, RelativeRotation& result) {
   Eigen::Matrix3d rotation = result.reference_from_sensor.toRotationMatrix();
@@ -25,7 +25,7 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
     Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double error = (felt[k] - rotation * pairs[k].seen_rad).norm() / scale_rad;
-      // The first round has no rotation yet.
+      // The first round does not have a rotation yet.
       const double weight = round == 0 ? 1.0 : cauchyWeight(error * error);
       sums += weight * felt[k] * pairs[k].seen_rad.transpose();
     }
@@ -47,7 +47,7 @@ std::vector<Eigen::Vector3d> feltRotations(const std::vector<RotationPair>& pair
   return felt;
 }
 
-// Given values are practically certain: information beyond that of any recording.
+// Given values are treated as certain: information beyond that of any recording.
 Vector7 holding(bool rotation, bool offset) {
   constexpr double kCertain = 1e12;
   Vector7 information = Vector7::Zero();
@@ -82,7 +82,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
     weights += weight;
     cost -= std::log(weight);
   }
-  // Unseen directions stay where they are: 1 rad, 10 ms, 0.1 rad/s at the noise's scale.
+  // Keeps undetermined directions unchanged: priors of 1 rad, 10 ms, 0.1 rad/s at the noise's scale.
   const double noise2 = scale_rad * scale_rad;
   matrix.diagonal() += noise2 * (Vector7() << 1.0, 1.0, 1.0, 1e4, 100.0, 100.0, 100.0).finished();
   matrix.diagonal() += held;
@@ -137,7 +137,7 @@ std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<Came
     result.time_offset_s = std::clamp(result.time_offset_s, lowest_s, highest_s);
     scale_rad = std::max(0.7 * scale_rad, kLastScale_rad);
   }
-  if (rotation_given) result.reference_from_sensor = prior.rotation->value;  // to the last digit
+  if (rotation_given) result.reference_from_sensor = prior.rotation->value;  // exactly
   return result;
 }
 

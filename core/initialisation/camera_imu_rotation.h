@@ -12,8 +12,8 @@
 
 namespace evical {
 
-// Rotation of a sensor relative to the reference, and its time offset: of a camera by hand-eye, or of a
-// further IMU by its own spline.
+// Rotation of a sensor relative to the reference, and its time offset: of a camera by hand-eye calibration,
+// or of a further IMU from its gyroscope.
 struct RelativeRotation {
   Eigen::Quaterniond reference_from_sensor = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
@@ -30,13 +30,12 @@ struct RotationPair {
   double from_s, to_s;       // camera clock
   Eigen::Vector3d seen_rad;  // camera(from)_from_camera(to), rotation vector
 };
-// Each view with the next one that is at least `pair_gap_s` later, unless that is further than
-// `longest_pair_s`.
+// Pairs each view with the next one that is at least `pair_gap_s` later, but at most `longest_pair_s`.
 std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
                                         double longest_pair_s);
 
-// From a start offset that is correct to `time_offset_reach_s`, or exact if the prior gives it; a given
-// rotation is fixed, too. Nothing if fewer than five pairs are covered.
+// Needs a start offset with an error below `time_offset_reach_s`; a given offset or rotation of the prior is
+// fixed. Empty if fewer than five pairs are covered.
 std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                           const GyroRotation& gyro, double time_offset_s,
                                                           const InitialisationOptions& options,

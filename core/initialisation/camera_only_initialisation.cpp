@@ -18,7 +18,7 @@
 namespace evical {
 namespace {
 
-// Cameras alone: the trajectory is the reference camera's, and a gyroscope on it would feel its rotation.
+// Cameras without an IMU: the trajectory is the reference camera's, whose rotation replaces a gyroscope.
 class CamerasAlone {
  public:
   CamerasAlone(const CalibrationInput& input, const InitialisationOptions& options, const RunContext& context,
@@ -59,7 +59,7 @@ class CamerasAlone {
     trajectory_ = through(poses_);
     result_.steps.push_back(
         {"trajectory", reference().name,
-         fmt::format("{} of {} views, circles fit to {:.3f} px (median), {} turned to the "
+         fmt::format("{} of {} views, circles fit to {:.3f} px (median), {} swapped to the "
                      "plane's other pose",
                      found.poses.size(), reference().observations.views.size(), found.median_reprojection_px,
                      swapped),
@@ -71,7 +71,7 @@ class CamerasAlone {
                              poses.back().time_s + options_.margin_s, options_.camera_knot_spacing_s);
   }
 
-  // By what both see at the same time; else by the moments when the board passes from one to the other.
+  // From simultaneous views of both cameras; else from the gaps when the board passes from one to the other.
   void findOnReference(std::size_t k, const CalibrationInput& felt, const GyroRotation& gyro) {
     const std::size_t steps = result_.steps.size(), warnings = result_.warnings.size();
     try {
@@ -99,19 +99,20 @@ class CamerasAlone {
     result_.state.cameras[k].time_offset_s = bridged->time_offset_s;
     result_.steps.push_back(
         {"camera to camera", camera.name,
-         fmt::format("sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
+         fmt::format("sees the board alternately with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
                      reference().name, bridged->bridges, pose.rotation_rms_rad * kDegPerRad,
                      pose.position_rms_m * 1e3),
          pose.position_rms_m, 0.0, stopwatch.restart_s()});
-    result_.warnings.push_back(
-        fmt::format("{}: never sees the board together with {}: what is known of it rests on how evenly the "
-                    "rig moves between; let both see the board at once, or record with an IMU",
-                    camera.name, reference().name));
+    result_.warnings.push_back(fmt::format(
+        "{}: never sees the board at the same time as {}: its pose assumes that the rig moves smoothly in "
+        "between; show the board to both at the same time, or record with an IMU",
+        camera.name, reference().name));
     in_turns_.push_back({k, std::move(found.poses)});
     return true;
   }
 
-  // The trajectory, with the views of the cameras that see the board when the reference does not.
+  // The trajectory from the reference's views, and the views of cameras that see the board when the reference
+  // does not.
   void followAllInTurns() {
     if (in_turns_.empty()) return;
     std::vector<CameraPose> all = poses_;
@@ -136,17 +137,18 @@ class CamerasAlone {
     if (!found) {
       throw calibrationFailed(
           name,
-          fmt::format("it and {} see the board within {:.2f} s of each other in fewer than {} views",
+          fmt::format("it and {} have views within {:.2f} s of each other in fewer than {} cases",
                       reference().name, options_.longest_shared_gap_s, options_.least_views),
-          "Let both see the board at the same time, let it pass from one to the other often and without "
-          "delay, or record with an IMU");
+          "Show the board to both at the same time, move it often and quickly from one to the other, "
+          "or record with an IMU");
     }
     const MeanPose& pose = found->reference_from_camera;
     if (pose.agreeing < options_.least_agreement) {
-      throw calibrationFailed(name,
-                              fmt::format("only {:.0f} % of its views agree on how it sits on {}",
-                                          100.0 * pose.agreeing, reference().name),
-                              "Check that both see one board at the same time and are fixed to each other");
+      throw calibrationFailed(
+          name,
+          fmt::format("only {:.0f} % of its views agree on its pose relative to {}", 100.0 * pose.agreeing,
+                      reference().name),
+          "Check that both see the same board at the same time, and are rigidly connected");
     }
     result_.state.cameras[k].reference_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = time_offset_s;
@@ -160,7 +162,7 @@ class CamerasAlone {
   const InitialisationOptions& options_;
   const RunContext& context_;
   Initialisation& result_;
-  std::vector<CameraPose> poses_;  // of the reference
+  std::vector<CameraPose> poses_;  // of the reference camera
   CameraTrajectory trajectory_;
   std::vector<std::pair<std::size_t, std::vector<CameraPose>>> in_turns_;
   std::map<std::size_t, AlignedCamera> before_further_;  // cameras that see other boards than the reference

@@ -1,11 +1,12 @@
-// Cameras without an IMU: the reference camera's trajectory, and how the others sit on it.
+// Initialisation of cameras without an IMU: the reference camera's trajectory, and poses of the others
+// relative to it.
 #pragma once
 
 #include "core/initialisation/initialise.h"
 
 namespace evical {
 
-// Into `result`. Throws CalibrationFailed, with what to do.
+// Adds to `result`. Throws CalibrationFailed with advice.
 void initialiseCamerasAlone(const CalibrationInput& input, const InitialisationOptions& options,
                             const RunContext& context, Initialisation& result);
 

@@ -34,7 +34,7 @@ Points atOneTime(const BoardView& view) {
 double refine(const Points& points, const CameraIntrinsics& camera, const Board& board,
               RigidTransform& camera_from_board) {
   constexpr int kIterations = 8;
-  constexpr double kConverged = 1e-5;  // rad, m: a hundredth of what noise does
+  constexpr double kConverged = 1e-5;  // rad, m: a hundredth of the effect of noise
   double rms = kNoFit_px;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
@@ -92,7 +92,7 @@ std::vector<std::pair<double, RigidTransform>> planarPoses(const Points& points,
   return poses;
 }
 
-// By how much the rotation from a neighbouring pose differs in size from the gyroscope's.
+// Difference of the rotation's magnitude from a neighbouring pose from the gyroscope's.
 double disagreement(const RigidTransform& pose, double time_s, const CameraPose& neighbour,
                     const GyroRotation& gyro, double time_offset_s) {
   const double seen = rotationAngleBetween_rad(pose.rotation, neighbour.world_from_camera.rotation);
@@ -141,7 +141,7 @@ int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gy
     double kept = 0.0, other = 0.0;
     for (const std::size_t n : {k - 1, k + 1}) {
       if (n >= poses.size() || std::abs(poses[n].time_s - pose.time_s) > longest_pair_s) continue;
-      if (poses[n].other_world_from_camera && n > k) continue;  // not settled yet
+      if (poses[n].other_world_from_camera && n > k) continue;  // not yet resolved
       kept += disagreement(pose.world_from_camera, pose.time_s, poses[n], gyro, time_offset_s);
       other += disagreement(*pose.other_world_from_camera, pose.time_s, poses[n], gyro, time_offset_s);
     }

@@ -17,22 +17,22 @@ struct CameraPose {
   RigidTransform world_from_camera;
   double reprojection_px = 0.0;  // RMS
   std::size_t view = 0;          // index into the observations' views
-  // The other pose that a plane allows, where it fits hardly worse.
+  // The other pose that a plane allows, if it fits almost equally well.
   std::optional<RigidTransform> other_world_from_camera;
 };
 
 struct CameraPoses {
   std::vector<CameraPose> poses;
-  int rejected = 0;                     // views that fit worse than the option allows, or not at all
-  double median_reprojection_px = 0.0;  // of all views, those too
+  int rejected = 0;                     // views with errors above the option's limit, or without a fit
+  double median_reprojection_px = 0.0;  // of all views, including rejected ones
 };
 
-// One pose a view, its circles brought to view.time_s.
+// One pose per view, with circles moved to view.time_s.
 CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
                                 const InitialisationOptions& options, const RunContext& context = {});
 
-// If a view allows two poses, takes the one whose rotation from its neighbours is as large as the
-// gyroscope's. Returns the number of swapped ones.
+// For views with two possible poses, selects the one whose rotation relative to its neighbours has the
+// gyroscope's magnitude. Returns the number of swapped ones.
 int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,
                           double longest_pair_s);
 

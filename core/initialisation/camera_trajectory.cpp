@@ -18,7 +18,7 @@ int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s) {
       if (!poses[k].other_world_from_camera) continue;
       const auto strain_rad = [&](const RigidTransform& candidate) {
         double sum = 0.0;
-        for (const std::size_t i : {k - 1, k + 1}) {  // k - 1 of 0 is beyond the end, too
+        for (const std::size_t i : {k - 1, k + 1}) {  // 0 - 1 is beyond the end, too
           if (i >= poses.size() || std::abs(poses[i].time_s - poses[k].time_s) > longest_pair_s) continue;
           sum += rotationAngleBetween_rad(poses[i].world_from_camera.rotation, candidate.rotation);
         }

@@ -1,5 +1,5 @@
-// The reference camera's own motion, where there is no IMU: splines through its poses, what a gyroscope on it
-// would measure, and how the other cameras sit on it.
+// The reference camera's own motion, if there is no IMU: splines through its poses, equivalent gyroscope
+// samples, and the other cameras' poses relative to it.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -14,14 +14,14 @@
 
 namespace evical {
 
-// If a view allows two poses, takes the one nearer to those of its neighbours in time. Returns the number of
-// swapped ones.
+// For views with two possible poses, selects the one closer to those of its neighbours in time. Returns the
+// number of swapped ones.
 int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s);
 
 struct CameraTrajectory {
   So3Spline world_from_camera_rotation;
   VectorSpline camera_in_world_m;
-  std::vector<double> view_times_s;  // ascending: where it is known
+  std::vector<double> view_times_s;  // ascending: times of the views
 
   // True with a view within `gap_s` before and after.
   bool isKnownAt(double time_s, double gap_s) const;
@@ -34,9 +34,9 @@ std::vector<ImuSample> angularRatesOf(const CameraTrajectory& trajectory, std::i
 
 struct RelativePose {
   MeanPose reference_from_camera;
-  int views = 0;  // that determine it
+  int views = 0;  // number of views used
 };
-// From views at times when the reference's place is known too; nothing if fewer than `least_views`.
+// From views at times when the reference's pose is known, too; empty if there are fewer than `least_views`.
 std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
                                          const std::vector<CameraPose>& poses, double time_offset_s,
                                          double gap_s, int least_views);

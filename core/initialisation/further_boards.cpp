@@ -17,18 +17,18 @@ void checkAlignment(const std::string& board, const CalibrationInput& input,
     throw calibrationFailed(
         board,
         fmt::format(
-            "fewer than {} views of it lie within {:.2g} s of views of '{}', so nobody knows where one "
-            "stands against the other",
+            "fewer than {} views of it are within {:.2g} s of views of '{}', so their relative pose is "
+            "unknown",
             options.least_views, gap_s, input.boardName(0)),
-        "Move so that each camera has its board in view at the same time, most of the time");
+        "Keep each board in its camera's view at the same time, for most of the recording");
   }
-  constexpr double kLeastAgreement = 0.75;  // the gyroscope has left few views that are misread
+  constexpr double kLeastAgreement = 0.75;  // the gyroscope has removed most misidentified views
   if (found->agreeing >= kLeastAgreement) return;
   throw calibrationFailed(
       board,
-      fmt::format("only {:.0f} % of its views agree on where it stands against '{}'", 100.0 * found->agreeing,
+      fmt::format("only {:.0f} % of its views agree on its pose relative to '{}'", 100.0 * found->agreeing,
                   input.boardName(0)),
-      "Check that the boards stay where they are against each other, and which camera sees which board");
+      "Check that the boards do not move relative to each other, and which camera sees which board");
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
     }
     result.steps.push_back(
         {"board to board", name,
-         fmt::format("{} views agree to {:.3f} deg and {:.2f} mm on where it stands against {}", found->views,
+         fmt::format("{} views agree to {:.3f} deg and {:.2f} mm on its pose relative to {}", found->views,
                      found->rotation_rms_rad * kDegPerRad, 1e3 * found->position_rms_m, input.boardName(0)),
          found->position_rms_m, 0.0, stopwatch.restart_s()});
   }

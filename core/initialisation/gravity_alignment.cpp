@@ -26,7 +26,8 @@ struct AveragedForce {
   Vector3d force_m_s2;
 };
 
-// Quarter knots: short against the splines' own resolution, long against 1 kHz.
+// Averages over quarter knots: short compared with the splines' resolution, long compared with samples at 1
+// kHz.
 std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std::int64_t start_ns,
                                          const So3Spline& rotation) {
   std::vector<AveragedForce> averages;
@@ -55,10 +56,10 @@ std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std
   return averages;
 }
 
-// Three equations of one kind: P(weights) + R lever = measured (a view's position), or
-// P(weights) + R bias - gravity = R measured (an acceleration). Where the board's scale is unknown, the
+// Two kinds of three equations each: P(weights) + R lever = measured (a view's position), or
+// P(weights) + R bias - gravity = R measured (an acceleration). If the board's scale is unknown, the
 // latter is scale P(weights) + R (bias + skew f) - gravity = R measured, with the products linearised:
-// measurements never multiply an unknown, since their noise would then shrink it.
+// measurements never multiply an unknown, since their noise would then bias it towards zero.
 struct Row {
   bool position;
   std::size_t camera;
@@ -71,7 +72,7 @@ struct Row {
 
 // The unknowns other than control points: levers, gravity, bias. If the board's scale is estimated, also the
 // scale, and the matrix of errors of the accelerometer's scales and axes and of the rotation, row by row:
-// without it, they would be mistaken for the board's.
+// without it, these errors would bias the board's scale.
 struct Layout {
   explicit Layout(std::size_t cameras) : gravity(static_cast<Eigen::Index>(3 * cameras)) {}
   Eigen::Index gravity;
@@ -87,7 +88,7 @@ struct Solution {
   Eigen::MatrixX3d points;
   Eigen::VectorXd shared;
   Eigen::MatrixXd covariance;        // of the shared unknowns
-  Eigen::MatrixX3d points_by_scale;  // their covariances with the board's scale, where it is asked for
+  Eigen::MatrixX3d points_by_scale;  // their covariances with the board's scale, if it is estimated
 };
 
 struct Sigmas {
@@ -127,7 +128,7 @@ class Alignment {
     for (Row& row : rows_) row.world_from_imu *= rotation;
   }
   void releaseScale() { layout_.with_scale = true; }
-  // Forgets what earlier rounds made of the weights.
+  // Resets the weights of earlier rounds.
   void restart() {
     for (Row& row : rows_) row.weight = 1.0;
     sigmas_ = {options_.position_sigma_m, options_.acceleration_sigma_m_s2};
@@ -220,7 +221,7 @@ void Alignment::addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) cons
     matrix.diagonal().tail<9>().setConstant(inverseSquare(options_.accelerometer_mapping_sigma));
   }
   if (!gravity_m_s2_) return;
-  // |g| is known: a tight observation along the direction found so far.
+  // |g| is known: a tight observation along the current direction.
   constexpr double kNormSigma_m_s2 = 1e-4;
   const Vector3d down = gravity_m_s2_->normalized();
   matrix.block<3, 3>(layout_.gravity, layout_.gravity) +=
@@ -265,7 +266,7 @@ void Alignment::accumulate(const Row& row, BandCholesky& band, std::array<Eigen:
   vector.noalias() += w * shared.transpose() * right;
 }
 
-// One banded matrix serves all three axes; the shared unknowns come by Schur complement.
+// One banded matrix for all three axes; the shared unknowns follow from the Schur complement.
 Solution Alignment::solveOnce() const {
   const Eigen::Index n = layout_.size();
   BandCholesky band(point_count_, 3);
@@ -275,7 +276,7 @@ Solution Alignment::solveOnce() const {
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(n);
   addPriors(matrix, vector);
   for (const Row& row : rows_) accumulate(row, band, coupling, matrix, vector);
-  // Ends and gaps: a control point that nothing sees follows its neighbours.
+  // Ends and gaps: a control point without data follows its neighbours.
   constexpr double kSmoothness = 1e-2, kTie = 1e-9;
   for (Eigen::Index k = 0; k + 3 < point_count_; ++k) {
     band.addOuter(k, Eigen::Vector4d(-1.0, 3.0, -3.0, 1.0), kSmoothness);
@@ -312,8 +313,8 @@ Vector3d Alignment::errorOf(const Row& row, const Solution& solution) const {
   return spline + sharedCoefficients(row) * solution.shared - target(row);
 }
 
-// Errors within a second may have one cause, such as a small rotation error that rotates gravity: the larger
-// of the sigma for independent errors, and of the scatter of the seconds' pulls.
+// Errors within a second may have a common cause, such as a small rotation error that rotates gravity:
+// returns the larger of the sigma for independent errors, and of the scatter of sums over seconds.
 double Alignment::scaleSigma(const Solution& solution) const {
   const double independent = std::sqrt(solution.covariance(layout_.scale(), layout_.scale()));
   const double segments_per_second = 1.0 / knot_spacing_s_;
@@ -331,15 +332,15 @@ double Alignment::scaleSigma(const Solution& solution) const {
   return std::max(independent, std::sqrt(squares));
 }
 
-// The next round's weights: outliers count less, and both kinds count by their fit.
+// Weights for the next round: robust weights, and a scale for each kind from its fit.
 void Alignment::reweigh(const Solution& solution) {
   std::vector<double> positions, accelerations;
   for (Row& row : rows_) {
-    row.weight = errorOf(row, solution).norm();  // for now
+    row.weight = errorOf(row, solution).norm();  // temporarily
     (row.position ? positions : accelerations).push_back(row.weight);
   }
-  // The norm of three equal normal errors has its median at 1.54 sigma. One kind of row must not drown the
-  // other, so each sigma stays between a fifth of its option and ten times that.
+  // The norm of three equal normal errors has its median at 1.54 sigma. To balance both kinds of rows, each
+  // sigma is limited to between a fifth of its option and ten times that.
   constexpr double kMedianNorm = 1.54, kLeast = 0.2, kMost = 10.0;
   const auto within = [&](double sigma, double option) {
     return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);

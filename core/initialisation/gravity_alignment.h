@@ -3,7 +3,7 @@
 // gravity g and bias b,
 //   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.
-// Then once more with scale p''(t), since accelerations determine metres: the board's true size over the
+// Then again with scale p''(t), since accelerations determine metres: the board's true size relative to the
 // given one.
 #pragma once
 
@@ -24,7 +24,7 @@
 
 namespace evical {
 
-// Poses at camera time; imu time = that + offset.
+// Poses at camera time; imu time = camera time + offset.
 struct CameraTrack {
   std::vector<CameraPose> poses;
   double time_offset_s = 0.0;
@@ -38,24 +38,24 @@ struct GravityAlignment {
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
   double position_rms_m = 0.0, acceleration_rms_m_s2 = 0.0;  // robust
   double lever_std_m = 0.0;                                  // of the worst direction of any camera
-  int views = 0, outlying_views = 0;                         // far from where the others put the camera
-  double acceleration_misfit_m_s2 = 0.0;  // of the accelerations by their median, however large
+  int views = 0, outlying_views = 0;                         // outlying_views: inconsistent with the others
+  double acceleration_misfit_m_s2 = 0.0;  // of the accelerations, from their median, without limits
   double board_scale = 1.0, board_scale_std = 0.0;
 };
 
-// `rotation` (world_from_imu, IMU clock) gives range and knots.
+// `rotation` (world_from_imu, IMU clock) determines range and knots.
 GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                               std::int64_t start_ns, const So3Spline& rotation,
                               const InitialisationOptions& options, const RunContext& context = {});
 
-// Median difference between accelerations and positions, and nothing else: faster.
+// Only the median difference between accelerations and positions: faster.
 double accelerationMisfit_m_s2(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                                std::int64_t start_ns, const So3Spline& rotation,
                                const InitialisationOptions& options, const RunContext& context = {});
 
-// When all rotation is about one axis of the IMU, rotation alone leaves the angle of the camera about it
-// open; accelerations don't. The angle by which world_from_imu must be turned, R_wb Exp(axis * angle), so
-// that both agree best.
+// If all rotation is about one axis of the IMU, rotation does not determine the angle of the camera about it;
+// accelerations do. Returns the angle by which world_from_imu must be rotated, R_wb Exp(axis * angle), for
+// the best agreement.
 double findTurnAboutAxis(const Eigen::Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,
                          std::span<const ImuSample> samples, std::int64_t start_ns, const So3Spline& rotation,
                          const InitialisationOptions& options, const RunContext& context = {});

@@ -1,5 +1,5 @@
-// Rotation from the gyroscope alone (docs/maths.md, 8.1): integrated between samples, up to a first rotation
-// and a bias.
+// Rotation from the gyroscope only (docs/maths.md, 8.1): integrated between samples, up to an initial
+// rotation and a bias.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -15,7 +15,7 @@ namespace evical {
 
 class GyroRotation {
  public:
-  // Times become seconds since start_ns. Samples in time order, at least two.
+  // Times are converted to seconds since start_ns. Samples in time order, at least two.
   GyroRotation(std::span<const ImuSample> samples, std::int64_t start_ns,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero());
 
@@ -28,9 +28,9 @@ class GyroRotation {
   // Rotation vector of imu(from)_from_imu(to).
   Eigen::Vector3d between(double from_s, double to_s) const;
 
-  // About its mean, which a bias may be, and without what is faster than 20 Hz, which noise may be.
+  // About its mean, which may be a bias, and without frequencies above 20 Hz, which may be noise.
   double rateRms_rad_s() const;
-  // Longest time between two samples, and where it begins.
+  // Longest time between two samples, and its beginning.
   double longestGap_s(double* begin_s = nullptr) const;
 
  private:

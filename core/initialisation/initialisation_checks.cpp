@@ -13,35 +13,35 @@ namespace evical {
 
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options) {
   if (options.knot_spacing_s > 0.0 && options.knot_spacing_s < kClosestKnots_s) {
-    throw badInput(
-        "initialisation.knot_spacing_s", fmt::format("{:g} s is too close", options.knot_spacing_s),
-        fmt::format("Give at least {:g} s, or 0 for knots that follow the motion", kClosestKnots_s));
+    throw badInput("initialisation.knot_spacing_s",
+                   fmt::format("{:g} s is too small", options.knot_spacing_s),
+                   fmt::format("Give at least {:g} s, or 0 to adapt knots to the motion", kClosestKnots_s));
   }
   for (std::size_t i = 0; i < input.boardCount(); ++i) {
     if (!input.boardAt(i).hasHalfTurnAmbiguity()) continue;
-    throw badInput(input.boardKey(i), "looks the same when turned by half a turn, so its pose is ambiguous",
-                   "Use an asymmetric board with an odd number of rows; this one serves for intrinsics only");
+    throw badInput(input.boardKey(i), "is unchanged by half a turn, so its pose is ambiguous",
+                   "Use an asymmetric board with an odd number of rows, or this one for intrinsics only");
   }
   if (input.cameras.empty())
-    throw calibrationFailed("session", "there is no camera", "Add one under cameras:");
+    throw calibrationFailed("session", "there is no camera", "Add one under the key cameras");
   if (input.cameras[input.worldCamera()].board != 0)
     throw badInput("boards",
-                   fmt::format("{} does not see the one whose frame is the world",
+                   fmt::format("{} does not see the first board, whose frame is the world",
                                input.cameras[input.worldCamera()].name),
-                   "Put the board first that it sees");
+                   "List the board first that this camera sees");
   for (const CameraData& camera : input.cameras) {
     if (!camera.lens.detection_intrinsics)
-      throw calibrationFailed(camera.name, "has no intrinsics", "Give them " + howTo(HowTo::EditSession));
+      throw calibrationFailed(camera.name, "has no intrinsics", "Specify them " + howTo(HowTo::EditSession));
   }
   if (input.imus.empty() && input.cameras.size() == 1) {
     throw calibrationFailed("session", "there is neither an IMU nor a second camera",
-                            "Add one: a camera alone has nothing to be calibrated against");
+                            "Add one: a single camera cannot be calibrated relative to another sensor");
   }
   for (const ImuData& imu : input.imus) {
     const std::size_t usable =
         std::min(withoutRateSpikes(imu.samples).size(), withFitForces(imu.samples).size());
     if (usable >= static_cast<std::size_t>(options.least_imu_samples)) continue;
-    throw calibrationFailed(imu.name, fmt::format("has {} samples only", usable),
+    throw calibrationFailed(imu.name, fmt::format("has only {} usable samples", usable),
                             "Check the IMU's stream, and record for 30 s");
   }
 }
@@ -51,16 +51,15 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
   const double rate_rad_s = gyro.rateRms_rad_s();
   if (rate_rad_s < options.least_rotation_rate_rad_s) {
     throw calibrationFailed(
-        imu.name,
-        fmt::format("the recording hardly moves: the gyroscope turns at {:.4f} rad/s RMS", rate_rad_s),
+        imu.name, fmt::format("the rig hardly moves: the gyroscope's rate is {:.4f} rad/s RMS", rate_rad_s),
         "Rotate the rig about all three axes while the board is in view");
   }
   double gap_begin_s = 0.0;
   const double gap_s = gyro.longestGap_s(&gap_begin_s);
   if (gap_s > options.longest_imu_gap_s) {
     warnings.push_back(
-        fmt::format("{}: no samples for {:.3f} s from {:.3f} s on; the motion there is a guess", imu.name,
-                    gap_s, gap_begin_s));
+        fmt::format("{}: no samples for {:.3f} s from {:.3f} s on; the motion there is extrapolated",
+                    imu.name, gap_s, gap_begin_s));
   }
 }
 
@@ -68,15 +67,15 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
   const std::size_t views = camera.observations.views.size();
   if (static_cast<int>(views) < options.least_views) {
     throw calibrationFailed(camera.name,
-                            fmt::format("the board was seen in {} of {} windows only; {} are needed", views,
-                                        camera.observations.windows.size(), options.least_views),
-                            "Look at the detections " + howTo(HowTo::LookAtDetections) +
-                                ", check rows and columns, and keep the board in view");
+                            fmt::format("the board was detected in {} of {} windows, but {} are needed",
+                                        views, camera.observations.windows.size(), options.least_views),
+                            "Check the detections " + howTo(HowTo::LookAtDetections) +
+                                " and the board's rows and columns, and keep the board in view");
   }
   if (static_cast<int>(found.poses.size()) < options.least_views) {
     throw calibrationFailed(
         camera.name,
-        fmt::format("the circles fit the board in {} of {} views only; {} are needed, and the usual error is "
+        fmt::format("the circles fit the board in {} of {} views, but {} are needed; the median error is "
                     "{:.2f} px (at most {:.2f} px is allowed)",
                     found.poses.size(), views, options.least_views, found.median_reprojection_px,
                     options.largest_reprojection_px),
@@ -100,14 +99,15 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
     const bool apart = overlap_s <= 0.0;
     throw calibrationFailed(
         camera.name,
-        fmt::format("camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU recorded from "
-                    "{:.3f} s to {:.3f} s",
-                    apart ? "do not overlap in time"
-                          : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
-                    first_s, last_s, gyro.begin_s(), gyro.end_s()),
+        fmt::format(
+            "camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU has samples from "
+            "{:.3f} s to {:.3f} s",
+            apart ? "do not overlap in time"
+                  : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
+            first_s, last_s, gyro.begin_s(), gyro.end_s()),
         !apart            ? "Record for 30 s"
         : search_s == 0.0 ? "Check the clocks, and the time offset " + howTo(HowTo::EditSession)
-                          : "Check the clocks, or widen initialisation.widest_time_offset_search_s");
+                          : "Check the clocks, or increase initialisation.widest_time_offset_search_s");
   }
 }
 
@@ -118,8 +118,8 @@ void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, 
   throw calibrationFailed(
       imu.name,
       fmt::format(
-          "views and IMU samples overlap for {:.2f} s only: the board is seen from {:.3f} s to {:.3f} s "
-          "of the IMU's clock, and the IMU recorded from {:.3f} s to {:.3f} s",
+          "views and IMU samples overlap for only {:.2f} s: the board is seen from {:.3f} s to {:.3f} s "
+          "on the IMU's clock, the IMU has samples from {:.3f} s to {:.3f} s",
           std::max(overlap_s, 0.0), views_begin_s, views_end_s, begin_s, end_s),
       "Record for 30 s with the board in view");
 }

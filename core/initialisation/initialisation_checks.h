@@ -12,17 +12,17 @@
 
 namespace evical {
 
-// Board, cameras with intrinsics, IMUs with samples, or a second camera.
+// The board, cameras with intrinsics, and IMUs with samples or a second camera are present.
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options);
-// Warns of gaps.
+// The gyroscope moves. Warns of gaps.
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
                     std::vector<std::string>& warnings);
-// Enough poses.
+// There are enough poses.
 void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options);
-// That, and some offset within the search range at which they and the IMU overlap.
+// There are enough poses, and they overlap with the IMU for some offset within the search range.
 void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
                 const InitialisationOptions& options);
-// Call it once the offset is known.
+// They overlap with the IMU. Call it once the offset is known.
 void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
                   const InitialisationOptions& options);
 

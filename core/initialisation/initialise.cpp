@@ -50,7 +50,7 @@ std::vector<CameraTrack> tracksOf(const CalibrationInput& input, const std::vect
   return tracks;
 }
 
-// With rotation about one axis only, accelerations say how the camera is turned about it.
+// If the rotation is about one axis only, accelerations determine the camera's angle about it.
 void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& options, TimeRange range,
                    const GyroRotation& gyro, const RunContext& context, std::vector<AlignedCamera>& cameras,
                    Initialisation& result) {
@@ -59,7 +59,7 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   result.warnings.push_back(input.cameras.front().name +
                             ": the recording rotates about one axis only: rotate about two more");
   if (isGiven(input.cameras.front().prior.rotation)) return;
-  // The angle needs no fine knots.
+  // The angle does not need closely spaced knots.
   constexpr double kLeastKnot_s = 0.05;
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
   const So3Spline rotation = fitWorldRotation({cameras.data(), 1}, gyro, range.begin_s, range.end_s, knot_s);
@@ -72,8 +72,8 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   }
 }
 
-// Of both splines, as the most demanding sensor needs it: with two spacings the normal equations' band would be
-// wider by their ratio, which costs what fewer control points save.
+// Knot spacing of both splines, for the most demanding sensor: with two spacings, the normal equations' band
+// would be wider by their ratio, which costs as much as fewer control points save.
 double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOptions& options,
                            const std::vector<AlignedCamera>& cameras, TimeRange range,
                            const GyroRotation& reference, Initialisation& result) {
@@ -97,9 +97,9 @@ double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOp
   return spacing_s;
 }
 
-// A last segment of which little is measured would leave its outermost control points open.
+// A last segment with few measurements would not determine its outermost control points.
 double endOfWholeKnots_s(TimeRange range, double knot_s) {
-  constexpr double kLeastShare = 0.75;  // more than the batch asks for, as delays and offsets move samples
+  constexpr double kLeastShare = 0.75;  // more than the batch requires, as delays and offsets move samples
   const double knots = (range.end_s - range.begin_s) / knot_s;
   const double whole = std::floor(knots);
   return whole < 1.0 || knots - whole >= kLeastShare ? range.end_s : range.begin_s + whole * knot_s;
@@ -108,15 +108,16 @@ double endOfWholeKnots_s(TimeRange range, double knot_s) {
 void checkBoardScale(const GravityAlignment& gravity, const Board& board,
                      const InitialisationOptions& options, Initialisation& result) {
   const double excess = gravity.board_scale - 1.0, sigma = gravity.board_scale_std;
-  result.steps.push_back({"board scale", "",
-                          fmt::format("accelerations make the board {:.3f} +- {:.3f} times as large as given",
-                                      gravity.board_scale, sigma),
-                          std::abs(excess), sigma});
+  result.steps.push_back(
+      {"board scale", "",
+       fmt::format("according to accelerations, the board is {:.3f} +- {:.3f} times as large as given",
+                   gravity.board_scale, sigma),
+       std::abs(excess), sigma});
   if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
     return;
-  result.doubt =
-      fmt::format("the board seems {:.0f} % {} than {} says ({:.4g} m): measure it", 100.0 * std::abs(excess),
-                  excess > 0.0 ? "larger" : "smaller", board.sizeKey(), board.spacing_m);
+  result.doubt = fmt::format("the board seems {:.0f} % {} than specified by {} ({:.4g} m): measure it",
+                             100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.sizeKey(),
+                             board.spacing_m);
   result.warnings.push_back(result.doubt);
 }
 
@@ -135,10 +136,10 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                    gravity.acceleration_rms_m_s2),
        gravity.position_rms_m, gravity.lever_std_m, stopwatch.restart_s()});
   if (gravity.outlying_views > 0) {
-    result.warnings.push_back(
-        fmt::format("{} of {} views put the camera where its neighbours and the IMU don't: the board was "
-                    "probably misread",
-                    gravity.outlying_views, gravity.views));
+    result.warnings.push_back(fmt::format(
+        "{} of {} views contradict their neighbours and the IMU on the camera's position: the board was "
+        "probably misidentified",
+        gravity.outlying_views, gravity.views));
   }
   checkAccelerationsAgree(input, gravity, options, context);
   checkBoardScale(gravity, input.board, options, result);
@@ -179,7 +180,7 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
        hand_eye.residual_rad, lever.std_m, stopwatch.restart_s()});
 }
 
-// Tells the observer of the steps that it has not heard of.
+// Reports new steps to the observer.
 void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
                std::size_t& told) {
   for (; observer != nullptr && told < steps.size(); ++told)
@@ -191,7 +192,7 @@ void keepLenses(const CalibrationInput& input, CalibrationState& state) {
   for (std::size_t k = 0; k < input.cameras.size(); ++k) state.cameras[k].lens = input.cameras[k].lens;
 }
 
-// The gyroscopes' samples about the axes of the IMUs, where their turn is known.
+// The gyroscopes' samples in the axes of the IMUs, if their rotation is known.
 CalibrationInput withStraightGyroscopes(CalibrationInput input) {
   for (ImuData& imu : input.imus) {
     if (!imu.prior.gyroscope_rotation) continue;
@@ -208,7 +209,7 @@ bool saturates(const ImuData& imu) {
   });
 }
 
-// Those that see other boards than the world's; the others stay.
+// Moves cameras that see other boards than the world's to the returned map.
 std::map<std::size_t, AlignedCamera> takeFurther(const CalibrationInput& input,
                                                  std::vector<AlignedCamera>& cameras) {
   std::map<std::size_t, AlignedCamera> further;
@@ -218,7 +219,7 @@ std::map<std::size_t, AlignedCamera> takeFurther(const CalibrationInput& input,
   return further;
 }
 
-// Known where the cameras see the world's board.
+// Known at views of the world's board.
 CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const CalibrationState& state) {
   CameraTrajectory body{state.world_from_imu_rotation, state.imu_in_world_m, {}};
   for (const AlignedCamera& camera : cameras)
@@ -228,7 +229,8 @@ CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const
   return body;
 }
 
-// Each camera's poses, time offset and rotation on the reference IMU, whatever board it sees.
+// Each camera's poses, time offset and rotation relative to the reference IMU, independent of the board that
+// it sees.
 std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const GyroRotation& gyro,
                                         const InitialisationOptions& options, const RunContext& context,
                                         std::size_t& told, Initialisation& result) {
@@ -237,7 +239,7 @@ std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const Gyr
     context.throwIfStopped();
     cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
     cameras.back().camera = cameras.size() - 1;
-    // An offset that is given may be what is wrong, which is told of beside what the recording says.
+    // A given offset may be the error; it is reported later, with the recording's estimate.
     if (!isGiven(camera.prior.time_offset))
       checkRotationsAgree(input, result.agreements.back(), options, context);
     tellSteps(result.steps, context.observer, told);
@@ -280,7 +282,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);
-  constexpr double kCarried_s = 0.3;  // by the IMU, from one view of the world's board to the next
+  constexpr double kCarried_s = 0.3;  // longest time that the IMU bridges between views of the world's board
   alignFurtherBoards(input, before_further, bodyTrajectory(cameras, result.state), kCarried_s, options,
                      result);
   keepLenses(input, result.state);

@@ -1,4 +1,5 @@
-// From board views and IMU samples to a state from which the batch converges (docs/maths.md, 8).
+// Initial state for the batch from board views and IMU samples, from which the batch converges
+// (docs/maths.md, 8).
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,16 +16,16 @@ namespace evical {
 
 struct InitialisationStep {
   std::string name;     // "camera poses", "time offset", ...
-  std::string subject;  // the sensor or board that it is of; empty: all of them
-  std::string result;   // its key number, in words
+  std::string subject;  // its sensor or board; empty: all of them
+  std::string result;   // its main figures as text
   double residual = 0.0;
-  double condition = 0.0;   // 0 where it has none
-  double duration_s = 0.0;  // of the work
+  double condition = 0.0;   // 0: not applicable
+  double duration_s = 0.0;  // computing time
 
   std::string text() const { return subject.empty() ? result : subject + ": " + result; }
 };
 
-// Of one camera's rotations with the reference IMU's, at the time offset that was found.
+// Agreement of one camera's rotations with the reference IMU's, at the estimated time offset.
 struct CameraAgreement {
   std::string camera;
   double correlation = 1.0;  // of rates
@@ -35,13 +36,13 @@ struct CameraAgreement {
 struct Initialisation {
   CalibrationState state;
   std::vector<InitialisationStep> steps;
-  std::vector<CameraAgreement> agreements;  // none where there is no IMU
+  std::vector<CameraAgreement> agreements;  // empty without an IMU
   std::vector<std::string> warnings;
-  std::string doubt;  // what makes any result doubtful; empty if nothing does
+  std::string doubt;  // reason for a doubtful result; may be empty
 };
 
-// Any number of cameras and IMUs against the reference: an IMU, or a camera where there is no IMU. Throws
-// CalibrationFailed with a reason in plain words: too few views, too short, no overlap in time, no motion.
+// Any number of cameras and IMUs relative to the reference: an IMU, or a camera if there is no IMU. Throws
+// CalibrationFailed with the reason: too few views, too short, no overlap in time, no motion.
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
                           const RunContext& context);
 

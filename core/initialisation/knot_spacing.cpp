@@ -27,14 +27,14 @@ constexpr std::array kSpacings_s = {kClosestKnots_s, 0.003, 0.0035, 0.004, 0.005
                                     0.008,           0.009, 0.010,  0.012, 0.014,         0.016, 0.018,
                                     0.020,           0.023, 0.026,  0.030, 0.035,         0.040, 0.045,
                                     0.050,           0.060, 0.070,  0.085, kWidestKnots_s};
-// A spline with fewer samples to a knot follows their noise.
+// A spline with fewer samples per knot follows their noise.
 constexpr double kLeastSamples_a_knot = 2.5;
-// Allowed shares of missed motion, relative to the noise of a sample and to the precision of one view: it
+// Allowed ratios of missed motion to the noise of a sample and to the precision of one view: missed motion
 // repeats with the motion, and does not average out as noise does.
 constexpr double kMissedOfNoise = 0.1, kMissedOfView = 0.04;
 constexpr std::size_t kLeastSamples = 50;
 
-// The derivative of the cubic spline that a sensor feels: its weights are those of a spline of lower degree.
+// The spline derivative that a sensor measures: its weights are those of a spline of lower degree.
 enum class Felt { Velocity, Acceleration };
 
 struct Signal {
@@ -55,7 +55,7 @@ Weights weightsOf(Felt felt, double u) {
 // Residual of the best spline with some spacing for a signal.
 struct Fit {
   std::vector<double> squares;  // by sample, of all three axes
-  double points = 0.0;          // that samples determine
+  double points = 0.0;          // number of determined points
 };
 
 Fit fitSplines(const Signal& signal, double spacing_s) {
@@ -77,7 +77,7 @@ Fit fitSplines(const Signal& signal, double spacing_s) {
     points.middleRows(first, degree + 1).noalias() += weights * signal.values[i].transpose();
     std::fill_n(seen.begin() + first, degree + 1, true);
   });
-  normal.factorise();  // points that no sample sees stay 0
+  normal.factorise();  // points without samples stay 0
   Eigen::MatrixXd solved = points;
   normal.solveInPlace(solved);
   Fit fit;
@@ -89,7 +89,7 @@ Fit fitSplines(const Signal& signal, double spacing_s) {
   return fit;
 }
 
-// Mean by sample and axis, without the stretches with the largest: a knock is not followed.
+// Mean by sample and axis, without the intervals with the largest means: splines need not follow knocks.
 double typicalMean(const Signal& signal, const std::vector<double>& squares) {
   constexpr double kStretch_s = 0.5, kKnocks = 0.05;
   struct Stretch {
@@ -112,23 +112,24 @@ double typicalMean(const Signal& signal, const std::vector<double>& squares) {
   return all.sum / all.count;
 }
 
-// One sensor's samples against splines of any spacing.
+// One sensor's samples, compared with splines of any spacing.
 class Demand {
  public:
-  // `given_noise` of a sample; `view` is the precision of one view for the signal's integral, once or twice.
+  // `given_noise`: sigma of a sample; `view`: precision of one view for the signal's first or second
+  // integral.
   Demand(Signal signal, double closest_s, double given_noise, double view)
       : signal_(std::move(signal)), view_(view), closest_(fitSplines(signal_, closest_s)) {
     constexpr double kLeastFree = 0.05;
     const double free = std::max(kLeastFree, 1.0 - closest_.points / size());
     const double found = std::sqrt(typicalMean(signal_, closest_.squares) / free);
-    // A filter in the sensor makes noise look small at high frequencies. But a density that is given with a wide
-    // margin must not hide the motion.
+    // A filter in the sensor reduces noise at high frequencies. But a given density with a large margin must
+    // not hide the motion.
     constexpr double kMost = 5.0, kLeast = 0.1;
     noise_ = std::max({found, std::min(given_noise, kMost * found), kLeast * given_noise});
   }
 
   KnotDemand widest(std::span<const double> spacings_s) const {
-    // The wider, the more is missed.
+    // Wider spacings miss more.
     const auto far = std::partition_point(spacings_s.begin(), spacings_s.end(),
                                           [&](double spacing_s) { return isEnough(spacing_s); });
     const double spacing_s = far == spacings_s.begin() ? spacings_s.front() : *std::prev(far);
@@ -146,15 +147,16 @@ class Demand {
     return missed2(spacing_s) <= allowed * allowed;
   }
 
-  // The more certain of what is seen at this spacing, and of what follows from a wider one, where it rises out of
-  // the noise: with the spacing, errors of lines grow as its square, those of parabolas as its third power.
+  // The larger of the residual at this spacing, and of the extrapolation from a wider one, whose residual
+  // exceeds the noise: errors of linear splines grow with the square of the spacing, those of parabolas with
+  // its third power.
   double missed2(double spacing_s) const {
     constexpr double kWider = 3.0;
     const double growth = std::pow(kWider, signal_.felt == Felt::Velocity ? 3.0 : 2.0);
     return std::max({0.0, seen2(spacing_s), seen2(kWider * spacing_s) / (growth * growth)});
   }
 
-  // Less the noise that more knots would have followed, and its scatter.
+  // Residual minus the noise that more knots would have followed, and minus its scatter.
   double seen2(double spacing_s) const {
     const Fit fit = fitSplines(signal_, spacing_s);
     std::vector<double> more;
@@ -171,7 +173,8 @@ class Demand {
   Fit closest_;
 };
 
-// Uses the samples in `fit`. Forces are in a frame that does not turn, where they are accelerations minus gravity.
+// Uses the samples in `fit`. Forces are in a non-rotating frame, in which they are accelerations minus
+// gravity.
 std::array<Signal, 2> signalsOf(const ImuData& imu, const SampleSelection& fit, std::int64_t start_ns,
                                 TimeRange range, const GyroRotation& rotation) {
   std::array<Signal, 2> signals = {Signal{Felt::Velocity, {}, {}}, Signal{Felt::Acceleration, {}, {}}};
@@ -189,7 +192,7 @@ std::array<Signal, 2> signalsOf(const ImuData& imu, const SampleSelection& fit, 
   return signals;
 }
 
-// The slower of the two sensors decides: a driver may repeat its samples.
+// The slower of the two sensors is decisive: a driver may repeat its samples.
 double closestKnots_s(const ImuData& imu, const SampleSelection& fit) {
   double period_s = 0.0;
   for (const std::vector<std::uint8_t>* const taken : {&fit.gyroscope, &fit.accelerometer}) {
@@ -255,7 +258,8 @@ std::string describe(const std::string& imu, const KnotSpacing& asked, double sp
     return demand.noise > 0.0 ? demand.missed / demand.noise : 0.0;
   };
   return fmt::format(
-      "every {:.3g} ms; accelerations of {} allow {:.3g} ms, where splines miss {:.2g} of a sample's noise, "
+      "every {:.3g} ms; accelerations of {} allow {:.3g} ms, with missed motion of {:.2g} of a sample's "
+      "noise, "
       "its rates {:.3g} ms ({:.2g})",
       1e3 * spacing_s, imu, 1e3 * asked.accelerations.spacing_s, share(asked.accelerations),
       1e3 * asked.rates.spacing_s, share(asked.rates));

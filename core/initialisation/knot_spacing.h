@@ -15,11 +15,11 @@
 
 namespace evical {
 
-// For unknown motion, and for trials.
+// Default for unknown motion, and for trials.
 inline constexpr double kUsualKnot_s = 0.02;
 inline constexpr double kClosestKnots_s = 0.0025, kWidestKnots_s = 0.1;
 
-// Precision of a camera's place from one view: splines must not miss that much either.
+// Precision of a camera's pose from one view: splines must miss less motion than that, too.
 struct ViewPrecision {
   double angle_rad = std::numeric_limits<double>::infinity();
   double position_m = std::numeric_limits<double>::infinity();
@@ -27,9 +27,9 @@ struct ViewPrecision {
 // Precision of the most precise camera.
 ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const AlignedCamera> aligned);
 
-// Demand of one sensor of an IMU, in its unit.
+// Required spacing for one sensor of an IMU, in its unit.
 struct KnotDemand {
-  double spacing_s = kWidestKnots_s;  // the widest with which splines miss little
+  double spacing_s = kWidestKnots_s;  // the widest spacing with little missed motion
   double noise = 0.0;                 // of a sample, along one axis
   double missed = 0.0;                // by splines with that spacing, RMS along one axis
 };
@@ -43,15 +43,15 @@ struct TimeRange {
   double begin_s = std::numeric_limits<double>::infinity(), end_s = -begin_s;
 };
 
-// Closer knots would follow single samples, and their noise.
+// Lower limit of the spacing: closer knots would follow the noise of single samples.
 double closestKnots_s(const ImuData& imu);
 
 // Spacing for one IMU's samples within the range, on its clock; `rotation` is its gyroscope's, without bias.
-// Too few samples give kUsualKnot_s.
+// kUsualKnot_s for too few samples.
 KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,
                         const GyroRotation& rotation, const ViewPrecision& views);
 
-// For people: why knots are `spacing_s` apart, as this IMU asked for.
+// Text for users: the reason for the spacing `spacing_s`, which this IMU requires.
 std::string describe(const std::string& imu, const KnotSpacing& asked, double spacing_s);
 
 }  // namespace evical

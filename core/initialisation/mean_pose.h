@@ -1,4 +1,4 @@
-// Mean of several estimates of one pose, reweighted so that outliers hardly count.
+// Mean of several estimates of one pose, with robust weights.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
@@ -7,11 +7,11 @@
 
 namespace evical {
 
-// At these distances a pose counts half.
+// Distances at which a pose has half its weight.
 struct PoseSpread {
   double rotation_rad = 0.0, position_m = 0.0;
 
-  // Squared distance in these units: of an angle with a way, and of two poses.
+  // Squared distance in these units: for an angle and a distance, and between two poses.
   double squared(double angle_rad, double way_m) const {
     const double angle = angle_rad / rotation_rad, way = way_m / position_m;
     return angle * angle + way * way;
@@ -20,11 +20,11 @@ struct PoseSpread {
 };
 
 struct MeanPose {
-  RigidTransform mean;                                  // target_from_source, as the poses are
-  double agreeing = 0.0;                                // share of them near the mean
+  RigidTransform mean;                                  // target_from_source, like the poses
+  double agreeing = 0.0;                                // share of poses close to the mean
   double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
 };
-// `start`: near most of them.
+// `start`: close to most of them.
 MeanPose meanPose(std::span<const RigidTransform> poses, const RigidTransform& start,
                   const PoseSpread& spread, int rounds);
 

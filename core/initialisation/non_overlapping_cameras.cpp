@@ -9,17 +9,17 @@
 namespace evical {
 namespace {
 
-// Wide, so that speeds at a stretch's end are those of several views.
+// Wide, so that speeds at an interval's end are averages over several views.
 constexpr double kKnotSpacing_s = 0.08;
-// Largest difference of two gaps that agree: extrapolated over some tenths of a second, hands deviate by a
-// degree or two.
+// Largest difference between two consistent gaps: after extrapolation over some tenths of a second, hands
+// deviate by a degree or two.
 constexpr PoseSpread kSpread{0.04, 0.03};
 
-// A view with the motion around it.
+// A view with the rates of motion.
 struct MovingPose {
   double time_s = 0.0;
   RigidTransform world_from_camera;
-  Eigen::Vector3d angular_velocity_rad_s, velocity_m_s;  // in the camera's frame, in the world's
+  Eigen::Vector3d angular_velocity_rad_s, velocity_m_s;  // in the camera's and in the world's frame
 
   RigidTransform after(double duration_s) const {
     return {(world_from_camera.rotation * quaternionExp(duration_s * angular_velocity_rad_s)).normalized(),
@@ -45,9 +45,9 @@ std::vector<MovingPose> movingPoses(const std::vector<CameraPose>& poses) {
 
 struct Bridges {
   std::vector<RigidTransform> reference_from_camera;  // by each gap
-  int to_camera = 0, to_reference = 0;                // how many: who sees more of the board after the gap
+  int to_camera = 0, to_reference = 0;  // counts, by the camera that sees more of the board after the gap
 
-  // One way only, a time offset looks like a turn.
+  // With one direction only, a time offset cannot be distinguished from a rotation.
   bool bothWays(int least) const { return 2 * std::min(to_camera, to_reference) >= least; }
 };
 
@@ -59,7 +59,7 @@ std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s
 
 Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<MovingPose>& camera,
                 double time_offset_s, double longest_s) {
-  constexpr std::size_t kMost = 400;  // of cameras that overlap after all: the first are enough
+  constexpr std::size_t kMost = 400;  // limit for cameras that overlap: the first are sufficient
   Bridges found;
   const auto add = [&](const MovingPose& one, const MovingPose& other) {
     const double half_s = 0.5 * (other.time_s + time_offset_s - one.time_s);
@@ -83,7 +83,7 @@ Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<Movi
   return found;
 }
 
-// From the gap that most of the others are near to.
+// Starts from the gap that agrees with most of the others.
 MeanPose agreement(const std::vector<RigidTransform>& each) {
   constexpr int kRounds = 10;
   const auto misfit = [&](const RigidTransform& mean) {

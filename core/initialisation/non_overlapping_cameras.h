@@ -1,5 +1,6 @@
-// Relative pose of two cameras that see the board in turns, without an IMU for the motion between: when one
-// loses the board and the other finds it, both are extrapolated to the middle of the gap at their speed.
+// Relative pose of two cameras that see the board alternately, without an IMU for the motion in between: when
+// one loses the board and the other detects it, both are extrapolated to the middle of the gap at constant
+// speed.
 #pragma once
 
 #include "core/data/calibration_priors.h"
@@ -15,11 +16,12 @@ namespace evical {
 struct BridgedCamera {
   MeanPose reference_from_camera;
   double time_offset_s = 0.0;  // reference_time = camera_time + time_offset_s
-  int bridges = 0;             // gaps that determine it
+  int bridges = 0;             // number of gaps used
 };
 
-// The time offset within options.time_offset_search_s of the prior's at which the gaps agree best, or that
-// which is given. Nothing where there are too few of at most options.longest_bridge_s, or they don't agree.
+// Result for the time offset within options.time_offset_search_s of the prior's at which the gaps agree best,
+// or for the given one. Empty if there are too few gaps of at most options.longest_bridge_s, or if they do
+// not agree.
 std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
                                            const std::vector<CameraPose>& camera,
                                            const std::optional<KnownNumber>& time_offset,

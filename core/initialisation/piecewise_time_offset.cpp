@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-constexpr double kPart_s = 1.5;           // some turns of a hand
+constexpr double kPart_s = 1.5;           // some oscillations of a hand
 constexpr std::size_t kPairsOfPart = 30;  // hardly more are independent
 constexpr double kPartGrid_s = 0.01, kReach_s = 0.3;
 
@@ -80,8 +80,8 @@ std::vector<RotationPair> thinned(const std::vector<RotationPair>& pairs) {
   return few;
 }
 
-// Weighted mean of parts, and what it leaves in units of their sigmas. Squares are capped, since a part may be
-// wrong by far.
+// Weighted mean of parts, and their normalised residuals. Squares are limited, since a part may have a large
+// error.
 struct PartLevel {
   double offset_s = 0.0, std_s = 0.0, chi2 = 0.0;
 };
@@ -106,7 +106,7 @@ PartLevel levelOf(const std::vector<OffsetPart>& parts, std::size_t begin, std::
   return level;
 }
 
-// The same about the best straight line: clocks that drift.
+// Residuals of the best straight line, for drifting clocks.
 double chi2OfLine(const std::vector<OffsetPart>& parts) {
   Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
   Eigen::Vector2d vector = Eigen::Vector2d::Zero();
@@ -144,7 +144,7 @@ std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, con
 
 std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
   constexpr double kSure_sigmas = 6.0, kLeastStep_s = 2e-3;
-  constexpr std::size_t kLeastParts = 2;  // on either side: a single one may be wrong
+  constexpr std::size_t kLeastParts = 2;  // on either side: a single part may be wrong
   const double one_level = levelOf(parts, 0, parts.size()).chi2;
   std::optional<ClockStep> best;
   double least = one_level;
@@ -156,7 +156,7 @@ std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
     best = ClockStep{parts[k].begin_s, step_s, std::abs(step_s) / std::hypot(before.std_s, after.std_s),
                      2 * k >= parts.size()};
   }
-  // The residual of two levels must be noise again; that of drifting clocks is not.
+  // The residual of two levels must be noise; for drifting clocks it is not.
   constexpr double kFarBetter = 0.5;
   if (!best || best->sigmas < kSure_sigmas || std::abs(best->step_s) < kLeastStep_s ||
       least > kFarBetter * std::min(one_level, chi2OfLine(parts)))

@@ -1,6 +1,6 @@
-// The time offset in parts of a recording, compared with one for all of it. Clocks that step (lost packets, a
-// resynchronisation) are visible at once, while a single offset is wrong for a part and contradicted by
-// circles that look like outliers.
+// Time offsets of parts of a recording, compared with one for the whole recording. They reveal clock steps
+// (lost packets, a resynchronisation), while a single offset is wrong for a part and contradicted by circles
+// that look like outliers.
 #pragma once
 
 #include "core/initialisation/camera_imu_rotation.h"
@@ -14,7 +14,7 @@ struct OffsetPart {
   double begin_s = 0.0, end_s = 0.0;  // camera clock
   double time_offset_s = 0.0, time_offset_std_s = 0.0;
 };
-// Offsets of parts of some seconds, with everything else from the whole recording.
+// Offsets of parts of some seconds, with all other parameters from the whole recording.
 std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                        const RelativeRotation& whole, const InitialisationOptions& options);
 
@@ -24,7 +24,7 @@ struct ClockStep {
   double sigmas = 0.0;
   bool larger_part_first = true;
 };
-// The one that explains the parts best; nothing where one offset does, or a drift.
+// The step that explains the parts best; empty if a constant offset or a drift explains them.
 std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts);
 
 }  // namespace evical

@@ -11,8 +11,8 @@ namespace evical {
 namespace {
 
 constexpr double kMostNeighbours = 120.0;  // enough for a vote
-// Mirrored poses agree with each other for a while, as long as the camera looks the same way; that their
-// circles fit worse makes them second choice, and counts.
+// Mirrored poses agree with each other for a while, as long as the viewing direction is constant; since their
+// circles fit worse, they have a lower weight.
 constexpr double kSecondChoice = 0.5;
 
 // world_from_first by either pose of one view.
@@ -86,7 +86,7 @@ PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRo
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double time_s = poses[k].time_s + hand_eye.time_offset_s;
     const Vote vote = voteOn(carried, poses, k, least_cosine, options.agreement_window_s);
-    // Beyond the gyroscope, or without neighbours, nothing can be judged.
+    // Outside the gyroscope's samples, or without neighbours, no decision is possible.
     const bool judged = gyro.covers(time_s, time_s) && vote.neighbours > 0;
     if (judged && std::max(vote.for_first, vote.for_second) < options.least_agreement * vote.neighbours) {
       ++result.dropped;

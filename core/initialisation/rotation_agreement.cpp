@@ -19,7 +19,7 @@ double medianNorm(const std::vector<Eigen::Vector3d>& vectors) {
   return medianOf(std::move(norms));
 }
 
-// Without weighted means.
+// Subtracts weighted means.
 std::vector<Turned> centred(std::vector<Turned> pairs, const std::vector<double>& weights) {
   Turned mean{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double sum = 0.0;
@@ -35,7 +35,7 @@ std::vector<Turned> centred(std::vector<Turned> pairs, const std::vector<double>
   return pairs;
 }
 
-// The orthogonal matrix of this determinant that turns what was seen into what was felt.
+// The orthogonal matrix of this determinant that best maps the camera's rotations to the gyroscope's.
 Eigen::Matrix3d bestOrthogonal(const std::vector<Turned>& pairs, const std::vector<double>& weights,
                                double determinant) {
   Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();

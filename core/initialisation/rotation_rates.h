@@ -1,5 +1,5 @@
-// Rotation rates of the camera, from its views of the board alone, and of the gyroscope. Angles do not depend
-// on the camera's mounting, so only the time offset can make the two agree.
+// Rotation rates of the camera, from its views of the board only, and of the gyroscope. Their magnitudes do
+// not depend on the camera's mounting, so their agreement only depends on the time offset.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,7 +12,7 @@
 
 namespace evical {
 
-// One entry a pair of views, each averaged over the time between the two.
+// One entry per pair of views, each averaged over the time between the two.
 struct RotationRates {
   std::vector<double> time_s;  // camera clock, the pair's middle
   std::vector<double> camera_rad_s;

@@ -9,14 +9,14 @@
 namespace evical {
 namespace {
 
-constexpr double kGrid_s = 0.005;      // of the gyroscope's rates; a fraction of what a hand can shake
+constexpr double kGrid_s = 0.005;      // of the gyroscope's rates; a fraction of a hand's shortest period
 constexpr double kLongestRatio = 1.5;  // of a pair's duration to the usual one
 
 struct RatePair {
   double middle_s, rate_rad_s, duration_s;
 };
 
-// All of nearly one duration, so that both sensors' rates are averaged alike.
+// Pairs of nearly equal duration, so that both sensors' rates are averaged alike.
 std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap_s, double longest_s) {
   std::vector<RatePair> pairs;
   std::vector<double> durations;
@@ -83,7 +83,8 @@ Correlation correlationAt(const std::vector<RatePair>& pairs, const RateGrid& gr
   const double vx = sxx - sx * sx / n, vy = syy - sy * sy / n;
   if (vx <= 0.0 || vy <= 0.0) return {};
   const double value = (sxy - sx * sy / n) / std::sqrt(vx * vy);
-  // Fisher's transform: its spread is that of the number of independent values, which grows with the time.
+  // Fisher's transform: its spread depends on the number of independent values, which is proportional to the
+  // time.
   constexpr double kHighest = 0.999;
   return {value, std::atanh(std::clamp(value, -kHighest, kHighest)) * std::sqrt(overlap_s)};
 }
@@ -118,7 +119,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
     return pair.rate_rad_s > options.fastest_view_ratio * grid.highest_rad_s + 0.1;
   });
   if (pairs.size() < 5) return {};
-  // Gaps count as overlap, or a board seen in every tenth window would need ten times the recording.
+  // Gaps count as overlap, since a board in every tenth window would otherwise need ten times the recording.
   const double pairs_per_s = static_cast<double>(pairs.size()) /
                              std::max(pairs.back().middle_s - pairs.front().middle_s, duration_s);
   const bool given = isGiven(prior.time_offset);

@@ -1,5 +1,5 @@
-// Coarse time offset from the sizes of rotation (docs/maths.md, 8.3): how far the camera turned between
-// neighbouring views does not depend on how it is mounted, and the gyroscope must have turned as far.
+// Coarse time offset from magnitudes of rotation (docs/maths.md, 8.3): the camera's angle between
+// neighbouring views does not depend on its mounting, and must equal the gyroscope's.
 #pragma once
 
 #include "core/data/calibration_priors.h"
@@ -13,13 +13,13 @@ namespace evical {
 struct TimeOffsetPeak {
   double time_offset_s = 0.0;
   double correlation = 0.0;   // of rotation rates, -1..1
-  double significance = 0.0;  // of that over this overlap: short ones agree by chance more easily
-  double width_s = 0.0;       // from the peak to where the correlation's parabola is lower by 0.1
+  double significance = 0.0;  // of the correlation, given the overlap: short ones agree by chance more easily
+  double width_s = 0.0;       // distance from the peak at which the correlation's parabola is lower by 0.1
 };
 
 // Local maxima of the correlation within plus or minus options.time_offset_search_s of the prior's time
-// offset (of 0 without one), the most significant first; only that offset where it is given. Empty if camera
-// and gyroscope overlap for less than options.least_overlap_s at every offset.
+// offset (of 0 without one), the most significant first; only the given offset if there is one. Empty if
+// camera and gyroscope overlap for less than options.least_overlap_s at every offset.
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
                                                 const GyroRotation& gyro,
                                                 const InitialisationOptions& options,

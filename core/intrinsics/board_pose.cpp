@@ -21,7 +21,7 @@ struct Ray {
   Eigen::Vector2d on_board_m, normalised;
 };
 
-// Gauss-Newton on the ellipses' centres; returns the sum of squares, infinite where it leads nowhere.
+// Gauss-Newton on the ellipses' centres; returns the sum of squares, infinite if it diverges.
 double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pose) {
   constexpr int kIterations = 6;
   double squares = std::numeric_limits<double>::infinity();
@@ -48,8 +48,8 @@ double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pos
   return squares;
 }
 
-// Towards which a camera is turned that sees all of these directions within reach of x/z, y/z; as it is where they are
-// near its axis anyway.
+// Rotation to a camera that looks at the mean direction, so that x/z and y/z of all directions are defined;
+// the identity if the directions are near the axis.
 Eigen::Quaterniond turnTowards(const std::vector<Eigen::Vector3d>& directions) {
   constexpr double kNear = 0.5;  // cosine of 60 degrees
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -1,4 +1,4 @@
-// The board's pose in one view, from its circles' centres and a camera model.
+// Pose of the board in one view, from its circles' centres and a camera model.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -10,7 +10,8 @@
 
 namespace evical {
 
-// camera_from_board; nothing where the circles make no pose. Of a plane's two poses the one that fits better.
+// camera_from_board; empty if the circles do not determine a pose. The better-fitting one of a plane's two
+// poses.
 std::optional<RigidTransform> boardPose(const SensorView& view, const Board& board,
                                         const CameraIntrinsics& camera);
 

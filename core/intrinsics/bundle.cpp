@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLeastScale = 1e-3;
 
-// Draws the edge lead towards 0.
+// Prior of the edge lead, with mean 0.
 class LeadPrior final : public ceres::SizedCostFunction<1, 1> {
  public:
   explicit LeadPrior(double sigma_px) : weight_(1.0 / sigma_px) {}
@@ -50,7 +50,8 @@ class Adjustment {
   Bundle run() {
     updateWeights();
     adjust();
-    // A wide lens starts roughly, and where its poses were wrong they stay so.
+    // A wide lens starts with large errors; views with wrong initial poses were dropped, and get a second
+    // chance.
     if (isSphereModel(bundle_.intrinsics.model) && placeDroppedViews()) {
       updateWeights();
       adjust();
@@ -67,7 +68,7 @@ class Adjustment {
     }
   }
 
-  // With the intrinsics that were found; true if there were any.
+  // Restores dropped views with the estimated intrinsics; true if there were any.
   bool placeDroppedViews() {
     bool any = false;
     for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
@@ -107,7 +108,7 @@ class Adjustment {
     return all;
   }
 
-  // True if anything changed enough to solve again.
+  // True if weights or outliers changed enough to solve again.
   bool updateWeights() {
     const std::vector<std::vector<double>> normalised2 = errors();
     const double before = bundle_.scale;

@@ -18,19 +18,19 @@ FreeIntrinsics freeIntrinsics(CameraModel model, const IntrinsicsOptions& option
 struct Bundle {
   CameraIntrinsics intrinsics;
   double edge_lead_px = 0.0;
-  std::vector<SensorView> views;      // with what is used of them
+  std::vector<SensorView> views;      // with marks of used circles
   std::vector<RigidTransform> poses;  // camera_from_board, by view
-  double scale = 1.0;                 // spread of the errors in units of their sigmas, from the median
+  double scale = 1.0;                 // median-based spread of the normalised errors
   bool converged = false;
   double radius_m = 0.0;  // of the board's circles
 
-  // Predicted - measured, edge lead included; 1000 px where the camera does not see it.
+  // Predicted minus measured, with the edge lead; 1000 px if the camera does not see it.
   Eigen::Vector2d error_px(std::size_t view, const SensorCircle& circle) const;
   int circlesUsed() const;
   int viewsUsed() const;
 };
 
-// From a start and views; rounds of solving, with weights and outliers as the errors show them.
+// Estimate from a start value and views; iterates solutions and updates of weights and outliers.
 Bundle solveBundle(const CameraIntrinsics& start, const std::vector<SensorView>& views, const Board& board,
                    const IntrinsicsOptions& options, const RunContext& context);
 

@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-constexpr double kNowhere_sigma = 1e3;  // so large that no step leads there
+constexpr double kNowhere_sigma = 1e3;  // so large that no step is accepted there
 
 }  // namespace
 

@@ -1,7 +1,7 @@
-// Zero when a measured circle is where camera and pose put it, on the sensor (docs/maths.md, 7.1):
+// Residual of a measured circle relative to camera and pose, on the sensor (docs/maths.md, 7.1):
 //   r = L^-1 [ distorted(centre of the projected circle's conic) + lead * effect - measured ],
-// L the Cholesky factor of the centre's covariance. Without unit. A circle of radius 0 is a corner, which is projected
-// directly, and so at any angle that the camera sees.
+// L the Cholesky factor of the centre's covariance. Without unit. A circle of radius 0 is a corner, which is
+// projected directly, and therefore at any angle that the camera sees.
 //
 // Blocks: intrinsics (fx fy cx cy d0..d4), edge lead [px], camera_from_board (x y z w, then metres). The
 // pose's Jacobian is with respect to its manifold's step: three columns for the rotation, one of zeros, three
@@ -25,7 +25,7 @@ inline constexpr int kPoseBlock = 7;
 
 class CircleCentreCost final : public ceres::SizedCostFunction<2, 9, 1, kPoseBlock> {
  public:
-  // `scale`: of all covariances, as the residuals show it.
+  // `scale`: factor on all covariances, estimated from the residuals.
   CircleCentreCost(CameraModel model, const SensorCircle& circle, double radius_m, double scale);
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;

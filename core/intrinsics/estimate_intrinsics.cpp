@@ -24,23 +24,24 @@ void checkCount(const std::vector<SensorView>& views, std::size_t count, const c
   const std::string missing = missingPlaces(views, input.resolution_px);
   throw calibrationFailed(
       input.observations.camera,
-      fmt::format("only {} {} show at least {:.0f} % of the board, {} are needed for intrinsics{}", count,
+      fmt::format("only {} {} show at least {:.0f} % of the board, but {} are needed for intrinsics{}", count,
                   what, 100.0 * options.least_circles, options.least_views,
                   missing.empty() ? "" : "; none reaches " + missing),
-      "Move the board through the whole image, all of it in view most of the time, for 20 s or more");
+      "Move the board through the whole image for at least 20 s, and keep it completely in view most of the "
+      "time");
 }
 
-// What a solution starts from.
+// Inputs of a solution.
 struct Estimation {
   const Board& board;
   Resolution resolution_px;
   std::optional<CameraIntrinsics> guess;
   const IntrinsicsOptions& options;
   const RunContext& context;
-  bool wide_too = true;  // whether automatic may take a double sphere
+  bool wide_too = true;  // whether automatic selection may choose a double sphere
 };
 
-// Sum of squared errors in units of their sigmas, of which none counts more than the bound.
+// Sum of squared normalised errors, each limited to the squared bound.
 double boundedSum(const Bundle& bundle, double bound) {
   double sum = 0.0;
   for (std::size_t v = 0; v < bundle.views.size(); ++v)
@@ -51,7 +52,7 @@ double boundedSum(const Bundle& bundle, double bound) {
   return sum;
 }
 
-// Medians of solutions that are much alike hardly differ.
+// Medians of similar solutions hardly differ.
 bool fitsBetter(const Bundle& bundle, const Bundle& other, const IntrinsicsOptions& options) {
   constexpr double kAlike = 1.05;
   const auto [less, more] = std::minmax(bundle.scale, other.scale);
@@ -84,13 +85,13 @@ int circlesOf(const Bundle& bundle) {
   return static_cast<int>(count);
 }
 
-// Where all circles are used and the errors are as large as their sigmas, another model could not do better.
+// If all circles are used and the errors are as large as their sigmas, another model cannot fit better.
 bool fits(const Bundle& bundle) {
   constexpr double kFits = 1.5, kNearlyAll = 0.95;
   return bundle.scale < kFits && bundle.circlesUsed() >= kNearlyAll * circlesOf(bundle);
 }
 
-// What a model cannot see far out it drops, and the rest fits well.
+// Accounts for circles at large angles that a model excludes so that the others fit well.
 double misfit(const Bundle& bundle) {
   return bundle.scale * circlesOf(bundle) / std::max(1, bundle.circlesUsed());
 }
@@ -100,7 +101,7 @@ struct Solution {
   std::vector<TriedModel> tried;
 };
 
-// Equidistant only where radial-tangential does not do, double sphere only where neither does.
+// Equidistant only if radial-tangential does not fit, double sphere only if neither does.
 Solution solve(const std::vector<SensorView>& views, const Estimation& given) {
   std::vector<TriedModel> tried;
   const auto with = [&](CameraModel model) {
@@ -158,7 +159,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
       input.start ? *input.start
                   : roughStart(all, input.board, input.resolution_px, input.detection_intrinsics);
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
-  checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
+  checkCount(views, views.size(), "views with enough spacing in time", input, options);
   const Estimation given{input.board, input.resolution_px, input.detection_intrinsics, options, context};
   Solution solution = input.start ? Solution{bestOf({*input.start}, views, given), {}} : solve(views, given);
   const Bundle& bundle = solution.bundle;
@@ -168,10 +169,10 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   result.edge_lead_px = bundle.edge_lead_px;
   result.views_found = static_cast<int>(input.observations.views.size());
   addFit(bundle, result);
-  checkCount(views, static_cast<std::size_t>(result.views_used), "views that fit each other", input, options);
+  checkCount(views, static_cast<std::size_t>(result.views_used), "consistent views", input, options);
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
-  // Only moving edges in events lead; of all else the prior alone would speak.
+  // Only moving edges in events have a lead; otherwise the value would be the prior's.
   if (hasLead(bundle)) result.edge_lead_std_px = uncertainty.edge_lead_std_px;
   result.normalised_rms = uncertainty.normalised_rms;
   result.largest_tilt_deg = largestTilt_deg(bundle);
@@ -187,9 +188,9 @@ std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context) {
   constexpr std::size_t kLeastViews = 4, kMostViews = 40;
-  constexpr int kMostIterations = 15;        // a valley is followed to its end by the whole recording only
-  constexpr bool kWideToo = false;           // the front end sees up to 85 degrees, where a pinhole will do
-  constexpr double kMostFocalLength = 20.0;  // image widths: views that all look alike lead anywhere
+  constexpr int kMostIterations = 15;        // convergence along a valley is left to the whole recording
+  constexpr bool kWideToo = false;           // the front end sees up to 85 degrees, where a pinhole suffices
+  constexpr double kMostFocalLength = 20.0;  // image widths: similar views can diverge
   if (all.size() < kLeastViews) return std::nullopt;
   std::vector<SensorView> views;
   const std::size_t every = (all.size() + kMostViews - 1) / kMostViews;

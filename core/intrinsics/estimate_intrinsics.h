@@ -1,9 +1,9 @@
-// Camera intrinsics from board views (docs/maths.md, 7): views are chosen, a start is found, intrinsics and
-// poses are adjusted together, and the result is judged.
+// Camera intrinsics from board views (docs/maths.md, 7): selection of views, start value, joint adjustment of
+// intrinsics and poses, verdict.
 //
-// The centres of ellipses were fitted in the ideal pixels of `detection_intrinsics`. Where that is far from the camera
-// as found, they are not quite the centres of true ellipses: let the front end see the events again with the
-// result, and estimate once more.
+// The centres of ellipses were fitted in the ideal pixels of `detection_intrinsics`. If that camera is far
+// from the estimated one, they are not exactly the centres of true ellipses: run the front end again with the
+// result, and repeat the estimate.
 #pragma once
 
 #include "core/base/progress.h"
@@ -25,23 +25,24 @@ struct IntrinsicsInput {
   const BoardObservations& observations;
   std::optional<CameraIntrinsics>
       detection_intrinsics;  // none: the observations are in the sensor's own pixels
-  // Of an estimate before, whose model is kept; none: a start is found, and models are tried.
+  // Result of an earlier estimate, whose model is kept; none: a start value is found, and models are
+  // compared.
   std::optional<CameraIntrinsics> start;
 };
 
-// The order of board.index is that of the views; of boards that look the same upside down either will do.
-// Throws CalibrationFailed, with what to do, where the views make no camera. `story`: where it is wanted.
+// The order of board.index is that of the views; for boards with half-turn symmetry either is correct. Throws
+// CalibrationFailed, with advice, if the views do not determine a camera. `story` may be null.
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
                                     const RunContext& context, IntrinsicsStory* story = nullptr);
 
-// A camera that is good enough to see the board with.
+// A camera that is accurate enough to detect the board.
 struct RoughCamera {
   CameraIntrinsics intrinsics;
-  double sigma_px = 0.0;  // of where rays are projected, RMS over the image
+  double sigma_px = 0.0;  // of the projections of rays, RMS over the image
 };
 
-// The same without checks, from a handful of views; `guess` is a lens that shows the board somehow. Nothing
-// where the views make no camera.
+// The same without checks, from a few views; `guess` is a lens with which the board can be detected. Empty
+// if the views do not determine a camera.
 std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& views, const Board& board,
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context);

@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-// The board's normal in a view, into the board, in the camera.
+// The board's normal in a view, pointing into the board, in the camera frame.
 Eigen::Vector3d normal(const RigidTransform& camera_from_board) {
   return camera_from_board.rotation * Eigen::Vector3d::UnitZ();
 }
@@ -23,7 +23,7 @@ double tilt_deg(const Eigen::Vector3d& normal) {
   return kDegPerRad * std::acos(std::clamp(normal.z(), -1.0, 1.0));
 }
 
-// Of the views used.
+// Normals of the used views.
 std::vector<Eigen::Vector3d> normals(const Bundle& bundle) {
   std::vector<Eigen::Vector3d> all;
   for (std::size_t v = 0; v < bundle.views.size(); ++v) {
@@ -76,7 +76,7 @@ std::array<Region, 9> regionsOf(const ImageMap& image) {
   return regions;
 }
 
-// Sides of the image, corners included, without a single circle.
+// Sides of the image, including corners, without circles.
 std::vector<std::string> unseenSides(const ImageMap& image) {
   const std::array<Region, 9> regions = regionsOf(image);
   std::vector<std::string> sides;
@@ -155,8 +155,8 @@ void checkTilts(const Bundle& bundle, double focal_length_relative_std, const In
   if (largest_deg >= options.least_tilt_deg && focal_length_relative_std < kUseless) return;
   throw calibrationFailed(
       "intrinsics",
-      fmt::format("the focal length is not observable: it is known to {:.1f} % only, and the board is "
-                  "tilted by at most {:.0f} deg against the image",
+      fmt::format("the focal length is not observable: its sigma is {:.1f} %, and the board's largest tilt "
+                  "relative to the image is {:.0f} deg",
                   100.0 * focal_length_relative_std, largest_deg),
       "Tilt the board by 20 to 40 deg to all four sides");
 }
@@ -168,9 +168,10 @@ std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& im
     if (region.seen > 0 && 3 * region.seen < region.cells) few.push_back(region.name);
   }
   if (!none.empty())
-    advice.push_back(fmt::format("No views in {}: move the board there", joinedInWords(none)));
+    advice.push_back(fmt::format("Move the board to {}: no views there", joinedInWords(none)));
   if (!few.empty())
-    advice.push_back(fmt::format("Hardly any views in {}: move the board further there", joinedInWords(few)));
+    advice.push_back(
+        fmt::format("Move the board more often to {}: hardly any views there", joinedInWords(few)));
   constexpr double kTilted = 0.17;  // sine of 10 deg
   std::vector<std::string> sides;
   const std::vector<Eigen::Vector3d> all = normals(bundle);
@@ -183,7 +184,8 @@ std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& im
   if (never(1, -1.0)) sides.emplace_back("upper");
   if (!sides.empty())
     advice.push_back(
-        fmt::format("The board's {} side was never tilted towards the camera: do so", joinedInWords(sides)));
+        fmt::format("Tilt the board's {} side towards the camera, which was missing in the recording",
+                    joinedInWords(sides)));
   return advice;
 }
 
@@ -192,15 +194,15 @@ void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& r
   std::vector<std::string> reasons;
   if (!converged) reasons.emplace_back("the bundle adjustment did not converge");
   if (!(focal <= options.needed_focal_length))
-    reasons.push_back(fmt::format("the focal length is known to {:.2f} % only", 100.0 * focal));
+    reasons.push_back(fmt::format("the focal length has a large sigma of {:.2f} %", 100.0 * focal));
   if (!(result.image.rms_px <= options.needed_projection_px))
-    reasons.push_back(fmt::format("pixels of rays are known to {:.2f} px RMS only", result.image.rms_px));
-  // Sigmas trust the model there, real lenses need not.
+    reasons.push_back(fmt::format("projections have a large sigma of {:.2f} px RMS", result.image.rms_px));
+  // Sigmas assume that the model is valid in those parts, which is uncertain for real lenses.
   if (const std::vector<std::string> sides = unseenSides(result.image); !sides.empty())
     reasons.push_back(fmt::format("no views reach the {} {} of the image", joinedInWords(sides),
                                   sides.size() == 1 ? "side" : "sides"));
   if (result.circles_rejected > result.circles_used)
-    reasons.emplace_back("most circles do not fit: check the board's type, spacing and radius");
+    reasons.emplace_back("most circles do not fit (check the board's type, spacing and radius)");
   result.status = reasons.empty() ? CalibrationStatus::Ok : CalibrationStatus::Doubtful;
   result.reason = joinedInWords(reasons);
 }

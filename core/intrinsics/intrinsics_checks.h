@@ -1,4 +1,4 @@
-// What the views leave open, in words for whoever moves the board.
+// Checks of the views' coverage, and advice for the next recording.
 #pragma once
 
 #include "core/data/intrinsics_result.h"
@@ -7,26 +7,26 @@
 
 namespace evical {
 
-// Relative sigma of the focal length; of pixels by angle on the axis, for the wide models' own number means nothing
-// without their xi.
+// Relative sigma of the focal length; for the wide models that of pixels per angle on the axis, since their
+// focal length alone is meaningless without xi.
 double focalLengthRelativeStd(const CameraIntrinsics& camera, const IntrinsicsMatrix& covariance);
 
-// Throws CalibrationFailed where hardly any view is tilted: the focal length is not observable then.
+// Throws CalibrationFailed if hardly any view is tilted: then the focal length is not observable.
 void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options);
 
-// Largest angle between board and image; of the views used, the most tilted twentieth left out.
+// Largest angle between board and image, without the most tilted twentieth of the used views.
 double largestTilt_deg(const Bundle& bundle);
 
-// Where the board was in each view that is used.
+// Pose of the board in each used view.
 std::vector<IntrinsicsView> viewsOf(const Bundle& bundle, const Board& board);
 
-// Where in the image views are missing, and which way the board was never tilted.
+// Advice for parts of the image without views, and for missing tilts.
 std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& image);
 
-// Parts of the image without a single circle, in words; nothing if that is none or all of them.
+// Names of the parts of the image without circles; empty if that is none or all of them.
 std::string missingPlaces(const std::vector<SensorView>& views, Resolution resolution_px);
 
-// Status and reason, from what else is filled in.
+// Sets status and reason from the other members.
 void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& result);
 
 }  // namespace evical

@@ -1,11 +1,11 @@
-// What camera intrinsics from events let people choose.
+// Options of the calibration of camera intrinsics.
 #pragma once
 
 #include "core/base/option_struct.h"
 
 namespace evical {
 
-// Automatic, or CameraModel's in their order.
+// Automatic, or the models in the order of CameraModel.
 enum class IntrinsicsModel { Automatic, PinholeRadtan, PinholeEquidistant, DoubleSphere, Eucm, OmniRadtan };
 
 struct IntrinsicsOptions {

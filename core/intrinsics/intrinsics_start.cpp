@@ -54,11 +54,11 @@ std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, R
     const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0;
     return sane ? std::optional(camera) : std::nullopt;
   } catch (const cv::Exception&) {
-    return std::nullopt;  // views that make no camera; the other starts remain
+    return std::nullopt;  // views that do not determine a camera; the other start values remain
   }
 }
 
-// Stereographic lenses that see so far in the image's corners.
+// Stereographic lenses with these angles at the image's corners.
 std::vector<CameraIntrinsics> wideGuesses(CameraModel model, Resolution resolution_px) {
   const double corner_px = 0.5 * std::hypot(resolution_px.width_px, resolution_px.height_px);
   std::vector<CameraIntrinsics> guesses;
@@ -70,8 +70,8 @@ std::vector<CameraIntrinsics> wideGuesses(CameraModel model, Resolution resoluti
   return guesses;
 }
 
-// Median distance of circles from where the camera would see the board as a whole, in some views; those that it does not
-// see are infinitely far.
+// Median error of circles for the camera and the board's best pose, in some views; infinite for circles that
+// it does not see.
 double startError_px(const CameraIntrinsics& camera, const std::vector<SensorView>& views,
                      const Board& board) {
   constexpr std::size_t kMostViews = 20;
@@ -126,7 +126,7 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
                                                const std::optional<CameraIntrinsics>& detection_intrinsics) {
   std::vector<CameraIntrinsics> starts;
   if (detection_intrinsics) starts.push_back(sameLens(*detection_intrinsics, model));
-  // A plain lens is a guess, which may lead elsewhere.
+  // A lens without distortion is a guess, which may lead to another minimum.
   const bool guessed =
       !detection_intrinsics || detection_intrinsics->distortion == CameraIntrinsics{}.distortion;
   const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;

@@ -1,4 +1,4 @@
-// Where the bundle adjustment starts.
+// Start values of the bundle adjustment.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -11,22 +11,22 @@
 
 namespace evical {
 
-// The camera of this model that sees nearly what `camera` sees: both project rays through the image nearly to
-// the same pixels.
+// The camera of this model that is closest to `camera`: both project rays through the image to nearly the
+// same pixels.
 CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
 
-// A double sphere has two solutions that are much alike, one with xi below 0 and one above. Which of them is right the
-// views tell, but no step leads from one to the other: this does.
+// A double sphere has two similar solutions, with xi below and above 0. The views determine which one is
+// correct, but no optimiser step leads from one to the other: this function does.
 CameraIntrinsics otherSide(const CameraIntrinsics& sphere);
 
-// At least one: the lens that the front end saw with, and where that was a guess, one without distortion
-// coefficients, also OpenCV's calibration on the centres as if they were points. Of the wide models the two nearest of
-// these and of a few lenses from 100 to 200 degrees across.
+// At least one: the front end's lens; if that was a guess, one without distortion coefficients, and OpenCV's
+// calibration that treats centres as points. For the wide models, the two closest of these and of a few
+// lenses with fields of view from 100 to 200 degrees.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& detection_intrinsics);
 
-// One that shows where the boards were: radial-tangential, or double sphere where that sees them clearly better.
+// A camera that shows the boards' tilts: radial-tangential, or double sphere if that fits clearly better.
 CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& board,
                             Resolution resolution_px,
                             const std::optional<CameraIntrinsics>& detection_intrinsics);

@@ -20,19 +20,19 @@ using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
-// Of an image in columns and rows of cells, the one that a pixel lies in, row by row.
+// Index of a pixel's cell, in an image of columns x rows cells, row by row.
 int cellAt(const Eigen::Vector2d& pixel, const Resolution& size_px, int columns, int rows) {
   const int column = static_cast<int>(pixel.x() * columns / size_px.width_px);
   const int row = static_cast<int>(pixel.y() * rows / size_px.height_px);
   return std::clamp(row, 0, rows - 1) * columns + std::clamp(column, 0, columns - 1);
 }
 
-// Errors that all views have in common where in the image they see a circle: for each place that along x, then that
+// Errors common to all views at the same place in the image: for each place the error along x, then the one
 // along y.
 constexpr int kPlaceColumns = 8, kPlaceRows = 6, kPlaceErrors = 2 * kPlaceColumns * kPlaceRows;
 using PlaceMatrix = Eigen::Matrix<double, kShared, kPlaceErrors>;
 
-// What one view says once its pose is eliminated.
+// Information of one view after elimination of its pose.
 struct ViewInformation {
   double time_s = 0.0;
   SharedMatrix information = SharedMatrix::Zero();
@@ -88,7 +88,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   return out;
 }
 
-// Views that are near in time err alike.
+// Views that are close in time have correlated errors.
 SharedMatrix scoreCovariance(const std::vector<ViewInformation>& views, double correlation_time_s) {
   std::vector<double> times_s;
   std::vector<SharedVector> scores;
@@ -105,7 +105,7 @@ SharedMatrix inverseOf(const SharedMatrix& information, const std::vector<int>& 
   const Eigen::MatrixXd part = information(free, free);
   const Eigen::VectorXd scale = part.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * part * scale.asDiagonal();
-  constexpr double kFloor = 1e-14;  // directions that nothing says get a sigma beyond any need
+  constexpr double kFloor = 1e-14;  // directions without information get a very large sigma
   const Eigen::MatrixXd inverse = (scaled + kFloor * Eigen::MatrixXd::Identity(size, size))
                                       .ldlt()
                                       .solve(Eigen::MatrixXd::Identity(size, size));
@@ -144,7 +144,7 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   information(kIntrinsicsCount, kIntrinsicsCount) += std::pow(options.edge_lead_sigma_px, -2);
   const SharedMatrix inverse = inverseOf(information, free);
   SharedMatrix covariance = variance * inverse;
-  // Few views take part of their own common errors along.
+  // Correction for few views: the estimate absorbs part of their common errors.
   const auto count = static_cast<double>(views.size()), shared = static_cast<double>(free.size());
   const double few = count > 2.0 * shared ? count / (count - shared) : 2.0;
   const SharedMatrix correlated =

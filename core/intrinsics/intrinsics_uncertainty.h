@@ -1,6 +1,6 @@
-// How sure the intrinsics are (docs/maths.md, 7.4): Schur complement over the views' poses, scaled by the
-// residuals' variance; where errors that the circles of a view, or of neighbouring views, have in common ask
-// for more, they prevail (as in core/optimisation/uncertainty/covariance.h).
+// Uncertainty of the intrinsics (docs/maths.md, 7.4): Schur complement over the views' poses, scaled by the
+// residuals' variance, and increased to allow for errors that the circles of a view, or of neighbouring
+// views, have in common (as in core/optimisation/uncertainty/covariance.h).
 #pragma once
 
 #include "core/data/intrinsics_result.h"
@@ -17,11 +17,11 @@ struct BundleUncertainty {
 BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
                                     const IntrinsicsOptions& options);
 
-// Coverage by the circles used, and what the covariance means for the pixels of given rays. A turn of the
-// camera is taken out of each parameter's effect: poses take it up, and it does no harm.
+// Coverage by the used circles, and the covariance's effect on the pixels of given rays. A rotation of the
+// camera is removed from each parameter's effect: poses absorb it.
 ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance);
 
-// The map's sigmas anew; what it covers stays.
+// Updates the map's sigmas; its coverage is unchanged.
 void setSigmas(const CameraIntrinsics& intrinsics, const IntrinsicsMatrix& covariance, ImageMap& map);
 
 }  // namespace evical

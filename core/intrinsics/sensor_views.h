@@ -1,5 +1,5 @@
-// Board views in the sensor's own pixels, whatever camera model the front end saw them with. Each circle of a
-// view is brought to the view's one time with its own velocity.
+// Board views in the sensor's own pixels, independent of the front end's camera model. Each circle of a
+// view is moved to the view's time with its own velocity.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -16,10 +16,10 @@ namespace evical {
 
 struct SensorCircle {
   Eigen::Vector2d on_board_m = Eigen::Vector2d::Zero();
-  // Where the centre of the ellipse, which is one in ideal pixels only, lies on the sensor.
+  // Position on the sensor of the centre of the ellipse, which is an ellipse in ideal pixels only.
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
-  Eigen::Vector2d lead_effect = Eigen::Vector2d::Zero();  // px for each pixel of edge lead
+  Eigen::Vector2d lead_effect = Eigen::Vector2d::Zero();  // px per pixel of edge lead
   bool used = true;
 };
 
@@ -28,8 +28,8 @@ struct SensorView {
   std::vector<SensorCircle> circles;
 };
 
-// `detection_intrinsics`: the camera whose ideal pixels the observations are in; none: they are the sensor's. Views with
-// fewer circles than options.least_circles are left out.
+// `detection_intrinsics`: the camera whose ideal pixels the observations are in; none: they are the sensor's.
+// Views with fewer circles than options.least_circles are excluded.
 std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kColumns = 8, kRows = 6;
 constexpr int kTiltSteps = 5;         // along each axis of the board's normal in the image
-constexpr double kWidestTilt = 0.75;  // of the normal's part in the image, to either side
-constexpr double kTiltWeight = 0.5;   // a new tilt against a view full of new cells
+constexpr double kWidestTilt = 0.75;  // largest component of the normal in the image, to either side
+constexpr double kTiltWeight = 0.5;   // weight of a new tilt relative to a view with only new cells
 
 std::size_t step(double value, double low, double high, int count) {
   const int index = static_cast<int>(std::floor((value - low) / (high - low) * count));
@@ -22,7 +22,7 @@ std::size_t step(double value, double low, double high, int count) {
 
 struct Candidate {
   const SensorView* view = nullptr;
-  std::vector<std::size_t> cells;  // one a circle
+  std::vector<std::size_t> cells;  // one per circle
   std::size_t tilt = 0;
   bool taken = false, too_near = false;
 };
@@ -53,7 +53,7 @@ std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const 
   std::vector<Candidate> candidates = candidatesOf(views, board, camera);
   std::array<int, kColumns* kRows> in_cell = {};
   std::array<int, kTiltSteps* kTiltSteps> of_tilt = {};
-  // What a view adds: circles where there are few, a tilt of which there are few.
+  // Gain of a view: circles in rarely covered cells, and a rare tilt.
   const auto gain = [&](const Candidate& candidate) {
     double sum = 0.0;
     for (const std::size_t cell : candidate.cells) sum += 1.0 / (1.0 + in_cell[cell]);

@@ -1,4 +1,4 @@
-// Which views of a recording say most about the camera: spread over the image and over the board's tilt.
+// Selection of the most informative views of a recording: spread over the image and over the board's tilt.
 #pragma once
 
 #include "core/intrinsics/sensor_views.h"
@@ -9,8 +9,8 @@
 
 namespace evical {
 
-// Up to options.most_views of them, in time order; the same for the same views. Tilts are seen with `camera`,
-// a rough one will do.
+// At most options.most_views of them, in time order; deterministic. Tilts are computed with `camera`, which
+// may be approximate.
 std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const Board& board,
                                     const CameraIntrinsics& camera, const IntrinsicsOptions& options);
 

@@ -61,7 +61,7 @@ std::vector<double> AngularSpeedSeries::filled() const {
 ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const AngularSpeedSeries& own,
                                     const MaintenanceOptions& options) {
   constexpr double kFewest = 300.0;  // bins
-  constexpr double kNone = -2.0;     // where too little overlaps
+  constexpr double kNone = -2.0;     // if the overlap is too short
   ClockAgreement best;
   const std::vector<double> a = reference.filled(), b = own.filled();
   const long between = own.firstBin() - reference.firstBin();
@@ -79,7 +79,7 @@ ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const A
     best.later_s = -static_cast<double>(lag) * AngularSpeedSeries::kBin_s;
     best.ratio = std::sqrt(std::max(sum.varianceB(), 0.0) / sum.varianceA());
   }
-  // Between bins by a parabola.
+  // Interpolated between bins by a parabola.
   const long at = reach - std::lround(best.later_s / AngularSpeedSeries::kBin_s);
   if (best.moved && at > 0 && at < 2 * reach) {
     const auto i = static_cast<std::size_t>(at);

@@ -1,5 +1,5 @@
-// Whether two IMUs on one body turn alike, and how their clocks lie to each other, from the norms of their rates: no
-// rotation between them is needed for that.
+// Agreement of the rotation of two IMUs on one body, and their clock offset, from the norms of their rates:
+// independent of the rotation between them.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ class AngularSpeedSeries {
   void add(double time_s, const Eigen::Vector3d& rate_rad_s);
 
   bool empty() const { return sums_.empty(); }
-  // Of bins from the first sample's on; those without samples have the one before.
+  // Values of bins from the first sample on; bins without samples repeat the previous value.
   std::vector<double> filled() const;
   long firstBin() const { return first_; }
 
@@ -29,13 +29,13 @@ class AngularSpeedSeries {
 };
 
 struct ClockAgreement {
-  double later_s = 0.0;      // of the own times: what to add to the nominal offset
-  double correlation = 0.0;  // at best, -1..1
-  double ratio = 1.0;        // of the own norms to the reference's
-  bool moved = false;        // enough to tell
+  double later_s = 0.0;      // correction to add to the nominal offset
+  double correlation = 0.0;  // largest one, -1..1
+  double ratio = 1.0;        // of this IMU's norms to the reference's
+  bool moved = false;        // true if the motion suffices
 };
 
-// Times of both on the reference's clock by the nominal offset.
+// Times of both are on the reference's clock with the nominal offset.
 ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const AngularSpeedSeries& own,
                                     const MaintenanceOptions& options);
 

@@ -22,7 +22,7 @@ void GaussianSmoother::forgetBefore(double time_s) {
 
 std::optional<GaussianSmoother::Smoothed> GaussianSmoother::at(double time_s,
                                                                const std::deque<Sample>& samples) const {
-  constexpr double kMissing = 0.02;  // share of the Gaussian that has no samples
+  constexpr double kMissing = 0.02;  // share of the Gaussian without samples
   const auto earlier = [](const Sample& sample, double time) { return sample.time_s < time; };
   const auto first = std::lower_bound(samples.begin(), samples.end(), time_s - reach_s(), earlier);
   const auto last = std::lower_bound(samples.begin(), samples.end(), time_s + reach_s(), earlier);
@@ -32,7 +32,7 @@ std::optional<GaussianSmoother::Smoothed> GaussianSmoother::at(double time_s,
   const double height = 1.0 / (sigma_s_ * std::sqrt(2.0 * std::numbers::pi));
   for (auto it = first; it != last; ++it) {
     const double u = (it->time_s - time_s) / sigma_s_;
-    // Each stands for the time halfway to its neighbours.
+    // Each sample represents the time halfway to its neighbours.
     const double weight =
         height * std::exp(-0.5 * u * u) * 0.5 * (std::next(it)->time_s - std::prev(it)->time_s);
     const double slope = weight * u / sigma_s_;

@@ -12,9 +12,9 @@
 namespace evical {
 namespace {
 
-// Points this many sigmas of the smoothing apart share a tenth of their noise.
+// Points at this distance, in sigmas of the smoothing, share a tenth of their noise.
 constexpr double kPointsApart = 3.0;
-// An IMU that is that far behind the others has a gap, or its log is over.
+// An IMU that is this far behind the others has a gap, or its log has ended.
 constexpr double kBehind_s = 3.0;
 
 }  // namespace
@@ -46,7 +46,7 @@ void ImuPairs::add(std::size_t imu, double time_s, const ImuSample& sample) {
       state.gyroscopeMatrix().inverse() * (sample.angular_rate_rad_s - state.gyroscope_bias_rad_s);
   const Eigen::Vector3d force =
       state.accelerometer_mapping.inverse() * (sample.specific_force_m_s2 - state.accelerometer_bias_m_s2);
-  // All are kept on the reference's clock, so that windows are the same for all.
+  // All data are kept on the reference's clock, so that windows are the same for all IMUs.
   const PairNominal& clock = nominal_[imu];
   const double common_s =
       time_s + clock.time_offset_s + 1e-6 * clock.time_offset_drift_ppm * (time_s - clock.time_offset_at_s);
@@ -75,7 +75,7 @@ void ImuPairs::advance(double until_s) {
     next_s_ = std::ceil((until_s - kBehind_s) / interval_s_) * interval_s_;
   }
   if (next_s_ > until_s - reach_s) return;
-  // After a gap of all of them nothing is asked for in between.
+  // If all IMUs have a gap, skips the time in it.
   for (; next_s_ <= until_s - reach_s; next_s_ += interval_s_) {
     compare(next_s_);
     for (GaussianSmoother& smoother : smoothers_) smoother.forgetBefore(next_s_);
@@ -94,8 +94,8 @@ void ImuPairs::compare(double time_s) {
       addPoint(imu, time_s, *reference, *own);
 }
 
-// Zero when rate = R^T rate_ref and force = R^T (force_ref + (alpha x + Omega) lever), R turning from the IMU into the
-// reference; alpha is the slope of the rate, Omega l = w x (w x l).
+// Residuals of rate = R^T rate_ref and force = R^T (force_ref + (alpha x + Omega) lever), with R =
+// reference_from_imu; alpha is the slope of the rate, Omega l = w x (w x l).
 void ImuPairs::addPoint(std::size_t imu, double time_s, const SmoothPoint& reference,
                         const SmoothPoint& own) {
   std::vector<PairWindow>& windows = windows_[imu];

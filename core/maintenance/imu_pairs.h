@@ -1,5 +1,5 @@
-// Two IMUs on one rigid body: what each window of time says of their rotation, lever arm, time offset and biases, as
-// normal equations, so that an hour is a few megabytes. docs/maths.md, 15.3.
+// Two IMUs on one rigid body: information of each window of time on their rotation, lever arm, time offset
+// and biases, as normal equations, so that an hour needs a few megabytes. docs/maths.md, 15.3.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -15,18 +15,19 @@ namespace evical {
 
 struct MaintenanceOptions;
 
-// Order: rotation (about the reference's axes) [rad], translation [m], time offset [s], gyroscope's bias [rad/s],
-// accelerometer's bias [m/s^2]; the biases in the IMU's own frame, as what it shows more than the reference's.
+// Order: rotation (about the reference's axes) [rad], translation [m], time offset [s], gyroscope's bias
+// [rad/s], accelerometer's bias [m/s^2]; the biases in the IMU's own frame, as its excess over the
+// reference's measurement.
 inline constexpr Eigen::Index kPairNumbers = 13;
 using PairVector = Eigen::Matrix<double, kPairNumbers, 1>;
 using PairMatrix = Eigen::Matrix<double, kPairNumbers, kPairNumbers>;
 
-// Of one sensor, of unit weight: about the nominal pair.
+// Normal equations of one sensor, with unit weights, linearised at the nominal pair.
 struct PairEquations {
   PairMatrix information = PairMatrix::Zero();
   PairVector score = PairVector::Zero();
   double squares = 0.0;  // of residuals at the nominal pair
-  int count = 0;         // of numbers
+  int count = 0;         // number of residuals
 
   void add(const Eigen::Matrix<double, 3, kPairNumbers>& jacobian, const Eigen::Vector3d& residual);
 };
@@ -36,7 +37,7 @@ struct PairWindow {
   PairEquations gyroscope, accelerometer;
 };
 
-// What the windows are taken about.
+// Linearisation point of the windows.
 struct PairNominal {
   RigidTransform reference_from_imu;
   double time_offset_s = 0.0, time_offset_drift_ppm = 0.0, time_offset_at_s = 0.0;
@@ -44,15 +45,16 @@ struct PairNominal {
 
 class ImuPairs {
  public:
-  // The first IMU is the reference; intrinsics and biases are those of `imus`, poses and clocks those of `nominal`.
+  // The first IMU is the reference; intrinsics and biases are those of `imus`, poses and clocks those of
+  // `nominal`.
   ImuPairs(std::vector<ImuState> imus, std::vector<PairNominal> nominal, double smoothing_s,
            const MaintenanceOptions& options);
 
-  // On the IMU's own clock, in its order of time; IMUs alternately, as a log has them.
+  // On the IMU's own clock, in order of time; IMUs alternate, as in a log.
   void add(std::size_t imu, double time_s, const ImuSample& sample);
   void finish();
 
-  // By IMU; that of the reference is empty.
+  // By IMU; empty for the reference.
   const std::vector<std::vector<PairWindow>>& windows() const { return windows_; }
   double pointInterval_s() const { return interval_s_; }
 
@@ -70,7 +72,7 @@ class ImuPairs {
   bool started_ = false;
 };
 
-// Gaussians of smoothing_s, or of two samples of the slowest IMU.
+// Sigma of the smoothing: smoothing_s, or two samples of the slowest IMU.
 double smoothingFor(double slowest_rate_hz, const MaintenanceOptions& options);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// How logs of IMUs are looked at, and when something counts as changed.
+// Options of the maintenance with logs of IMUs, and thresholds of a change.
 #pragma once
 
 #include "core/base/option_struct.h"

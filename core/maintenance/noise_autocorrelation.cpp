@@ -8,8 +8,8 @@
 namespace evical {
 namespace {
 
-// What takes the place of 1 / n where a mean of n is compared with one of the m before it: of sums with the variances
-// n A - B both of these and what they share, over 1 / n + 1 / m.
+// Replaces 1 / n if a mean of n is compared with one of the m before it: for sums with variances n A - B, the
+// B terms of both and of their correlation, over 1 / n + 1 / m.
 double lostShare(double n, double m) {
   return (1.0 / (n * n) + 1.0 / (m * m) + 1.0 / (n * m)) / (1.0 / n + 1.0 / m);
 }
@@ -24,18 +24,19 @@ double NoiseAutocorrelation::ofMany() const {
   return std::max(1.0, settled);
 }
 
-// Chi squared over an estimated variance is Fisher's: its quantiles to first order of 1 / freedom.
+// Chi squared with an estimated variance follows Fisher's distribution: its quantiles to first order in 1 /
+// freedom.
 double NoiseAutocorrelation::limit(double white, Eigen::Index numbers, double wider) const {
   const double estimated = 1.0 - 1.0 / wider;
   const double further = (white + 2.0 - static_cast<double>(numbers)) / (2.0 * freedom);
   return wider * white * (1.0 + estimated * std::max(0.0, further));
 }
 
-// Least squares of the medians; of n windows there are a n-th as many that share none.
+// Weighted least squares fit to the medians; for n windows, one n-th of the values are independent.
 NoiseAutocorrelation ColourStatistics::colour() const {
   constexpr std::size_t kFewest = 12;
   constexpr double kShare =
-      0.2;  // of the windows: that medians scatter and what is extrapolated leave as freedom
+      0.2;  // of the windows: degrees of freedom, reduced by the scatter of medians and by extrapolation
   const double by_chance = chiSquaredLimit(0.5, dimension_);
   double weights = 0.0, x = 0.0, xx = 0.0, y = 0.0, xy = 0.0;
   for (std::size_t k = 0; k < kLengths.size(); ++k) {

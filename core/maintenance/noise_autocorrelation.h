@@ -1,5 +1,5 @@
-// By how much sums of noise are wider than those of white noise, where noise has a memory: a mount that shakes, an engine.
-// docs/maths.md, 15.4.
+// Excess variance of sums of correlated noise over white noise, for example with a mount that shakes, or an
+// engine. docs/maths.md, 15.4.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,20 +10,21 @@
 
 namespace evical {
 
-// Of sums over n windows: settled - lost / n, which noise of a short memory follows from its memory on.
+// Variance ratio for sums over n windows: settled - lost / n, which is valid beyond the noise's correlation
+// time.
 struct NoiseAutocorrelation {
   double settled = 1.0, lost = 0.0;
-  double freedom = 1e9;  // of the squares that it is made of
+  double freedom = 1e9;  // degrees of freedom of the estimate
 
   double of(std::size_t windows) const;
   double ofMany() const;
-  // What chi squared with so many numbers is above as rarely as white noise is above `white`: higher for the colour, and
-  // where there is one, for what is not known of it.
+  // Limit of chi squared with this many numbers, with the probability that white noise has for `white`:
+  // increased for the correlation of noise, and for the uncertainty of that correlation.
   double limit(double white, Eigen::Index numbers, double wider) const;
 };
 
-// How far n windows are from the `before` windows in front of them, in units that make it chi squared with its dimension if
-// noise is white and nothing changes.
+// Statistics of the differences between n windows and the `before` windows in front of them, in units that
+// make them chi squared with the given dimension for white noise without changes.
 class ColourStatistics {
  public:
   static constexpr std::array<std::size_t, 7> kLengths = {1, 2, 3, 4, 6, 8, 10};  // n
@@ -31,7 +32,7 @@ class ColourStatistics {
   ColourStatistics(int dimension, std::size_t before) : dimension_(dimension), before_(before) {}
 
   void add(std::size_t length_index, double statistic) { values_.at(length_index).push_back(statistic); }
-  // By medians, which a few changes do not move; white where there are too few to tell.
+  // From medians, which a few changes do not affect; white if there are too few values.
   NoiseAutocorrelation colour() const;
 
  private:

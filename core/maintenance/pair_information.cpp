@@ -11,7 +11,8 @@
 namespace evical {
 namespace {
 
-// Neighbouring points are three sigmas of the smoothing apart: they share exp(-9/4) of their noise on either side.
+// Neighbouring points are at a distance of three sigmas of the smoothing: they share exp(-9/4) of their noise
+// on either side.
 const double kShared = 1.0 + 2.0 * std::exp(-2.25);
 
 struct OwnFit {
@@ -21,7 +22,7 @@ struct OwnFit {
   double variance() const { return squares / freedom; }
 };
 
-// What is left when a window may choose all numbers for itself: noise, whatever else changes.
+// Residual of a window with all numbers estimated from it: noise, independent of changes.
 OwnFit ownFit(const PairEquations& equations) {
   const PairVector scale = equations.information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const PairMatrix scaled = scale.asDiagonal() * equations.information * scale.asDiagonal();
@@ -53,13 +54,14 @@ double typicalVariance(const std::vector<OwnFit>& fits) {
   return medianOf(std::move(variances)) / std::pow(1.0 - 2.0 / (9.0 * mean_freedom), 3);
 }
 
-// A window that is much more restless than others (a blow, a spike) counts for less.
+// Reduces the weight of a window with far more noise than others (a shock, a spike).
 double varianceOf(const OwnFit& fit, double typical, double restless) {
   return fit.freedom > 0 && fit.variance() > restless * typical ? fit.variance() : typical;
 }
 
-// Noise in the slope of the rate is in the lever's Jacobian and, times the lever, in the residual: its square looks
-// like information that the lever is none. Its expectation is taken off; where it is most of what there is, all.
+// Noise in the slope of the rate is in the lever's Jacobian and, times the lever, in the residual: its square
+// imitates information for a lever of zero. Its expectation is subtracted; if it dominates, all of the
+// information is removed.
 void takeNoiseOff(const PairModel& model, double rate_variance, double force_variance, const PairWindow& raw,
                   double mostly_noise, PairEquations& gyroscope, PairEquations& accelerometer) {
   const double by_slope = 0.5 / (model.smoothing_s * model.smoothing_s);

@@ -1,5 +1,5 @@
-// Windows of two IMUs weighed by what their own residuals show of noise, and freed of what noise in the signals looks
-// like information: docs/maths.md, 15.3.
+// Windows of two IMUs, weighted by the noise of their own residuals, and without the information that noise
+// imitates: docs/maths.md, 15.3.
 #pragma once
 
 #include "core/maintenance/pair_tracking.h"
@@ -9,7 +9,7 @@
 
 namespace evical {
 
-// Pair numbers and the offset's drift [s/s]: the state that is followed.
+// Pair numbers and the offset's drift [s/s]: the state of the filter.
 inline constexpr Eigen::Index kPairState = kPairNumbers + 1;
 using PairStateVector = Eigen::Matrix<double, kPairState, 1>;
 using PairStateMatrix = Eigen::Matrix<double, kPairState, kPairState>;

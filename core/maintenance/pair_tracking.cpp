@@ -47,7 +47,8 @@ PairStateVector walkOf(const PairModel& model, const MaintenanceOptions& options
 
 using PairColours = std::array<NoiseAutocorrelation, kPairBlocks.size()>;
 
-// Each few windows beside those just before them, which nothing but a change in their midst can part.
+// Compares groups of a few windows with those just before them: they differ only by noise, or by a change in
+// between.
 PairColours coloursOf(std::span<const WeighedWindow> windows, const PairModel& model,
                       const MaintenanceOptions& options) {
   constexpr std::size_t kBefore = 16;
@@ -114,7 +115,8 @@ class Tracker {
     return window == 0 ? options_.window_s : windows_[window].time_s - windows_[window - 1].time_s;
   }
 
-  // believed_[w] is before window w's data, believed_[w + 1] after them and the way to the next.
+  // believed_[w] is the state before window w's data; believed_[w + 1] is after them, propagated to the next
+  // window.
   void update(std::size_t w) {
     const Believed& before = believed_[w];
     const PairStateMatrix h = windows_[w].information;
@@ -131,7 +133,7 @@ class Tracker {
     believed_[w + 1] = after;
   }
 
-  // Data of windows from..end about the state before `from`.
+  // Data of windows from..end relative to the state before `from`.
   struct Evidence {
     PairStateMatrix information = PairStateMatrix::Zero(), covariance;
     PairStateVector score = PairStateVector::Zero();
@@ -149,12 +151,12 @@ class Tracker {
     const double length_s = windows_[end].time_s - windows_[from].time_s + options_.window_s;
     sum.covariance = before.covariance;
     sum.covariance.diagonal() += stability_ + length_s * walk_;
-    // An offset that drifts changes over the windows by what is not known of its drift.
+    // The uncertainty of an offset's drift increases its variance over the windows.
     sum.covariance(kOffset, kOffset) += length_s * length_s * before.covariance(kDrift, kDrift);
     return sum;
   }
 
-  // Of data of so many windows.
+  // Limits for data of this many windows.
   std::vector<double> limitsOf(std::size_t length) const {
     std::vector<double> limits = white_limits_;
     for (std::size_t b = 0; b < limits.size(); ++b)
@@ -187,14 +189,14 @@ class Tracker {
     return std::nullopt;
   }
 
-  // Waits until enough is known of what has changed; returns the last window that was used for that.
+  // Collects data until the change can be identified; returns the last window used for that.
   std::size_t takeStep(std::size_t noticed, Alarm alarm) {
     const auto wait = static_cast<std::size_t>(std::ceil(options_.naming_s / options_.window_s));
     const std::size_t end = std::min(std::max(noticed, alarm.from + wait - 1), windows_.size() - 1);
     for (std::size_t w = noticed + 1; w <= end; ++w) update(w);
     const std::size_t longest = kLengths.back() + wait;
     const std::size_t earliest = std::max(segment_ + settled_, end > longest ? end - longest : 0);
-    // Of two moments that explain as much, limits that grow with time would choose the later one.
+    // With limits that grow with time, the later of two moments with the same evidence would be chosen.
     Alarm best;
     for (std::size_t from = earliest; from <= end; ++from) {
       const Alarm here = strongest(from, end, white_limits_);
@@ -214,7 +216,7 @@ class Tracker {
     return end;
   }
 
-  // All that has changed is open again from there.
+  // Resets everything that has changed to its prior from there on.
   void beginSegment(std::size_t from, const std::vector<FoundChange>& found, std::size_t end) {
     const PairStateVector open = openVariances(options_);
     for (const FoundChange& each : found) {

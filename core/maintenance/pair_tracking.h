@@ -1,5 +1,5 @@
-// How two IMUs lie to each other over time, and when that changed: a filter over windows, and at each of them the
-// question whether anything has changed since one of those before. docs/maths.md, 15.4.
+// Relative pose and clock of two IMUs over time, and the times of changes: a filter over windows, with a test
+// at each of them for a change since one of the previous windows. docs/maths.md, 15.4.
 #pragma once
 
 #include "core/maintenance/imu_pairs.h"
@@ -18,7 +18,8 @@ namespace evical {
 inline constexpr std::array<StateBlock, 5> kPairBlocks = {{{0, 3}, {3, 3}, {6, 1}, {7, 3}, {10, 3}}};
 
 struct PairModel {
-  double gyroscope_walk = 0.0, accelerometer_walk = 0.0;  // of the two IMUs' biases together, per root second
+  double gyroscope_walk = 0.0,
+         accelerometer_walk = 0.0;  // of the sum of the two IMUs' biases, per root second
   double smoothing_s = 0.02;
   Eigen::Vector3d lever_m = Eigen::Vector3d::Zero();  // of the nominal pair
 };
@@ -34,21 +35,21 @@ struct PairStep {
 struct PairTrack {
   std::vector<double> times_s;  // ends of windows
   std::vector<PairVector> values, sigmas;
-  // Of the log until the first change, against the nominal pair, with nothing known before.
+  // From the log until the first change, relative to the nominal pair, without a prior.
   PairVector start = PairVector::Zero();
   PairMatrix start_covariance = PairMatrix::Zero(), start_information = PairMatrix::Zero();
   PairVector start_score = PairVector::Zero();
   std::vector<PairStep> steps;
   double gyroscope_noise_rad_s = 0.0, accelerometer_noise_m_s2 = 0.0;  // of a point
-  // By how much variances are larger than white noise makes them, by block: sigmas above hold it, information does not.
+  // Excess of variances over white noise, by block: included in the sigmas above, but not in the information.
   std::array<NoiseAutocorrelation, kPairBlocks.size()> colours;
 };
 
-// `alarm_probability`: that of a false alarm in all of this pair's tests together.
+// `alarm_probability`: probability of a false alarm in all tests of this pair.
 PairTrack trackPair(std::span<const PairWindow> windows, const PairModel& model, double alarm_probability,
                     const MaintenanceOptions& options);
 
-// What may change by itself, as variances.
+// Variances of tolerated changes.
 PairVector pairStability(const MaintenanceOptions& options);
 
 }  // namespace evical

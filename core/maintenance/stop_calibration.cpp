@@ -13,9 +13,9 @@
 namespace evical {
 namespace {
 
-// What nothing is known about: 0.1 g and 5 %.
+// Weak priors: 0.1 g and 5 %.
 constexpr double kOpenBias_m_s2 = 1.0, kOpenScale = 0.05;
-// Sizes that make biases and scales comparable.
+// Units that make biases and scales comparable.
 constexpr double kBiasUnit_m_s2 = 1e-2, kScaleUnit = 1e-3;
 constexpr std::array<const char*, kAccelerometerNumbers> kWords = {
     "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
@@ -39,8 +39,8 @@ StopMean meanOf(std::span<const MeansWindow> windows, const StopRange& range) {
   return mean;
 }
 
-// The scatter of windows about the mean of their stop, pooled over these stops. It is larger if neighbours are correlated,
-// because the variance of a mean then falls more slowly.
+// Scatter of windows about the mean of their stop, pooled over these stops. It is increased if neighbours are
+// correlated, since the variance of a mean then decreases more slowly.
 StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
                   std::span<const StopMean> means, const std::vector<std::size_t>& stops) {
   StopNoise noise;
@@ -62,12 +62,12 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
   freedom = std::max(freedom, 1.0);
   noise.rate /= freedom;
   noise.force /= freedom;
-  // Taking the mean off makes neighbours of white noise look opposed by 1 / windows.
+  // Subtracting the mean causes a correlation of -1 / windows between neighbours of white noise.
   const double bias = static_cast<double>(stops.size()) / std::max(pairs, 1.0);
   const auto inflate = [&](Eigen::Vector3d& variance, const Eigen::Vector3d& sum) {
     for (int axis = 0; axis < 3; ++axis) {
       const double alike = sum[axis] / std::max(pairs, 1.0) + bias * variance[axis];
-      // What one lag of a few hundred pairs shows by chance is not believed.
+      // Ignores a correlation that one lag of a few hundred pairs shows by chance.
       const double share = variance[axis] > 0.0 ? alike / variance[axis] : 0.0;
       if (share > 3.0 / std::sqrt(std::max(pairs, 1.0)))
         variance[axis] *= (1.0 + share) / (1.0 - std::min(share, 0.9));
@@ -80,7 +80,7 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
   return noise;
 }
 
-// The noise of each stop. The gyroscope shows which stops were held by hand; they have a noise of their own.
+// Noise of each stop. The gyroscope identifies hand-held stops; their noise is estimated separately.
 std::vector<StopNoise> noisesOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
                                 std::span<const StopMean> means) {
   constexpr double kByHand = 4.0;  // times the variance of the quietest stop
@@ -103,7 +103,7 @@ std::vector<StopNoise> noisesOf(std::span<const MeansWindow> windows, std::span<
   return noises;
 }
 
-// Zero when |M^-1 (f - b)| is gravity's norm; its row by the nine numbers, its sigma.
+// Residual of |M^-1 (f - b)| minus gravity's norm; its derivative by the nine numbers, and its sigma.
 struct StopResidual {
   double value = 0.0, sigma = 0.0;
   AccelerometerVector row;
@@ -171,7 +171,7 @@ void solve(StopCalibration& found, const std::vector<StopNoise>& noises, double 
   }
 }
 
-// How many of the numbers the stops determine, rather than what is held weakly.
+// Effective number of parameters that the stops determine, without the weak priors.
 double determined(const StopCalibration& found) {
   const AccelerometerMatrix held = found.covariance * openInformation().asDiagonal();
   return static_cast<double>(kAccelerometerNumbers) - held.trace();
@@ -190,11 +190,11 @@ Misfit misfitOf(const StopCalibration& found) {
   }
   const double freedom = count - determined(found);
   if (freedom < 0.9) return {};
-  // The scatter between stops shows how well they measure gravity: hands pull a little.
+  // The scatter between stops includes small accelerations by hands.
   return {std::sqrt(sum / freedom), std::max(sum / freedom, 1.0)};
 }
 
-// A ride at a steady pull looks like a stop. One that the others contradict goes, while most stay.
+// Constant acceleration in a ride looks like a stop. Drops stops that the others contradict, up to a limit.
 void dropOutliers(StopCalibration& found, const std::vector<StopNoise>& noises, double gravity_m_s2,
                   const MaintenanceOptions& options) {
   const auto most = static_cast<int>(options.left_out_stops * static_cast<double>(found.stops.size()));
@@ -229,12 +229,12 @@ void nameWeakest(StopCalibration& found) {
             [&](Eigen::Index a, Eigen::Index b) { return std::abs(axis[a]) > std::abs(axis[b]); });
   for (const Eigen::Index i : order) {
     const bool against = axis[i] * axis[order.front()] < 0.0;
-    found.weakest += fmt::format("{}{}{}", found.weakest.empty() ? "" : " with ", against ? "less " : "",
+    found.weakest += fmt::format("{}{}{}", found.weakest.empty() ? "" : " and ", against ? "opposite " : "",
                                  kWords[static_cast<std::size_t>(i)]);
   }
 }
 
-// Stops are as different as the bias walks, whatever a single one's noise.
+// Stops differ by the random walk of the bias, in addition to their noise.
 void setGyroscopeBias(StopCalibration& found, const std::vector<StopNoise>& noises) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum, by_noise = sum;
   double windows = 0.0;
@@ -268,7 +268,7 @@ StopCalibration calibrate(std::span<const MeansWindow> windows, std::span<const 
   const Misfit misfit = misfitOf(found);
   found.misfit = misfit.rms;
   const NormalEquations at_before = equationsAt(found, noises, found.before, gravity_m_s2);
-  // Stops that scatter more than their noise widen all sigmas.
+  // A scatter of stops that exceeds their noise increases all sigmas.
   found.information = at_before.information / misfit.inflation;
   found.score = at_before.score / misfit.inflation;
   found.covariance *= misfit.inflation;

@@ -15,8 +15,8 @@ bool hasBoth(const MeansWindow& window) {
   return window.samples >= kFewest && window.forces >= kFewest;
 }
 
-// Averages over the windows within half a second, so that one disturbed quarter of a second does not end a stop. Windows
-// with too few samples, and those on the other side of a gap, do not count.
+// Averages over the windows within half a second, so that one disturbed quarter of a second does not end a
+// stop. Without windows with too few samples, and those on the other side of a gap.
 std::vector<double> smoothed(std::span<const MeansWindow> windows, double MeansWindow::*variance) {
   constexpr std::ptrdiff_t kBeside = 2;
   std::vector<double> means;
@@ -49,11 +49,12 @@ double lowQuantile(std::span<const MeansWindow> windows, const std::vector<doubl
   return *place;
 }
 
-// Finds the windows in which the IMU is still. The accelerometer decides, relative to the log's quietest tenth. A hand
-// rotates an IMU ten times as much as a table does, so the gyroscope has only an absolute limit.
+// Finds the windows in which the IMU is at rest. The accelerometer decides, relative to the log's quietest
+// tenth. A hand rotates an IMU ten times as much as a table does, so the gyroscope only has an absolute
+// limit.
 std::vector<bool> stillWindows(std::span<const MeansWindow> windows, double above_quietest,
                                const MaintenanceOptions& options) {
-  // Of quantised numbers a window may have no variance at all.
+  // Quantised values may have zero variance in a window.
   constexpr double kLeast = 1e-10;
   const std::vector<double> forces = smoothed(windows, &MeansWindow::force_variance),
                             rates = smoothed(windows, &MeansWindow::rate_variance);
@@ -84,7 +85,8 @@ struct RunMeans {
   }
 };
 
-// Even turning is smooth, too: a stop's rate is the bias, small and nearly the same in all.
+// Removes constant rotation, which has low variance, too: a stop's rate is the bias, small and nearly equal
+// in all stops.
 void dropTurning(std::span<const MeansWindow> windows, double still_rate, std::vector<StopRange>& stops) {
   std::vector<Eigen::Vector3d> rates;
   for (const StopRange& stop : stops) {
@@ -144,7 +146,7 @@ void WindowMeans::finish() {
 
 std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
                                  const MaintenanceOptions& options) {
-  constexpr double kWithinStop = 4.0;  // times the allowed difference of whole stops: hands sway
+  constexpr double kWithinStop = 4.0;  // relative to the allowed difference between stops: hands sway
   const std::vector<bool> still = stillWindows(windows, above_quietest, options);
   const double still_rate = options.still_rate_deg_s * kRadPerDeg;
   std::vector<StopRange> stops;
@@ -168,7 +170,7 @@ std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double ab
 
 double rateScale(std::span<const MeansWindow> windows) {
   constexpr double kAlike = 0.15;
-  constexpr double kFewest_rad = 0.3;  // that gravity turns in all, over still and slow moments
+  constexpr double kFewest_rad = 0.3;  // smallest total rotation of gravity, while still or slow
   double turned = 0.0, said = 0.0, changed = 0.0, way = 0.0;
   for (std::size_t i = 1; i + 1 < windows.size(); ++i) {
     const double span_s = windows[i + 1].time_s - windows[i - 1].time_s;
@@ -180,7 +182,7 @@ double rateScale(std::span<const MeansWindow> windows) {
     changed += change.squaredNorm();
     way += change.norm() / std::max(windows[i].force_m_s2.norm(), 1e-6);
   }
-  // On rough ground forces change for other reasons.
+  // On rough ground, forces change for other reasons.
   const bool alike = turned > kAlike * std::sqrt(said * changed);
   return way > kFewest_rad && said > 0.0 && alike ? turned / said : 0.0;
 }

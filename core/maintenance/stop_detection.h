@@ -1,4 +1,4 @@
-// Intervals over which an IMU stands still, found by its own measurements.
+// Detection of intervals in which an IMU is at rest, from its own measurements.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -13,7 +13,7 @@ namespace evical {
 
 struct MaintenanceOptions;
 
-// Means over a quarter of a second: all that stops need, so that memory grows by a megabyte an hour.
+// Means over a quarter of a second: sufficient for stops, so that memory grows by a megabyte per hour.
 struct MeansWindow {
   double time_s = 0.0;          // start
   int samples = 0, forces = 0;  // of the gyroscope, of the accelerometer
@@ -26,7 +26,7 @@ class WindowMeans {
   static constexpr double kLength_s = 0.25;
 
   void add(double time_s, const ImuSample& sample);
-  void finish();  // nothing may be added any more
+  void finish();  // ends the input
 
   const std::vector<MeansWindow>& windows() const { return windows_; }
 
@@ -35,21 +35,22 @@ class WindowMeans {
 
   std::vector<MeansWindow> windows_;
   bool open_ = false;
-  MeansWindow current_;  // of sums, about the first sample's values
+  MeansWindow current_;  // sums, relative to the first sample's values
   Eigen::Vector3d rate_origin_, force_origin_;
 };
 
-// Indices of a stop's windows, both inclusive; those in which it begins and ends are left out.
+// Indices of a stop's windows, both inclusive, without those in which it begins and ends.
 struct StopRange {
   std::size_t first = 0, last = 0;
   std::size_t count() const { return last - first + 1; }
 };
-// `above_quietest`: a window counts as still up to this multiple of the accelerometer's variance in the log's quietest tenth.
+// `above_quietest`: a window counts as still up to this multiple of the accelerometer's variance in the log's
+// quietest tenth.
 std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double above_quietest,
                                  const MaintenanceOptions& options);
 
-// How gravity turns in the accelerometer against how the gyroscope says that it turns: near 1, near 0.017 where rates
-// are in deg/s and called rad/s. 0 where too little turns.
+// Ratio of gravity's rotation in the accelerometer to the gyroscope's: near 1, or near 0.017 if rates are in
+// deg/s instead of rad/s. 0 if there is too little rotation.
 double rateScale(std::span<const MeansWindow> windows);
 
 }  // namespace evical

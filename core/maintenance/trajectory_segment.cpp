@@ -14,7 +14,8 @@
 
 namespace evical {
 
-// The rows of a piece, axis by axis; and the covariance of an axis, of positions' noise and the accelerometer's.
+// The rows of a segment, axis by axis; and the covariance of an axis, from noise of positions and of the
+// accelerometer.
 struct LagRows {
   std::array<Eigen::MatrixXd, 3> jacobian;
   std::array<Eigen::VectorXd, 3> measured;
@@ -46,12 +47,13 @@ struct LagRows {
 
 namespace {
 
-constexpr Eigen::Index kUnknowns = kAccelerometerNumbers + 6;  // gravity and lever behind
+constexpr Eigen::Index kUnknowns = kAccelerometerNumbers + 6;  // followed by gravity and lever
 constexpr Eigen::Index kGravity = kAccelerometerNumbers, kLever = kAccelerometerNumbers + 3;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-// What accelerations are linear in: force = A f - c, A = M^-1, c = A b. In the order of kMappingEntries behind c.
+// Parameters in which accelerations are linear: force = A f - c, A = M^-1, c = A b. c first, then
+// kMappingEntries.
 AccelerometerVector linearFrom(const AccelerometerVector& numbers) {
   ImuState imu;
   setAccelerometerNumbers(numbers, imu);
@@ -78,7 +80,7 @@ AccelerometerMatrix derivative(const Function& function, const AccelerometerVect
   return jacobian;
 }
 
-// Of A f - c by c and the entries of A.
+// Derivative of A f - c by c and the entries of A.
 Eigen::Matrix<double, 3, kAccelerometerNumbers> forceRow(const Eigen::Vector3d& force) {
   Eigen::Matrix<double, 3, kAccelerometerNumbers> row =
       Eigen::Matrix<double, 3, kAccelerometerNumbers>::Zero();
@@ -94,7 +96,7 @@ struct LagSolution {
   double squares = 0.0, freedom = 0.0;
 };
 
-// As information: a bias of 1 m/s^2, scales of 10 %.
+// Weak prior as information: sigmas of 1 m/s^2 for the bias and 10 % for scales.
 AccelerometerVector weaklyHeld() {
   constexpr double kOpenBias_m_s2 = 1.0, kOpenScale = 0.1;
   AccelerometerVector information;
@@ -103,7 +105,7 @@ AccelerometerVector weaklyHeld() {
   return information;
 }
 
-// That, and what is as good as known: gravity's norm.
+// Adds the weak prior, and the known norm of gravity.
 void hold(const Unknowns& about, double gravity_m_s2, UnknownsMatrix& whole, Unknowns& right) {
   constexpr double kOpenLever_m = 1.0, kNorm_m_s2 = 1e-3;
   whole.diagonal().head<kAccelerometerNumbers>() += weaklyHeld();
@@ -142,7 +144,7 @@ LagSolution solve(const LagRows& rows, const Unknowns& about, double position_no
   return found;
 }
 
-// Positions' noise is that which leaves as much as there should be.
+// The noise of positions is estimated from the residuals.
 LagEstimate estimate(const LagRows& rows, const AccelerometerVector& old_numbers, double gravity_m_s2,
                      double density) {
   Unknowns about = Unknowns::Zero();
@@ -165,7 +167,7 @@ LagEstimate estimate(const LagRows& rows, const AccelerometerVector& old_numbers
       covariance.topLeftCorner<kAccelerometerNumbers, kAccelerometerNumbers>();
   const AccelerometerMatrix to_numbers = derivative(numbersFrom, linear),
                             from_numbers = derivative(linearFrom, old_numbers);
-  // Gravity and lever are each piece's own; what is weakly held is not taken for information.
+  // Gravity and lever are separate for each segment; the weak prior is removed from the information.
   AccelerometerMatrix information = of_linear.inverse();
   information.diagonal() -= weaklyHeld();
   LagEstimate lag;
@@ -193,7 +195,7 @@ TrajectorySegment::TrajectorySegment(std::vector<TimedPose> poses, const ImuStat
   to_ = nextPose(0);
 }
 
-// The first that is far enough; behind the end where there is none, or where poses are missing.
+// The first pose at the required interval; beyond the end if there is none, or if poses are missing.
 std::size_t TrajectorySegment::nextPose(std::size_t from) const {
   std::size_t next = from + 1;
   while (next < poses_.size() && poses_[next].time_s - poses_[from].time_s < 0.999 * options_.pose_interval_s)
@@ -210,7 +212,7 @@ void TrajectorySegment::add(double time_s, const ImuSample& sample) {
     close();
     from_ = to_;
     to_ = nextPose(from_);
-    // The last two reach into the next interval.
+    // The last two samples are needed for the next interval.
     const std::size_t keep = std::min<std::size_t>(samples_.size(), 2);
     samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(keep));
     times_s_.erase(times_s_.begin(), times_s_.end() - static_cast<std::ptrdiff_t>(keep));
@@ -219,9 +221,9 @@ void TrajectorySegment::add(double time_s, const ImuSample& sample) {
 
 bool TrajectorySegment::isWhole() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
-  constexpr double kGap = 0.3;  // of the interval of poses
+  constexpr double kGap = 0.3;  // relative to the interval of poses
   if (samples_.size() < 3 || times_s_.front() > from.time_s || times_s_.back() < to.time_s) return false;
-  // A sensor with samples of its own has gaps of its own.
+  // Sensors with separate samples have separate gaps.
   double rate_s = times_s_.front(), force_s = times_s_.front(), longest_s = 0.0;
   for (std::size_t k = 1; k < times_s_.size(); ++k) {
     longest_s = std::max({longest_s, times_s_[k] - rate_s, times_s_[k] - force_s});
@@ -232,7 +234,8 @@ bool TrajectorySegment::isWhole() const {
   return to.time_s - from.time_s < options_.trajectory_gap * options_.pose_interval_s;
 }
 
-// At the samples between two poses, and at the poses' own times; turned from the first pose by the gyroscope.
+// Nodes at the samples between two poses, and at the poses' times; rotated from the first pose by the
+// gyroscope.
 std::vector<TrajectorySegment::Node> TrajectorySegment::nodes() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
   const Eigen::Matrix3d rates = before_.gyroscopeMatrix().inverse();
@@ -258,7 +261,7 @@ std::vector<TrajectorySegment::Node> TrajectorySegment::nodes() const {
   return all;
 }
 
-// Trapezoids; what the gyroscope misses the second pose by is spread evenly.
+// Trapezoidal integration; the gyroscope's error at the second pose is distributed evenly.
 TrajectorySegment::Interval TrajectorySegment::integrated() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
   const std::vector<Node> all = nodes();
@@ -327,7 +330,7 @@ LagRows TrajectorySegment::rows() const {
 }
 
 void TrajectorySegment::endLag() {
-  constexpr double kShortest = 0.5;  // of a lag
+  constexpr double kShortest = 0.5;  // relative to a lag
   constexpr std::size_t kFewest = 10;
   if (intervals_.size() >= kFewest &&
       intervals_.back().from_s - intervals_.front().from_s >= kShortest * options_.lag_s) {
@@ -351,7 +354,7 @@ LagSum sumOfLags(const std::vector<LagEstimate>& lags, const AccelerometerVector
   sum.covariance = solver.solve(AccelerometerMatrix::Identity());
   const AccelerometerVector change = solver.solve(sum.score);
   sum.now = before + change;
-  // Errors of a trajectory last; pieces that differ by more than chance show them.
+  // Errors of a trajectory are correlated in time; differences between segments beyond chance reveal them.
   double squares = 0.0;
   for (const LagEstimate& lag : lags) {
     const AccelerometerVector off = lag.now - sum.now;

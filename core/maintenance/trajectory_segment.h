@@ -1,6 +1,6 @@
-// An accelerometer against a trajectory: positions' second differences are what specific force says of them, so that
-// velocities never appear. Pieces of half a minute or so, one by one. docs/maths.md, 15.5. The idea of a fixed lag in
-// which velocities are eliminated is that of Nemiroff et al. (2023).
+// Comparison of an accelerometer with a trajectory: second differences of positions are related to specific
+// forces, without velocities. In segments of half a minute or so. docs/maths.md, 15.5. The idea of a fixed
+// lag in which velocities are eliminated is from Nemiroff et al. (2023).
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -23,18 +23,18 @@ struct TimedPose {
   Eigen::Quaterniond world_from_imu;
 };
 
-// What one piece says.
+// Estimate from one segment.
 struct LagEstimate {
   double from_s = 0.0, to_s = 0.0;
   AccelerometerVector now;
-  AccelerometerMatrix covariance;   // of `now`, from this piece alone
+  AccelerometerMatrix covariance;   // of `now`, from this segment only
   AccelerometerMatrix information;  // at the old numbers
   AccelerometerVector score;
-  Eigen::Vector3d gravity_m_s2, lever_m, lever_sigma_m;  // the lever: from the poses' origin to the IMU
+  Eigen::Vector3d gravity_m_s2, lever_m, lever_sigma_m;  // lever: from the poses' origin to the IMU
   double position_noise_m = 0.0;
 };
 
-struct LagRows;  // of one piece
+struct LagRows;  // of one segment
 
 class TrajectorySegment {
  public:
@@ -48,7 +48,7 @@ class TrajectorySegment {
   const std::vector<LagEstimate>& lags() const { return lags_; }
 
  private:
-  // Between two poses: integrals of the turned forces by the numbers that they are linear in.
+  // Interval between two poses: integrals of the rotated forces, as derivatives by their linear parameters.
   struct Interval {
     double from_s = 0.0, length_s = 0.0;
     Eigen::Matrix<double, 3, kAccelerometerNumbers> velocity, position;
@@ -81,7 +81,8 @@ class TrajectorySegment {
   std::vector<LagEstimate> lags_;
 };
 
-// All pieces together, at the old numbers; wider where pieces differ by more than their sigmas let them.
+// Sum of all segments, at the old numbers; the variance is increased if segments differ by more than their
+// sigmas.
 struct LagSum {
   AccelerometerMatrix information = AccelerometerMatrix::Zero(), covariance = AccelerometerMatrix::Zero();
   AccelerometerVector score = AccelerometerVector::Zero(), now = AccelerometerVector::Zero();
@@ -89,10 +90,10 @@ struct LagSum {
 };
 LagSum sumOfLags(const std::vector<LagEstimate>& lags, const AccelerometerVector& before);
 
-// How poses turn against a gyroscope.
+// Agreement of the rotation of poses with a gyroscope.
 struct TurnAgreement {
-  Eigen::Quaterniond imu_from_body = Eigen::Quaterniond::Identity();  // that explains it best
-  double correlation = 0.0;                                           // of rates, so explained; 1: fully
+  Eigen::Quaterniond imu_from_body = Eigen::Quaterniond::Identity();  // the best rotation
+  double correlation = 0.0;  // of rates after this rotation; 1: complete agreement
 };
 // Rates by pairs, of the trajectory's body and of the gyroscope.
 TurnAgreement turnAgreement(const std::vector<Eigen::Vector3d>& of_body,

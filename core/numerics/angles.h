@@ -1,4 +1,4 @@
-// Radians everywhere except in text and files for people, who get degrees.
+// Degrees and radians: radians everywhere except in texts and files for users, which have degrees.
 #pragma once
 
 namespace evical {

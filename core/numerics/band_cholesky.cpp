@@ -5,8 +5,9 @@
 namespace evical {
 namespace {
 
-constexpr double kNothingLeft = 1e-13;  // of the diagonal before elimination: rounding, not information
-constexpr double kHugePivot = 1e100;    // makes the direction's solution 0
+constexpr double kNothingLeft =
+    1e-13;  // relative to the diagonal before elimination: rounding, not information
+constexpr double kHugePivot = 1e100;  // makes the direction's solution 0
 
 double dotOf(const double* a, const double* b, Eigen::Index begin, Eigen::Index end) {
   using Map = Eigen::Map<const Eigen::VectorXd>;

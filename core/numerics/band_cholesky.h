@@ -1,5 +1,5 @@
-// Cholesky factor of a symmetric positive definite band matrix, in linear time: what a spline's information
-// matrix is, with the control points in order of time.
+// Cholesky factor of a symmetric positive definite band matrix, in linear time. The information matrix of a
+// spline has this form, with the control points in order of time.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ class BandCholesky {
   Eigen::Index size() const { return size_; }
   Eigen::Index halfBandwidth() const { return half_bandwidth_; }
   void setZero() { std::fill(band_.begin(), band_.end(), 0.0); }
-  // Its entry at `col` is [col], for firstOf(row) <= col <= row.
+  // Pointer to a row, whose entry at `col` is [col], for firstOf(row) <= col <= row.
   double* row(Eigen::Index row) { return band_.data() + offsetOf(row); }
   const double* row(Eigen::Index row) const { return band_.data() + offsetOf(row); }
   Eigen::Index firstOf(Eigen::Index row) const { return std::max<Eigen::Index>(0, row - half_bandwidth_); }
@@ -27,20 +27,20 @@ class BandCholesky {
   // Adds scale * weights weights^T at (first, first).
   void addOuter(Eigen::Index first, const Eigen::Ref<const Eigen::VectorXd>& weights, double scale);
 
-  // In place; afterwards nothing may be added. False if directions have no information (pivots that cancel to
-  // nothing): these get a solution of 0 instead of infinity.
+  // In place; do not add anything afterwards. False if directions have no information (pivots that cancel):
+  // their solution is 0 instead of infinite.
   bool factorise();
-  // One row, those before it being factors already, with `added` to its diagonal. No information is less than
-  // `least_share` of the diagonal.
+  // Factors one row after the rows before it, with `added` on its diagonal. The pivot has no information if
+  // it is less than `least_share` of the diagonal.
   bool factoriseRow(Eigen::Index row, double added, double least_share);
   bool factoriseRow(Eigen::Index row);
 
-  // Overwrites `right` (size x any) with the solution.
+  // Replaces `right` (size x any) by the solution.
   void solveInPlace(Eigen::Ref<Eigen::MatrixXd> right) const;
-  // The same of many columns, row by row.
+  // The same for many columns, row by row.
   void solveInPlace(RowMajorMatrix& right) const;
 
-  // L^-T times `white`: with independent unit variances in, values with the inverse's covariance.
+  // L^-T times `white`: independent values of unit variance become values with the inverse as covariance.
   void correlateInPlace(Eigen::VectorXd& white) const;
 
  private:

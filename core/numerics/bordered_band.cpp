@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-// Rows of L^-1 times a matrix, as many as the next ones need, and what they sum up to.
+// Rows of L^-1 times a matrix, as many as the next rows need, and the sum of their outer products.
 class EliminatedRows {
  public:
   EliminatedRows(Index half_bandwidth, Index columns)
@@ -17,7 +17,7 @@ class EliminatedRows {
         rows_(BorderedBand::RowMajorMatrix::Zero(half_bandwidth + kPanel, columns)),
         products_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
-  // The next row: to be filled with the matrix's, then eliminated by the factor's.
+  // The next row: set it to the matrix's row, then eliminate it with the factor's.
   double* next() { return row(0); }
 
   void eliminate(const BandCholesky& factor, Index index) {
@@ -34,7 +34,7 @@ class EliminatedRows {
     if (++count_ == kPanel) sumUp();
   }
 
-  // The product with their own transpose; the lower triangle.
+  // Product with its own transpose; the lower triangle.
   const Eigen::MatrixXd& products() {
     sumUp();
     return products_;
@@ -56,7 +56,7 @@ class EliminatedRows {
   }
 
   Index half_bandwidth_, count_ = 0;
-  BorderedBand::RowMajorMatrix rows_;  // the last ones of the panel before, then this one's
+  BorderedBand::RowMajorMatrix rows_;  // the last rows of the panel before, then those of this panel
   Eigen::MatrixXd products_;
 };
 

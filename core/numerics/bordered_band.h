@@ -1,6 +1,7 @@
-// Symmetric matrices that are a band with a border, [ A  B ; B^T  C ]: the normal equations of a trajectory's control
-// points in order of time, A, and of the few dozen numbers, C, that all of them have to do with. Solved in linear time:
-// A's Cholesky factor L row by row, and C - (L^-1 B)^T L^-1 B along with it, without L^-1 B ever being kept.
+// Symmetric matrices that are a band with a border, [ A  B ; B^T  C ]: the normal equations of a trajectory's
+// control points in order of time, A, and of a few dozen parameters, C, that depend on all of them. Solved in
+// linear time: A's Cholesky factor L row by row, with C - (L^-1 B)^T L^-1 B at the same time, without storing
+// L^-1 B.
 #pragma once
 
 #include "core/numerics/band_cholesky.h"
@@ -28,14 +29,14 @@ class BorderedBand {
   BandCholesky& band() { return band_; }  // A, not factored
   const BandCholesky& band() const { return band_; }
   RowMajorMatrix& mixed() { return mixed_; }     // B
-  Eigen::MatrixXd& corner() { return corner_; }  // C; the lower triangle counts
+  Eigen::MatrixXd& corner() { return corner_; }  // C; the lower triangle is used
 
   Eigen::VectorXd diagonal() const;
 
-  // x with (this + diag(added)) x = right; nothing where that matrix is not positive definite.
+  // x with (this + diag(added)) x = right; empty if that matrix is not positive definite.
   std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right) const;
 
-  // C - B^T A^-1 B; directions without information in A take nothing.
+  // C - B^T A^-1 B; directions without information in A are left out.
   Eigen::MatrixXd schurComplement() const;
 
  private:

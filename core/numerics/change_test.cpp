@@ -13,8 +13,8 @@
 namespace evical {
 namespace {
 
-constexpr double kNoInformation = 1e-9;  // of what is known already
-constexpr double kFreed = 1e8;           // times as uncertain as before
+constexpr double kNoInformation = 1e-9;  // relative to the prior information
+constexpr double kFreed = 1e8;           // factor on the variance
 
 void setFree(const StateBlock& block, Eigen::MatrixXd& covariance) {
   for (Eigen::Index i = block.first; i < block.first + block.size; ++i)
@@ -23,8 +23,8 @@ void setFree(const StateBlock& block, Eigen::MatrixXd& covariance) {
 
 }  // namespace
 
-// A step s that data have seen: v ~ N(H s, H + H P H), so that its weight is H (H + H P H)^-1 H, which is
-// P^-1 - P^-1 (P^-1 + H)^-1 P^-1 also where H is singular.
+// A step s in the data: v ~ N(H s, H + H P H), so that its weight is H (H + H P H)^-1 H, which is
+// P^-1 - P^-1 (P^-1 + H)^-1 P^-1 even if H is singular.
 ChangeDetector::ChangeDetector(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
                                const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
@@ -107,7 +107,7 @@ std::vector<FoundChange> findChanges(
 std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
                                      const Eigen::MatrixXd& covariance, std::span<const StateBlock> blocks,
                                      std::span<const double> limits) {
-  std::vector<BlockChange> changes(blocks.size());  // as tested last, before they were left free
+  std::vector<BlockChange> changes(blocks.size());  // latest test of each, before it was freed
   std::vector<FoundChange> found = findChanges(blocks.size(), [&](const std::vector<bool>& free) {
     Eigen::MatrixXd known = covariance;
     for (std::size_t b = 0; b < blocks.size(); ++b)

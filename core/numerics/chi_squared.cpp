@@ -6,9 +6,9 @@
 namespace evical {
 namespace {
 
-constexpr int kHalvings = 200;  // to the last bit
+constexpr int kHalvings = 200;  // to the precision of double
 
-// The place at which a falling function has this value.
+// Argument at which a falling function has this value.
 template <class Falling>
 double whereFallingTo(double wanted, double low, double high, const Falling& value) {
   for (int k = 0; k < kHalvings; ++k) {
@@ -20,7 +20,7 @@ double whereFallingTo(double wanted, double low, double high, const Falling& val
 
 }  // namespace
 
-// From one count to the next but one by parts: Q(x; n + 2) = Q(x; n) + (x/2)^(n/2) exp(-x/2) / Gamma(n/2 + 1).
+// Recursion over every other count, by parts: Q(x; n + 2) = Q(x; n) + (x/2)^(n/2) exp(-x/2) / Gamma(n/2 + 1).
 double chiSquaredTail(double value, int count) {
   if (!(value > 0.0)) return 1.0;
   const double half = 0.5 * value;

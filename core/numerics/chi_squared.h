@@ -1,4 +1,4 @@
-// Chance limits of sums of squares.
+// Quantiles of sums of squares.
 #pragma once
 
 namespace evical {
@@ -8,7 +8,7 @@ namespace evical {
 double chiSquaredTail(double value, int count);
 double chiSquaredLimit(double probability, int count);
 
-// The value that a standard normal number is above with this probability.
+// The value that a standard normal number exceeds with this probability.
 double normalLimit(double probability);
 
 }  // namespace evical

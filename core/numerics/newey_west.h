@@ -1,5 +1,5 @@
 // Covariance of a sum of scores that are correlated with their neighbours in time (W. Newey, K. West,
-// Econometrica 1987): products of neighbours count with weights that fall to zero at a bound.
+// Econometrica 1987): products of neighbours have weights that fall to zero at a bound.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,8 +35,8 @@ ScoreMatrix<kSize> neweyWestByLag(const std::vector<ScoreVector<kSize>>& scores,
   return sum;
 }
 
-// Scatter of scores at any times: weights fall to zero at `bound_s`; a bound of zero leaves those of one
-// time.
+// Scatter of scores at any times: weights fall to zero at `bound_s`; with a bound of zero only products of
+// simultaneous scores remain.
 template <int kSize>
 ScoreMatrix<kSize> neweyWestByTime(std::span<const double> times_s,
                                    const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,

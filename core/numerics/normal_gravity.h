@@ -1,4 +1,4 @@
-// Gravity's norm at a place on earth.
+// Norm of gravity at a place on earth.
 #pragma once
 
 #include "core/numerics/angles.h"
@@ -7,8 +7,8 @@
 
 namespace evical {
 
-// Normal gravity on the ellipsoid of WGS 84 (Somigliana's formula), less its fall with height; real gravity is
-// within kGravityAnomaly_m_s2 of it nearly everywhere.
+// Normal gravity on the ellipsoid of WGS 84 (Somigliana's formula), minus its decrease with height; real
+// gravity is within kGravityAnomaly_m_s2 of it nearly everywhere.
 inline double normalGravity_m_s2(double latitude_deg, double height_m) {
   constexpr double kAtEquator_m_s2 = 9.7803253359, kGrowth = 0.00193185265241;
   constexpr double kEccentricity2 = 0.00669437999014, kFall_per_s2 = 3.086e-6;

@@ -1,4 +1,4 @@
-// Typical values and weights that a few wild errors don't move.
+// Robust typical values and weights.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,7 @@
 
 namespace evical {
 
-// The element in the middle, of an even count the larger of the two there. Reorders [first, last), which must
-// not be empty.
+// The median; the upper one for an even count. Reorders [first, last), which must not be empty.
 template <class Iterator>
 auto medianOf(Iterator first, Iterator last) {
   const Iterator middle = first + (last - first) / 2;
@@ -19,24 +18,24 @@ auto medianOf(Iterator first, Iterator last) {
   return *middle;
 }
 
-// The same of a list that the caller has no further use for; `of_none` if it is empty.
+// The same for a list that may be reordered; `of_none` if it is empty.
 template <class T>
 T medianOf(std::vector<T> values, T of_none = T{}) {
   return values.empty() ? of_none : medianOf(values.begin(), values.end());
 }
 
-// A normal number's sigma by the median of its errors' sizes.
+// Sigma of a normal distribution from the median of absolute errors.
 inline constexpr double kMadToSigma = 1.4826;
 
-// Cauchy's weight of an error whose square, in units of the scale, this is.
+// Cauchy weight of an error; the argument is its square in units of the squared scale.
 inline double cauchyWeight(double squared_error) {
   return 1.0 / (1.0 + squared_error);
 }
 
 inline constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 
-// Ratio of the errors of points to their stated sigmas, by the median of their squared norms in units of
-// these. 1 without any.
+// Ratio of the errors of points to their stated sigmas, from the median of their normalised squared norms. 1
+// if there are none.
 inline double scaleOfPoints(std::vector<double> squared_errors) {
   return squared_errors.empty() ? 1.0 : std::sqrt(medianOf(std::move(squared_errors)) / kMedianOfChi2With2);
 }

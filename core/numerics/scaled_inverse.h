@@ -1,4 +1,5 @@
-// Symmetric matrices whose columns have units of their own: factored with a diagonal of 1.
+// Inverse of symmetric matrices whose columns have different units: scaled to a unit diagonal before
+// factorisation.
 #pragma once
 
 #include <Eigen/Cholesky>

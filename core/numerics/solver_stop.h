@@ -1,4 +1,4 @@
-// Ends a solve when its run is asked to stop: what it had by then is of no use, and who started it throws
+// Ends a solve on a request to stop the run: its intermediate result must not be used, and the caller throws
 // Cancelled (RunContext::throwIfStopped).
 #pragma once
 

@@ -1,5 +1,5 @@
 // Noise of a signal over frequency and over time: P. Welch, The use of fast Fourier transform for the
-// estimation of power spectra, 1967. Samples count as even in time.
+// estimation of power spectra, 1967. Samples are assumed to be equidistant in time.
 #pragma once
 
 #include <span>
@@ -13,8 +13,8 @@ struct NoiseSpectrum {
   std::vector<double> density;       // the samples' unit per sqrt(Hz)
 };
 
-// Mean over segments that overlap by half, each without its mean and tapered by Hann's window. Empty of fewer than
-// `segment` samples; `segment` is even.
+// Mean over segments that overlap by half, each without its mean and tapered by Hann's window. Empty for
+// fewer than `segment` samples; `segment` is even.
 NoiseSpectrum noiseSpectrum(std::span<const double> samples, double rate_hz, int segment);
 
 // Autocorrelation for lags 0, 1, ... `lags`, without the mean; 1 at lag 0. Zeros if all samples are the same.

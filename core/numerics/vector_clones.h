@@ -1,8 +1,8 @@
-// For functions that are mostly one loop over numbers: compiled a second time for processors of the last ten years, and
-// chosen when the program starts. Sums then differ from those of older processors in the last digit.
+// Function attribute for tight numerical loops: a second version is compiled for processors of the last ten
+// years, and selected at program start. Sums of the two versions differ in the last digit.
 #pragma once
 
-// Sanitizers are not ready yet when that choice is made.
+// Sanitizers are not ready at the time of that selection.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define EVICAL_VECTOR_CLONES __attribute__((target_clones("arch=haswell", "default")))

@@ -1,6 +1,6 @@
-// Batch optimisation of everything at once (docs/maths.md, 9): splines, cameras, IMUs and gravity against
-// every circle and every IMU sample. Staged release: (1) splines, gravity, cameras, biases; (2) further IMUs;
-// (3) scale and misalignment. Free camera intrinsics are released in the last of them.
+// Batch optimisation of all parameters at once (docs/maths.md, 9): splines, cameras, IMUs and gravity, with
+// all circles and IMU samples as measurements. Staged release: (1) splines, gravity, cameras, biases;
+// (2) further IMUs; (3) scale and misalignment, and free camera intrinsics.
 #pragma once
 
 #include "core/base/progress.h"
@@ -17,24 +17,24 @@ namespace evical {
 
 struct BatchSolution {
   CalibrationState state;
-  std::vector<CameraFit> cameras;  // normalised_rms: against the front end's own covariances
+  std::vector<CameraFit> cameras;  // normalised_rms: by the front end's covariances
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
   std::vector<std::string> notes;
   bool converged = false;
   NoiseScales scales;
-  CircleSelection used_circles;  // that took part
+  CircleSelection used_circles;  // used in the last solve
   std::vector<SampleSelection> used_samples;
 };
 
-// Input: a camera and an IMU, or two cameras, all with their intrinsics. `initial` lists them all and gives
-// the splines' range and knots: both cover the views with a margin for the time offset to move. Throws
-// CalibrationError when nothing can be solved, and Cancelled when asked to stop.
+// Input: a camera and an IMU, or two cameras, all with intrinsics. `initial` lists them all and gives the
+// splines' range and knots, which cover the views plus a margin for changes of the time offset. Throws
+// CalibrationError if nothing can be solved, and Cancelled when asked to stop.
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context);
 
-// From a state that is a solution already, of these or of similar data: the last
-// stage only, which nobody observes.
+// Solves only the last stage, from a state that is already a solution for these or similar data. The stage
+// is not observed.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context);
 

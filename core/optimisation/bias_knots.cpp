@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// What keeps the knots' mean apart from the bias; far below what could be measured.
+// Sigma that fixes the knots' mean at 0, to separate it from the bias; far below measurable values.
 constexpr double kGyroscopeMeanSigma_rad_s = 1e-7, kAccelerometerMeanSigma_m_s2 = 1e-6;
 
 struct RandomWalks {

@@ -1,6 +1,6 @@
-// Biases that drift: where their knots lie, and what is known of them beforehand. A bias at a knot is its
-// mean over time, a quantity like any other, plus the knot's own block; these have the mean 0, and neighbours
-// differ by 0 +- walk sqrt(knot spacing), a random walk's step.
+// Drifting biases: their knots and the prior. The bias at a knot is its mean over time, an ordinary quantity,
+// plus the knot's own block. Knot blocks have the mean 0, and neighbours differ by 0 +- walk sqrt(knot
+// spacing), a random walk's step.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -16,7 +16,7 @@
 
 namespace evical {
 
-// Zero when neighbouring knots are equal: r = (after - before) / sigma, without unit. Blocks: both knots.
+// Zero if neighbouring knots are equal: r = (after - before) / sigma, without unit. Blocks: both knots.
 class BiasStepCost final : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   explicit BiasStepCost(double sigma) : weight_(1.0 / sigma) {}
@@ -26,7 +26,7 @@ class BiasStepCost final : public ceres::SizedCostFunction<3, 3, 3> {
   double weight_;
 };
 
-// Zero when knots have the mean 0: r = sum weight_k knot_k / sigma, without unit. Blocks: all knots.
+// Zero if knots have the mean 0: r = sum weight_k knot_k / sigma, without unit. Blocks: all knots.
 class BiasMeanCost final : public ceres::CostFunction {
  public:
   BiasMeanCost(const BiasDrift& drift, double sigma);
@@ -36,20 +36,20 @@ class BiasMeanCost final : public ceres::CostFunction {
   std::vector<double> weights_;
 };
 
-// As the options want it: none, or over all of `trajectory`; knots that are there already stay. Where biases
-// walk fast, knots are close enough for straight lines to be no further from the walk than the noise.
+// Knots as the options request: none, or over all of `trajectory`; existing knots are kept. With a strong
+// random walk the knots are so close that straight lines deviate from the walk by no more than the noise.
 void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, const So3Spline& trajectory,
                     ImuState& imu);
 
-// Whether two times on the IMU's own clock lie between the same knots.
+// True if two times on the IMU's own clock are between the same knots.
 bool sameBiasKnots(const ImuState& imu, double time_s, double other_s);
 
-// The blocks of a cost function of samples between two knots, the first at `time_s` on the IMU's own clock;
-// nullopt and nothing where biases are constant. `knots`: the gyroscope's or the accelerometer's in `drift`.
+// Blocks of a cost function of samples between two knots, the first at `time_s` on the IMU's own clock;
+// nullopt and no blocks if biases are constant. `knots`: the gyroscope's or the accelerometer's in `drift`.
 std::optional<DriftTimes> appendDriftBlocks(const BiasDrift& drift, std::vector<Eigen::Vector3d>& knots,
                                             double time_s, std::vector<double*>& blocks);
 
-// For an IMU that is in the problem. Random walks as the noise says, or else the options.
+// For an IMU in the problem. Random walks come from the noise model, otherwise from the options.
 std::vector<ceres::ResidualBlockId> addDriftPriors(ceres::Problem& problem,
                                                    const OptimisationOptions& options, const ImuNoise& noise,
                                                    ImuState& imu);

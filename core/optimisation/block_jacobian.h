@@ -1,5 +1,5 @@
-// One residual block of the batch at a time: residuals and derivatives by those unknowns that are free, as one dense
-// matrix in columns of the tangent space.
+// Residuals and derivatives of one residual block of the batch, by its free unknowns, as a dense matrix in
+// columns of the tangent space.
 #pragma once
 
 #include "core/optimisation/unknown_columns.h"
@@ -10,15 +10,15 @@
 
 namespace evical {
 
-// Derivatives of numbers by their tangent space where those are not just the first of the numbers, as they are at one
-// state. By index of the unknown.
+// Derivatives of numbers by their tangent space at one state, by index of the unknown. Only stored if they
+// are not the first columns of the numbers' derivatives.
 class ManifoldDerivatives {
  public:
   explicit ManifoldDerivatives(const UnknownColumns& columns);
   const double* of(std::size_t unknown) const { return derivatives_[unknown].data(); }  // row-major
 
  private:
-  std::vector<std::vector<double>> derivatives_;  // empty where none is needed
+  std::vector<std::vector<double>> derivatives_;  // empty if not needed
 };
 
 class BlockJacobian {
@@ -29,12 +29,12 @@ class BlockJacobian {
   explicit BlockJacobian(const UnknownColumns& columns) : columns_(columns) {}
 
   void evaluate(std::size_t block, const ManifoldDerivatives& manifolds);
-  double evaluateCost(std::size_t block);  // half the residuals' squares, without derivatives
+  double evaluateCost(std::size_t block);  // half the sum of squared residuals
 
   Eigen::Index rows() const { return rows_; }
   const std::vector<Eigen::Index>& splineColumns() const { return spline_columns_; }
   const std::vector<Eigen::Index>& borderColumns() const { return border_columns_; }
-  // By splines, then by the border, then the residuals themselves as one column more.
+  // Columns: splines, border, and the residuals themselves as the last column.
   const double* data() const { return values_.data(); }
   Eigen::Index stride() const { return stride_; }
 

@@ -15,7 +15,7 @@ ceres::Problem::Options borrowManifolds() {
   return options;
 }
 
-// Of every sensor at the trajectory's begin and at its end, an accelerometer's with its delay.
+// Offsets of every sensor at the trajectory's begin and end; an accelerometer's includes its delay.
 std::vector<double> timeOffsets_s(const CalibrationInput& input, const CalibrationState& state) {
   const So3Spline& trajectory = state.world_from_imu_rotation;
   std::vector<double> offsets_s;
@@ -26,7 +26,7 @@ std::vector<double> timeOffsets_s(const CalibrationInput& input, const Calibrati
   for (std::size_t i = 0; i < state.cameras.size(); ++i) {
     append(state.cameras[i]);
     const double furthest_row =
-        0.5 * input.cameras[i].lens.detection_intrinsics->resolution_px.height_px;  // from the middle one
+        0.5 * input.cameras[i].lens.detection_intrinsics->resolution_px.height_px;  // from the middle row
     offsets_s.push_back(1e-6 * furthest_row * state.cameras[i].line_delay_us);
     constexpr double kFurthest_sigmas = 2.0;
     offsets_s.push_back(kFurthest_sigmas * exposureSpread_s(input.cameras[i].observations) *
@@ -45,7 +45,7 @@ std::vector<double> timeOffsets_s(const CalibrationInput& input, const Calibrati
 CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const OptimisationOptions& options,
                                        const CalibrationState& initial)
     : input_(input), options_(options), parameters_(input, options, initial) {
-  // Between cameras no wrong amplitude of one counts for much: where the board is, either sees anew.
+  // Amplitude errors hardly matter between cameras, since each one observes the board's pose independently.
   const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
   for (const CameraData& camera : input.cameras) {
     const Board& board = input.boardAt(camera.board);
@@ -107,7 +107,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     if (!builder.rolls(i)) builder.hold(&state.cameras[i].line_delay_us);
     if (!builder.exposuresVary(i)) builder.hold(&state.cameras[i].exposure_share);
     if (input_.cameras[i].observations.kind == CameraKind::Events) continue;
-    builder.hold(&state.cameras[i].edge_lead_px);  // of moving edges in events only
+    builder.hold(&state.cameras[i].edge_lead_px);  // only events have a lead
     builder.hold(&state.cameras[i].slow_edge_lead_px);
   }
   if (!options_.free_gravity_norm) set(state.gravity_in_world_m_s2.data(), &sphere_);
@@ -127,7 +127,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   }
 }
 
-// The trajectory is the reference camera's own.
+// The trajectory is that of the reference camera.
 void CalibrationProblem::holdReferenceCamera(ProblemBuilder& builder) {
   CameraState& reference = parameters_.moved().cameras[input_.reference_camera];
   builder.hold(reference.reference_from_camera.rotation.coeffs().data());

@@ -23,19 +23,19 @@ class CalibrationProblem {
   CalibrationProblem(const CalibrationProblem&) = delete;
   CalibrationProblem& operator=(const CalibrationProblem&) = delete;
 
-  // Assigns every measurement to the spline segment where the time offsets put it now.
+  // Assigns every measurement to its spline segment at the current time offsets.
   void build(ParameterStages stage, const Weights& weights);
 
   ceres::Problem& problem() { return *problem_; }
   const std::vector<BlockInfo>& blocks() const { return residuals_; }
 
-  // How far the time offsets have moved since build(), in knots.
+  // Change of the time offsets since build(), in knots.
   double segmentDrift_knots() const;
 
-  CalibrationState state() const { return parameters_.state(); }  // as Ceres left it
-  std::vector<Quantity> quantities();                             // those free in the built problem
-  std::vector<double*> splineBlocks();  // those in the built problem, in order of time
-  // Of biases at their knots: by IMU, gyroscopes first, in order of time.
+  CalibrationState state() const { return parameters_.state(); }  // current values of the blocks
+  std::vector<Quantity> quantities();                             // free in the built problem
+  std::vector<double*> splineBlocks();                            // in the built problem, in order of time
+  // Blocks of biases at their knots: by IMU, gyroscopes first, in order of time.
   std::vector<Quantity> driftBlocks();
 
  private:
@@ -47,12 +47,12 @@ class CalibrationProblem {
   ParameterBlocks parameters_;
   std::vector<CircleModel> circle_models_;  // by camera; cost functions point to them
   std::vector<PixelErrors> pixel_errors_;   // by camera
-  std::vector<double> assigned_offsets_s_;  // at both ends, cameras, then IMUs
+  std::vector<double> assigned_offsets_s_;  // at both ends; cameras, then IMUs
 
   So3Manifold so3_;
   ceres::SphereManifold<3> sphere_;
   std::vector<BlockInfo> residuals_;
-  std::unique_ptr<ceres::Problem> problem_;  // after what it points to
+  std::unique_ptr<ceres::Problem> problem_;  // destroyed before the objects it points to
 };
 
 }  // namespace evical

@@ -1,7 +1,7 @@
-// What an edge lead does to a measured ellipse centre. Which way and how far the centre moves for each
-// pixel of lead, the measurement itself says: that depends on the ellipse's shape, on which of its arcs
-// fired, and on the lens. The lead is one length at all speeds but the lowest: slow edges, which turn back and
-// whose bursts noise joins, are seen a little further behind (docs/maths.md, 9.1).
+// Effect of an edge lead on a measured ellipse centre. The measurement gives the centre's shift per pixel of
+// lead, which depends on the ellipse's shape, on the arcs that fired, and on the lens. The lead is one length
+// at all but the lowest speeds: slow edges, which reverse and whose bursts are joined by noise, are seen
+// slightly further behind (docs/maths.md, 9.1).
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -18,7 +18,7 @@ struct EdgeLeadEffect {
   Eigen::Vector2d of_lead, of_slow;  // px per px
 };
 
-// A camera's lead, and what edges that hardly move add to it.
+// A camera's lead, and the additional lead of edges that hardly move.
 struct EdgeLead {
   double lead_px, slow_px;
 

@@ -13,14 +13,14 @@ void writeMapping(double** jacobians, int block, Eigen::Index row, const Vector3
   jacobianRows<3, 6>(jacobians, block, row) = derivativeByMapping(weight * v);
 }
 
-// With respect to the time offset, whose block is `first`, and its drift, the next.
+// Derivatives by the time offset, whose block is `first`, and by its drift, the next one.
 void writeTimeRows(double** jacobians, int first, Eigen::Index row, const Vector3d& by_time,
                    const InertialMeasurement& sample) {
   if (jacobians[first]) jacobianRows<3, 1>(jacobians, first, row) = by_time;
   if (jacobians[first + 1]) jacobianRows<3, 1>(jacobians, first + 1, row) = sample.by_drift_s * by_time;
 }
 
-// Adds the weighted drift to the samples' residuals; its two blocks are the last, from `first` on.
+// Adds the weighted drift to the samples' residuals; its two blocks are the last, starting at `first`.
 void addDrift(const DriftTimes& drift, const std::vector<InertialMeasurement>& samples, double weight,
               int first, double const* const* parameters, double* residuals, double** jacobians) {
   const Eigen::Map<const Vector3d> before(parameters[first]), after(parameters[first + 1]);
@@ -48,7 +48,7 @@ bool anyOf(double** jacobians, int first, int count) {
   return false;
 }
 
-// The specific force at the IMU's place in the reference IMU's frame, without the IMU's own rotation.
+// Specific force at the IMU's position in the reference IMU's frame, without the IMU's own rotation.
 struct SpecificForce {
   Vector3d from_motion;  // R_wb^T (p'' - g)
   Vector3d total;
@@ -74,7 +74,7 @@ enum AccelerometerBlock {
   kForceTimeOffsetDrift
 };
 
-// The accelerometer's blocks, ready for use.
+// The accelerometer's blocks, converted.
 struct Accelerometer {
   bool further;
   Vector3d gravity, bias, lever_arm = Vector3d::Zero();
@@ -95,11 +95,11 @@ struct Accelerometer {
     time_offset_s = *parameters[kForceTimeOffset];
     time_offset_drift_ppm = *parameters[kForceTimeOffsetDrift];
   }
-  // On the reference's clock.
+  // Time on the reference's clock.
   double timeOf_s(const InertialMeasurement& sample) const {
     return sample.time_s + time_offset_s + sample.by_drift_s * time_offset_drift_ppm - delay_s;
   }
-  // Rates matter through the lever arm, and for how the force changes.
+  // Rates act through the lever arm and on the derivative of the force.
   RotationOrder order(bool with_rate) const {
     return further     ? RotationOrder::Acceleration
            : with_rate ? RotationOrder::Velocity
@@ -118,7 +118,7 @@ struct MotionAtSample {
   }
 };
 
-// Derivatives of one sample's residual with respect to both splines' control points.
+// Derivatives of one sample's residual by both splines' control points.
 void writeSplineRows(const Accelerometer& model, const MotionAtSample& motion, const SpecificForce& force,
                      Eigen::Index row, double** jacobians) {
   const Matrix3d by_force = model.mapping * model.imu_from_reference;
@@ -145,7 +145,7 @@ void writeSplineRows(const Accelerometer& model, const MotionAtSample& motion, c
   }
 }
 
-// With respect to the delay, and to the time offset and its drift.
+// Derivatives by the delay, and by the time offset and its drift.
 void writeTimeRows(const Accelerometer& model, const Vector3d& force_rate, const InertialMeasurement& sample,
                    Eigen::Index row, double** jacobians) {
   const Vector3d by_time = model.mapping * (model.imu_from_reference * force_rate);
@@ -153,7 +153,7 @@ void writeTimeRows(const Accelerometer& model, const Vector3d& force_rate, const
   if (model.further) writeTimeRows(jacobians, kForceTimeOffset, row, by_time, sample);
 }
 
-// And with respect to everything else but times.
+// Derivatives by everything else except times.
 void writeModelRows(const Accelerometer& model, const MotionAtSample& motion, const SpecificForce& force,
                     Eigen::Index row, double** jacobians) {
   const Matrix3d by_force = model.mapping * model.imu_from_reference;
@@ -284,7 +284,7 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
     motion.position = positionAt(segment_, parameters + kImuPosition, time_s);
   };
   const Vector3d jerk = jerkOf(segment_, parameters + kImuPosition);
-  // The angular jerk isn't worth a formula: it acts through the lever arm of further IMUs only.
+  // The angular jerk is omitted: it acts only through the lever arm of further IMUs.
   const auto forceRate = [&](double time_s, const MotionAtSample& at,
                              const SpecificForce& force) -> Vector3d {
     if (!model.further)

@@ -1,4 +1,4 @@
-// Zero when an IMU measures what its sensor model says of the trajectory (docs/maths.md, 3.2):
+// Zero if an IMU's samples agree with its sensor model on the trajectory (docs/maths.md, 3.2):
 //   gyroscope      r = [ M_g R_ga w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
 //   accelerometer  r = [ M_a f_j + b_a - measured ] / sigma,
 //                  f_j = R^T [ R_wb(t)^T (p''(t) - g) + (a(t)^ + w(t)^ w(t)^) l ]
@@ -9,9 +9,9 @@
 // Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping, R_ga (gyroscope
 // from accelerometer, x y z w); further IMUs: rotation (x y z w), time offset [s]. Blocks of the
 // accelerometer: 4 rotation and 4 position control points [m], gravity in the world [m/s^2], bias [m/s^2],
-// mapping, delay [s]; further IMUs: rotation, lever arm l [m], time offset. Where biases drift, two blocks more at
-// the end: at the knots before and after the samples, how far the bias is from its mean there; between
-// them it is a straight line. Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12
+// mapping, delay [s]; further IMUs: rotation, lever arm l [m], time offset. Drifting biases add two blocks at
+// the end: the deviation of the bias from its mean at the knots before and after the samples; between
+// them it is linear. Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12
 // m22). Quaternion blocks as in so3_manifold.h.
 #pragma once
 
@@ -29,12 +29,12 @@ namespace evical {
 struct InertialMeasurement {
   double time_s = 0.0;      // this IMU's clock, since the recording's start
   Eigen::Vector3d value;    // rad/s or m/s^2
-  double by_drift_s = 0.0;  // how far each ppm of the clock's drift moves the time
+  double by_drift_s = 0.0;  // change of the time per ppm of clock drift
 };
 
 enum class ImuRole { Reference, Further };
 
-// The time between two knots of a bias, on the IMU's own clock.
+// Time between two knots of a bias, on the IMU's own clock.
 struct DriftTimes {
   double start_s = 0.0, length_s = 0.0;
 

@@ -1,4 +1,4 @@
-// Where a cost function writes the rows of one measurement into Ceres' row-major Jacobian blocks.
+// Position of a measurement's rows in Ceres' row-major Jacobian blocks, as a cost function writes them.
 #pragma once
 
 #include <Eigen/Core>

@@ -3,7 +3,7 @@
 namespace evical {
 namespace {
 
-// visit(row, what is known) of a sensor's quantities that are given; a reference has no place of its own.
+// visit(row, given value) of a sensor's given quantities; a reference has no pose.
 template <class Rows, class Prior, class Visitor>
 void forEachGiven(const Rows& rows, const OptimisationOptions& options, bool reference, const Prior& prior,
                   Visitor&& visit) {
@@ -31,9 +31,9 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
     case QuantityRelease::BoardBow:
       return options.board_bow;
     case QuantityRelease::LineDelay:
-      return true;  // where a shutter rolls
+      return true;  // if the shutter rolls
     case QuantityRelease::ExposureShare:
-      return true;  // where exposures vary
+      return true;  // if exposures vary
     case QuantityRelease::TimeOffsetDrift:
       break;
   }

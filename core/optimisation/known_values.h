@@ -1,4 +1,4 @@
-// Values that the session gives, and values that it weighs, in the batch.
+// Given values and priors of the session, in the batch.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -13,11 +13,11 @@
 
 namespace evical {
 
-// Whether the options let a quantity be estimated. A gyroscope's rotation or a drift with a prior that is to
-// be weighed needs no option of its own.
+// True if the options allow a quantity to be estimated. A gyroscope's rotation or a drift with a prior that
+// has a sigma needs no option.
 bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bool weighed);
 
-// What a quantity is held at that is not released and has no prior; nothing where nobody asks for it.
+// Value of a quantity that is neither released nor has a prior; nullopt if nobody requests one.
 template <class Known>
 std::optional<Known> heldWithoutPrior([[maybe_unused]] const QuantityInfo& info) {
   if constexpr (std::is_same_v<Known, KnownNumber>)
@@ -27,7 +27,7 @@ std::optional<Known> heldWithoutPrior([[maybe_unused]] const QuantityInfo& info)
   return std::nullopt;
 }
 
-// What counts as known of a quantity: its prior, without sigmas where the quantity is not released.
+// A quantity's prior, without sigmas if the quantity is not released.
 template <class Known>
 std::optional<Known> effectivePrior(const QuantityInfo& info, const OptimisationOptions& options,
                                     const std::optional<Known>& prior) {
@@ -35,11 +35,11 @@ std::optional<Known> effectivePrior(const QuantityInfo& info, const Optimisation
   return prior ? std::optional(Known{prior->value, {}}) : heldWithoutPrior<Known>(info);
 }
 
-// What is given, and what groups that are not free stay at, in place of what the state has.
+// Replaces values of the state by given ones, and by the fixed values of groups that are not free.
 void setGivenValues(const CalibrationInput& input, const OptimisationOptions& options,
                     CalibrationState& state);
 
-// What is held besides the reference's own place: "left.time_offset", "imu.gyroscope_bias".
+// Fixed quantities, except the reference's own pose: "left.time_offset", "imu.gyroscope_bias".
 std::vector<std::string> givenQuantities(const CalibrationInput& input, const OptimisationOptions& options);
 
 }  // namespace evical

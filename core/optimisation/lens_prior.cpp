@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-// With spheres apart, a focal length alone says little: it is f / (1 + xi) that is known so well, whatever xi is.
+// Models with spheres: f and xi are strongly correlated, so the prior is on f / (1 + xi).
 void holdScaleRatherThanLength(const CameraIntrinsics& camera, IntrinsicsMatrix& covariance) {
   constexpr int kXi = 4;
   if (!hasCentresApart(camera.model)) return;
@@ -29,7 +29,7 @@ IntrinsicsMatrix lensPriorCovariance(const CameraLens& lens, const OptimisationO
     return covariance;
   }
   const IntrinsicsMatrix given = lens.given_with->covariance();
-  // Rounded correlations may leave no proper matrix: this is far less than their rounding.
+  // Rounded correlations may not be positive definite; this is far below their rounding.
   constexpr double kRounded = 1e-3;
   for (int i = 0; i < kIntrinsicsCount; ++i) {
     if (given(i, i) <= 0.0) continue;

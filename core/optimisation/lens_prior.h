@@ -1,4 +1,4 @@
-// What is known of a free lens before the batch.
+// Prior on a free lens.
 #pragma once
 
 #include "core/data/camera_lens.h"
@@ -7,7 +7,7 @@ namespace evical {
 
 struct OptimisationOptions;
 
-// Of all nine intrinsics around those that the lens was seen with: as wide as is said of a given lens, else weak.
+// All nine intrinsics around the detection intrinsics, with the sigmas given for the lens, otherwise weak.
 IntrinsicsMatrix lensPriorCovariance(const CameraLens& lens, const OptimisationOptions& options);
 
 }  // namespace evical

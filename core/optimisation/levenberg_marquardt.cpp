@@ -13,16 +13,16 @@
 namespace evical {
 namespace {
 
-constexpr double kFirstRadius = 1e12;  // weak directions (biases against gravity) need undamped steps
+constexpr double kFirstRadius = 1e12;  // weak directions (biases, gravity) need undamped steps
 constexpr double kLargestRadius = 1e16, kLeastRadius = 1e-32;
 constexpr double kLeastDiagonal = 1e-6, kLargestDiagonal = 1e32;  // of scaled columns
-constexpr double kLeastGain = 1e-3;  // of what the model promised: less, and a step is taken back
+constexpr double kLeastGain = 1e-3;  // of the predicted decrease; otherwise the step is rejected
 constexpr double kGradientTolerance = 1e-12, kParameterTolerance = 1e-12;
-// In a row: a motion that leaves directions open needs damping, found by trial.
+// Consecutive invalid steps: motion that leaves directions open needs damping, found by trial.
 constexpr int kMostInvalidSteps = 20;
-constexpr double kHeld = 1e30;  // times the diagonal: no step
+constexpr double kHeld = 1e30;  // times the diagonal: fixes the unknown
 
-// The unknowns' numbers, one after the other.
+// The unknowns' numbers, concatenated.
 class Numbers {
  public:
   explicit Numbers(const UnknownColumns& columns) : columns_(columns) {}
@@ -41,7 +41,7 @@ class Numbers {
       next += each.size;
     }
   }
-  // From there by a step in the tangent space, within the bounds.
+  // Applies a step in the tangent space, within the bounds.
   void writeMoved(const Eigen::VectorXd& numbers, const Eigen::VectorXd& step) const {
     const double* from = numbers.data();
     for (const Unknown& each : columns_.unknowns()) {
@@ -93,8 +93,8 @@ class Solver {
   UnknownColumns columns_;
   Numbers numbers_;
   NormalEquations equations_;
-  Eigen::VectorXd at_;     // the numbers that the equations are of
-  Eigen::VectorXd scale_;  // of the columns, from where it began
+  Eigen::VectorXd at_;     // linearisation point of the equations
+  Eigen::VectorXd scale_;  // of the columns, at the start
   double radius_ = kFirstRadius, shrinkage_ = 2.0;
 };
 
@@ -107,7 +107,7 @@ void Solver::scaleColumns() {
   scale_ = (1.0 + equations_.matrix.diagonal().array().sqrt()).inverse();
 }
 
-// What is added to the diagonal.
+// Addition to the diagonal.
 Eigen::VectorXd Solver::damping() const {
   const Eigen::ArrayXd scale2 = scale_.array().square();
   const Eigen::ArrayXd scaled = scale2 * equations_.matrix.diagonal().array();
@@ -116,7 +116,7 @@ Eigen::VectorXd Solver::damping() const {
   return added;
 }
 
-// Numbers at a bound that would leave it.
+// Numbers at a bound that the step would cross.
 void Solver::holdAtBounds(Eigen::VectorXd& added) const {
   for (const Unknown& each : columns_.unknowns()) {
     if (each.columns == 0 || each.lower.empty()) continue;
@@ -140,7 +140,7 @@ void Solver::holdAtBounds(Eigen::VectorXd& added) const {
   }
 }
 
-// How far the numbers would move by a step of the gradient's length.
+// Change of the numbers by a step along the negative gradient, largest entry.
 double Solver::gradientMaxNorm() const {
   numbers_.writeMoved(at_, -equations_.gradient);
   const double norm = (numbers_.read() - at_).lpNorm<Eigen::Infinity>();

@@ -1,7 +1,7 @@
-// Levenberg and Marquardt's method on the batch: steps from its normal equations, whose band and border are factored
-// directly, damped as far as they fail (K. Madsen, H. Nielsen, O. Tingleff, "Methods for non-linear least squares
-// problems", 2004). Damping, what counts as a good step and when it ends are as in Ceres (2.1) with its defaults, which
-// tests compare with; bounds are kept by cutting steps off at them.
+// Levenberg-Marquardt method for the batch: steps from its normal equations, whose band and border are
+// factored directly, with increasing damping if they fail (K. Madsen, H. Nielsen, O. Tingleff, "Methods for
+// non-linear least squares problems", 2004). Damping, acceptance and termination are those of Ceres (2.1)
+// with its defaults, which tests compare with; steps are cut off at bounds.
 #pragma once
 
 #include <functional>
@@ -20,19 +20,19 @@ struct SolverIteration {
 
 struct SolverLimits {
   int most_iterations = 0;
-  double function_tolerance = 0.0;  // it ends when the cost changes by less than this fraction
+  double function_tolerance = 0.0;  // relative cost change at which it ends
   int threads = 1;
 };
 
 struct SolverEnd {
   bool converged = false;
-  std::string failure;  // empty without one
+  std::string failure;  // empty on success
   int iterations = 0;
   double first_cost = 0.0, last_cost = 0.0;
 };
 
-// Moves the unknowns of a problem that is built. `after` is called with the state that was there at the start, and after
-// each step, taken or not; it ends the solution by returning false. Throws Cancelled when asked to stop.
+// Optimises the unknowns of a built problem. `after` is called with the state at the start and after each
+// step, accepted or not; it ends the solution by returning false. Throws Cancelled when asked to stop.
 SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
                                const std::stop_token& stop,
                                const std::function<bool(const SolverIteration&)>& after);

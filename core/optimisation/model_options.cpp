@@ -7,79 +7,76 @@ namespace {
 
 constexpr std::tuple kModelFields{
     Switch{"free_time_offsets", &ModelOptions::free_time_offsets, true,
-           "Estimate time offsets; else each stays at the session's prior value, or 0 without one.",
+           "Estimate time offsets; otherwise each is fixed at its prior value, or at 0 without a prior.",
            Level::Public},
-    Switch{
-        "time_offset_drift", &ModelOptions::time_offset_drift, true,
-        "Estimate how each time offset drifts, as clocks of their own do; false where one clock stamps all "
-        "sensors. A given time offset does not drift; with a weighed prior the drift is estimated in any "
-        "case.",
-        Level::Public},
+    Switch{"time_offset_drift", &ModelOptions::time_offset_drift, true,
+           "Estimate each time offset's drift. Set it to false if one clock stamps all sensors. Given time "
+           "offsets do not drift.",
+           Level::Public},
     Switch{
         "free_imu_intrinsics", &ModelOptions::free_imu_intrinsics, true,
-        "Estimate scales and misalignments M_g and M_a and the accelerometer's delay; else each stays at the "
-        "session's prior value, or the identity and 0 without one. Biases stay free.",
+        "Estimate scale and misalignment matrices M_g and M_a, and accelerometer delays; otherwise they are "
+        "fixed at their prior values, or at identity and 0.",
         Level::Public, Applies::WithImu},
     Switch{"free_gravity_norm", &ModelOptions::free_gravity_norm, true,
-           "Estimate gravity's norm, too, not its direction only.", Level::Public, Applies::WithImu},
-    Switch{"free_board_size", &ModelOptions::free_board_size, true,
-           "Estimate the board's size and its stretch about what the session says, so that translations' "
-           "sigmas say what its measurement leaves open.",
-           Level::Public},
-    Switch{"board_bow", &ModelOptions::board_bow, true,
-           "Estimate how the board is bent along its rows and its columns, and twisted, as a sheet is that "
-           "comes off; a board that is taken for flat is tested all the same.",
-           Level::Public},
+           "Estimate gravity's norm in addition to its direction.", Level::Public, Applies::WithImu},
     Switch{
-        "line_delay", &ModelOptions::line_delay, false,
-        "Estimate every frame camera's line delay, as if all shutters rolled; those that the session calls "
-        "rolling have theirs estimated in any case, and the others are tested.",
-        Level::Expert, Applies::WithFrames},
-    Switch{
-        "share_sensors", &ModelOptions::share_sensors, true,
-        "Cameras with same_sensor_as have one pose, one lens and one clock with the other; false: each has "
-        "its own, and whether they agree is only told. Shared ones are tested all the same.",
-        Level::Expert},
-    Choice{
-        "camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
-        std::array{"fixed", "free"},
-        "Whether cameras' intrinsics are solved for with everything else, in the last stage: those that were "
-        "given, too, as no lens is exactly what its file says. Fixed ones are tested all the same.",
+        "free_board_size", &ModelOptions::free_board_size, true,
+        "Estimate the board's size and stretch around their given values, so that translation sigmas include "
+        "the board's size uncertainty.",
         Level::Public},
-    Switch{
-        "gyroscope_rotation", &ModelOptions::gyroscope_rotation, false,
-        "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's. With a "
-        "weighed prior it is estimated in any case.",
-        Level::Public, Applies::WithImu},
+    Switch{"board_bow", &ModelOptions::board_bow, true,
+           "Estimate the board's bow along rows and columns, and its twist. A board assumed flat is still "
+           "tested for a bow.",
+           Level::Public},
+    Switch{"line_delay", &ModelOptions::line_delay, false,
+           "Estimate every frame camera's line delay, also of cameras declared global-shutter. Otherwise "
+           "these are only tested for a rolling shutter.",
+           Level::Expert, Applies::WithFrames},
+    Switch{"share_sensors", &ModelOptions::share_sensors, true,
+           "Cameras with same_sensor_as share pose, lens and clock with the named camera; false: each has "
+           "its own. Agreement is tested in both cases.",
+           Level::Expert},
+    Choice{"camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
+           std::array{"fixed", "free"},
+           "Free: estimate camera intrinsics in the last stage, also given ones. Fixed: keep them, and test "
+           "whether they agree with the data.",
+           Level::Public},
+    Switch{"gyroscope_rotation", &ModelOptions::gyroscope_rotation, false,
+           "Estimate each gyroscope's rotation relative to its accelerometer, whose frame is the IMU "
+           "frame. Always estimated with a prior that has a sigma.",
+           Level::Public, Applies::WithImu},
     Field{"delay_misfit", &ModelOptions::delay_misfit, 1.3, within(1.0, 1000.0), "",
-          "Accelerometers' delays are held where accelerations are further off than this many times their "
-          "noise: where splines cannot follow the motion they would choose a delay at which they miss less."},
+          "Accelerometer delays are fixed if acceleration errors exceed the noise by this factor, since "
+          "splines that do not follow the motion bias them."},
     Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Constant, std::array{"constant", "linear"},
-           "Biases over a recording: constant, or straight lines between knots that walk at random.",
+           "Biases over a recording: constant, or straight lines between knots with a random-walk prior.",
            Level::Public, Applies::WithImu},
     Field{"bias_knot_spacing_s", &ModelOptions::bias_knot_spacing_s, 5.0, within(0.1, 1e4), "s",
-          "Linear biases: knots are at most this far apart, closer where the random walk asks for it.",
-          Level::Expert, Applies::WithLinearBiases},
+          "Linear biases: largest knot spacing; a strong random walk makes it smaller.", Level::Expert,
+          Applies::WithLinearBiases},
     Field{"most_bias_knots", &ModelOptions::most_bias_knots, 48, within(2, 1000), "",
-          "Linear biases: no more knots an IMU than this, as uncertainty takes time and memory with them."},
+          "Linear biases: largest number of knots per IMU; time and memory grow with it."},
     Field{"gyroscope_random_walk", &ModelOptions::gyroscope_random_walk, 2.66e-5, within(1e-9, 1.0),
           "rad/s^2/sqrt(Hz)",
-          "Linear biases: how fast gyroscope biases drift where the session does not say it. The default is "
-          "Kalibr's example for an ADIS16448, as the noise densities are.",
+          "Linear biases: random walk of gyroscopes without one in the session. Default: Kalibr's example "
+          "for an ADIS16448.",
           Level::Public, Applies::WithLinearBiases},
     Field{"accelerometer_random_walk", &ModelOptions::accelerometer_random_walk, 4.33e-4, within(1e-9, 10.0),
-          "m/s^3/sqrt(Hz)", "The same of accelerometer biases.", Level::Public, Applies::WithLinearBiases},
+          "m/s^3/sqrt(Hz)", "Linear biases: random walk of accelerometers without one in the session.",
+          Level::Public, Applies::WithLinearBiases},
     Field{"slow_edge_speed_px_s", &ModelOptions::slow_edge_speed_px_s, 20.0, within(0.1, 1000.0), "px/s",
-          "At this image speed what slow edges add to the edge lead is down to 1/e."},
+          "Image speed at which the additional lead of slow edges has decayed to 1/e."},
     Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
-          "Added in squares to the covariance of each measured centre."},
+          "Sigma added in quadrature to the covariance of each measured centre."},
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
-          "Circle residuals beyond this pull with constant force."},
-    Field{"outlier_sigma", &ModelOptions::outlier_sigma, 6.0, within(2.0, 1000.0), "sigma",
-          "Circles further from their place, in units of the spread of all, are dropped between stages; so "
-          "are single IMU samples, in units also of the spread beside them."},
+          "Threshold of Huber's loss for circle residuals."},
+    Field{
+        "outlier_sigma", &ModelOptions::outlier_sigma, 6.0, within(2.0, 1000.0), "sigma",
+        "Circles with larger errors, in units of the spread, are rejected between stages; so are single IMU "
+        "samples that also exceed their neighbours' spread."},
     Field{"outlier_window_fraction", &ModelOptions::outlier_window_fraction, 0.5, within(0.1, 1.0), "",
-          "A window loses all its circles if more than this share of them is dropped."}};
+          "All circles of a window are rejected if more than this share of them are outliers."}};
 constexpr auto kModelDefaults = defaultsOf<ModelOptions, kModelFields>();
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the batch optimisation estimates, and how it takes measurements.
+// Options of what the batch optimisation estimates, and of how it weights measurements.
 #pragma once
 
 #include "core/base/option_struct.h"

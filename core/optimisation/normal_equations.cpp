@@ -67,7 +67,7 @@ void PartialSums::addRest() const {
 
 namespace {
 
-// sums += R^T R of four rows, or of one; the lower triangle.
+// sums += R^T R of four rows or of one row; lower triangle.
 EVICAL_VECTOR_CLONES void addProductsOfFour(const double* __restrict r, Eigen::Index columns,
                                             double* __restrict sums) {
   const double *r0 = r, *r1 = r0 + columns, *r2 = r1 + columns, *r3 = r2 + columns;

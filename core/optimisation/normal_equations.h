@@ -1,4 +1,4 @@
-// The batch's normal equations at the state that its unknowns hold: J^T J, J^T r and half of r^T r, added up block by
+// The batch's normal equations at the current state: J^T J, J^T r and half of r^T r, accumulated block by
 // block. Sums are the same for any number of threads.
 #pragma once
 
@@ -22,7 +22,7 @@ struct NormalEquations {
   void setZero();
 
   BorderedBand matrix;
-  Eigen::VectorXd gradient;  // by the band's columns, then by the border's
+  Eigen::VectorXd gradient;  // the band's columns, then the border's
   double cost = 0.0;
 };
 
@@ -32,8 +32,9 @@ void assemble(const UnknownColumns& columns, int threads, const std::stop_token&
 
 double costOf(const UnknownColumns& columns, int threads, const std::stop_token& stop);
 
-// What the blocks of one part sum up to (UnknownColumns::Part): in the equations' own rows of the band where no other
-// part adds to them, beside them where the next one does, and for the border, to which all add.
+// Sums over the blocks of one part (UnknownColumns::Part): directly in rows of the band to which only this
+// part adds, in separate rows if the next part adds to them, too, and separate for the border, to which all
+// parts add.
 class PartialSums {
  public:
   PartialSums(NormalEquations& equations, Eigen::Index end_row)
@@ -46,11 +47,11 @@ class PartialSums {
   void add(const std::vector<Eigen::Index>& spline_columns, const std::vector<Eigen::Index>& border_columns,
            const double* products);
 
-  // To the equations; one part after the other.
+  // Adds the separate rows and the border to the equations; one part after the other.
   void addRest() const;
 
  private:
-  // A row of the band, of what stands beside it, and of the gradient.
+  // One row each of the band, of the mixed block, and of the gradient.
   struct Row {
     double *band, *mixed, *gradient;  // band: by column, as BorderedBand::row
   };

@@ -1,4 +1,4 @@
-// What the batch optimisation lets people choose, in four groups; code that needs one group takes that one.
+// Options of the batch optimisation, in four groups; code that needs one group takes only that group.
 #pragma once
 
 #include "core/optimisation/model_options.h"
@@ -8,7 +8,7 @@
 
 namespace evical {
 
-// How far the staged release has gone.
+// Stages of the release of parameters.
 enum class ParameterStages { Extrinsics, FurtherImus, Mappings };
 
 struct OptimisationOptions : ModelOptions, PriorOptions, SolverOptions, VerdictOptions {

@@ -10,14 +10,15 @@
 namespace evical {
 namespace {
 
-// In the middle of the recording offset and drift hardly correlate. What drifts already keeps its time.
+// Offset and drift hardly correlate in the middle of the recording. An existing drift keeps its reference
+// time.
 template <class Sensor>
 void startDrift(const So3Spline& trajectory, Sensor& sensor) {
   if (sensor.time_offset_drift_ppm == 0.0)
     sensor.time_offset_at_s = sensorTime_s(sensor, 0.5 * (trajectory.start_s + trajectory.endTime_s()));
 }
 
-// visit(matrix of one IMU, the same of another): matrices are blocks of their upper triangles.
+// visit(matrix of one IMU, same matrix of another): matrices are blocks of their upper triangles.
 template <class Visitor>
 void forEachMatrix(const ImuState& imu, ImuState& other, Visitor&& visit) {
   forEachQuantity(kImuQuantities, [&](const auto& row) {
@@ -64,7 +65,7 @@ ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const Optimisati
     const CameraData& camera = input.cameras[i];
     const bool free = options.freesIntrinsics() && ownsSensor(i);
     CameraLens lens = camera.lens;
-    if (camera.same_sensor_as) lens.given_with.reset();  // what is known of a sensor counts once
+    if (camera.same_sensor_as) lens.given_with.reset();  // one prior per sensor
     intrinsics_.push_back(free ? std::make_unique<IntrinsicsBlock>(lens, moved_.cameras[i], options)
                                : nullptr);
     if (!options.freesIntrinsics()) moved_.cameras[i].lens.solved.reset();

@@ -1,5 +1,4 @@
-// The batch's unknowns as Ceres moves them: blocks of numbers that stay where they are, and the state that
-// they stand for.
+// The batch's unknowns as Ceres' parameter blocks with fixed addresses, and the state that they represent.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -17,7 +16,7 @@
 
 namespace evical {
 
-// One calibrated quantity's parameter block.
+// Parameter block of one calibrated quantity.
 struct Quantity {
   const QuantityInfo* info;
   std::size_t sensor;
@@ -26,39 +25,40 @@ struct Quantity {
   QuantityAddress address() const { return {info->owner, sensor, info->id}; }
 };
 
-// Where columns begin with `first_column` of each, and end with one more; nothing where the number is none of theirs.
+// Columns begin at `first_column` of each, plus the end; nullopt if the number has no column.
 std::optional<Eigen::Index> columnOf(const QuantityAddress& number, const std::vector<Quantity>& quantities,
                                      const std::vector<Eigen::Index>& first_column);
 
 class ParameterBlocks {
  public:
-  // What is given goes in place of what `initial` has.
+  // Given values replace those of `initial`.
   ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
                   const CalibrationState& initial);
   ParameterBlocks(const ParameterBlocks&) = delete;
   ParameterBlocks& operator=(const ParameterBlocks&) = delete;
 
-  // What the blocks hold now.
+  // The blocks' current values.
   CalibrationState state() const;
 
-  // Its numbers are the blocks themselves, so that lists must keep their sizes; save mappings and intrinsics,
-  // whose blocks follow.
+  // The state's numbers are the blocks themselves, so its lists must keep their sizes; mappings and
+  // intrinsics have separate blocks, from which they are updated.
   CalibrationState& moved() { return moved_; }
   const CalibrationState& moved() const { return moved_; }
 
-  // The block of a part of moved(); null where it is fixed.
+  // The block of a part of moved(); null if it is fixed.
   double* of(double& value) { return &value; }
   double* of(Eigen::Vector3d& value) { return value.data(); }
   double* of(Eigen::Quaterniond& value) { return value.coeffs().data(); }
   double* of(Eigen::Matrix3d& value) { return triangles_.at(&value).data(); }
   double* of(std::optional<CameraIntrinsics>& value);
-  // Of the camera's sensor; null if they are fixed.
+  // Intrinsics block of the camera's sensor; null if they are fixed.
   IntrinsicsBlock* intrinsics(std::size_t camera) { return intrinsics_[sensorOf(camera)].get(); }
 
-  // The camera whose blocks hold what cameras that are one sensor have in common: itself, where each has its own.
+  // The camera whose blocks contain the quantities that cameras of one sensor share; itself if nothing is
+  // shared.
   std::size_t sensorOf(std::size_t camera) const { return sensors_[camera]; }
   bool ownsSensor(std::size_t camera) const { return sensors_[camera] == camera; }
-  // Cameras without blocks of their own follow those that have them, in moved().
+  // Copies shared quantities to the cameras without blocks of their own, in moved().
   void followSensors();
 
   SegmentTimes segmentAt(double time_s) const;

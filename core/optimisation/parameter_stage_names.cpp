@@ -15,7 +15,7 @@ std::string wordsOf(const QuantityInfo& info) {
     case QuantityOwner::Camera:
       return "camera " + std::string(title);
     case QuantityOwner::Imu:
-      // Which of its two sensors is said there.
+      // The title without the name of one of the two sensors.
       if (title.starts_with("gyroscope") || title.starts_with("accelerometer")) return std::string(title);
       return "IMU " + std::string(title);
     case QuantityOwner::Board:

@@ -1,4 +1,4 @@
-// What the batch solves for from one stage on, in words for people.
+// Names for people of the quantities that a stage of the batch releases.
 #pragma once
 
 #include "core/optimisation/parameter_blocks.h"
@@ -8,10 +8,10 @@
 
 namespace evical {
 
-// Of quantities that are free, in the order of their table: "camera time offset", once for all cameras.
+// Names of free quantities, in the order of their table: "camera time offset", once for all cameras.
 std::vector<std::string> quantityWords(const std::vector<Quantity>& quantities);
 
-// Of `now` what was not there before.
+// Names of `now` that are not among the earlier ones.
 std::vector<std::string> releasedWords(const std::vector<std::string>& now,
                                        const std::vector<std::string>& before);
 

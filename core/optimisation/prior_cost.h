@@ -1,4 +1,4 @@
-// Costs of what is known beforehand.
+// Cost functions of priors.
 #pragma once
 
 #include "core/geometry/so3.h"
@@ -11,7 +11,7 @@
 
 namespace evical {
 
-// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit; where its numbers are correlated,
+// Zero if a block has its prior's mean: r = (block - mean) / sigma, without unit; for correlated numbers
 // r = L^-1 (block - mean), L the Cholesky factor of their covariance. Block: numbers.
 class PriorCost final : public ceres::CostFunction {
  public:
@@ -44,10 +44,10 @@ class PriorCost final : public ceres::CostFunction {
   Eigen::MatrixXd weight_;
 };
 
-// The axes about which a rotation's sigmas are: those of the frame into which it turns, or from which.
+// Axes of a rotation's sigmas: those of the target frame or of the source frame.
 enum class PriorAxes { Target, Source };
 
-// Zero when a rotation is its prior's: r = Log(R R_prior^-1) / sigma about the target's axes, Log(R_prior^-1
+// Zero if a rotation equals its prior: r = Log(R R_prior^-1) / sigma about the target's axes, Log(R_prior^-1
 // R) / sigma about the source's; without unit. Block: quaternion as in so3_manifold.h.
 class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
  public:
@@ -75,7 +75,7 @@ class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
   PriorAxes axes_;
 };
 
-// Zero when an IMU's mapping does to an axis what its prior M_prior does: r = (M - M_prior) axis / sigma,
+// Zero if an IMU's mapping agrees with its prior M_prior along an axis: r = (M - M_prior) axis / sigma,
 // without unit. Block: mapping.
 class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
  public:
@@ -97,7 +97,7 @@ class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
   double weight_;
 };
 
-// Zero when a translation has along an axis what its prior has: r = axis . (translation - prior) / sigma,
+// Zero if a translation agrees with its prior along an axis: r = axis . (translation - prior) / sigma,
 // without unit. Block: translation [m].
 class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {
  public:
@@ -114,7 +114,7 @@ class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {
   Eigen::Vector3d weighted_axis_, prior_m_;
 };
 
-// Zero when a vector has its prior's norm: r = (|block| - norm) / sigma,
+// Zero if a vector has its prior's norm: r = (|block| - norm) / sigma,
 // without unit. Block: gravity [m/s^2].
 class NormCost final : public ceres::SizedCostFunction<1, 3> {
  public:

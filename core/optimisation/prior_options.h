@@ -1,4 +1,4 @@
-// How weakly the batch optimisation holds what the recording may leave open.
+// Widths of the weak priors on parameters that the recording may not determine.
 #pragma once
 
 #include "core/base/option_struct.h"
@@ -33,7 +33,7 @@ struct PriorOptions {
   static const OptionTable<PriorOptions>& table();
 };
 
-// Of the ratio of a board's two directions, each of which was measured.
+// Sigma of the ratio of a board's two directions, each of which was measured.
 double boardStretchSigma(double spacing_sigma);
 
 }  // namespace evical

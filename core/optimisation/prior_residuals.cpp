@@ -29,7 +29,7 @@ bool isKnown([[maybe_unused]] const Row& row, [[maybe_unused]] const Prior& prio
   return false;
 }
 
-// Of these quantities of one sensor, or board; what the session itself knows goes before.
+// Weak priors on these quantities of one sensor or board; the session's own priors take precedence.
 template <class Rows, class State, class Prior>
 void addWeakPriors(ProblemBuilder& builder, const Rows& rows, std::initializer_list<QuantityId> ids,
                    const PriorOwner& owner, const Prior& prior, State& state) {
@@ -59,7 +59,7 @@ void holdTranslation(ProblemBuilder& builder, double* translation_m,
 
 void holdMapping(ProblemBuilder& builder, double* mapping, const std::vector<Eigen::Vector3d>& axes,
                  const std::optional<KnownMapping>& known) {
-  constexpr double kSigma = 1e-5;  // far below what could be measured
+  constexpr double kSigma = 1e-5;  // far below measurable values
   if (!builder.has(mapping)) return;
   const Eigen::Matrix3d prior = known ? known->value : Eigen::Matrix3d::Identity();
   for (const Eigen::Vector3d& axis : axes) builder.addPrior(new HeldAxisCost(axis, prior, kSigma), {mapping});
@@ -84,7 +84,7 @@ void addCameraPriors(ProblemBuilder& builder) {
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const CameraData& data = builder.input.cameras[i];
-    if (data.same_sensor_as) continue;  // a prior of the sensor counts once
+    if (data.same_sensor_as) continue;  // one prior per sensor
     add(i, {QuantityId::Translation});
     holdTranslation(builder, cameras[i].reference_from_camera.translation_m.data(), data.prior.translation);
     if (builder.drifts(data.prior)) add(i, {QuantityId::TimeOffsetDrift});
@@ -114,7 +114,7 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
   if (builder.turnsGyroscope(imu)) add({QuantityId::GyroscopeRotation});
 }
 
-// What the session knows of a sensor, weighed or held.
+// The session's priors and given values of one sensor.
 template <class Rows, class Prior, class State>
 void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prior, State& state) {
   forEachPriorQuantity(rows, [&](const auto& row) {
@@ -128,7 +128,7 @@ void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prio
   });
 }
 
-// How far a board may be from what is said of it: both of its directions were measured.
+// Possible deviation of a board from its given size: both of its directions were measured.
 void addBoardPriors(ProblemBuilder& builder, std::size_t index) {
   const PriorOwner owner{0, &builder.input.boardAt(index),
                          builder.input.spacingSigma(index, builder.options.board_spacing_sigma)};
@@ -155,7 +155,7 @@ void addPriors(ProblemBuilder& builder) {
                      {gravity});
 }
 
-// A reference has no blocks of a place of its own, or they are held anyway.
+// A reference has no pose blocks, or they are fixed anyway.
 void addKnownValues(ProblemBuilder& builder) {
   CalibrationState& state = builder.parameters.moved();
   for (std::size_t i = 0; i < state.cameras.size(); ++i)

@@ -1,18 +1,18 @@
-// What weighs on the unknowns besides measurements, and what is held.
+// Residuals of priors, and fixed blocks.
 #pragma once
 
 #include "core/optimisation/problem_builder.h"
 
 namespace evical {
 
-// Of the options, where the session says nothing itself; along held axes also where it does. Only blocks that
-// measurements brought into the problem get any.
+// Weak priors of the options, for quantities without a prior in the session; along fixed axes also with one.
+// Only blocks that have measurements in the problem get any.
 void addPriors(ProblemBuilder& builder);
 
-// Of the session: what it weighs and what it gives.
+// Priors and given values of the session.
 void addKnownValues(ProblemBuilder& builder);
 
-// On the trajectory where no IMU fills the gaps between views.
+// Smoothness of the trajectory if no IMU bridges gaps between views.
 void addSmoothness(ProblemBuilder& builder);
 
 }  // namespace evical

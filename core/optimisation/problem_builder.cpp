@@ -41,9 +41,9 @@ bool ProblemBuilder::rolls(std::size_t camera) const {
          (data.shutter == Shutter::Rolling || options.line_delay);
 }
 
-// Where all frames are exposed as long, what passes before a stamp is part of the time offset.
+// With equal exposures of all frames, the exposure's share is part of the time offset.
 bool ProblemBuilder::exposuresVary(std::size_t camera) const {
-  constexpr double kLeast_s = 1e-4;  // half of it is a time that can be told
+  constexpr double kLeast_s = 1e-4;  // half of it is a measurable time
   return stage != ParameterStages::Extrinsics &&
          exposureSpread_s(input.cameras[camera].observations) > kLeast_s;
 }

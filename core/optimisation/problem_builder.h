@@ -1,4 +1,4 @@
-// The batch's problem while it is put together: what measurements, priors and held values are added to.
+// The batch's problem during construction, to which measurements, priors and fixed values are added.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -16,7 +16,7 @@ class CircleCost;
 
 enum class SensorKind { Circles, Gyroscope, Accelerometer, Prior };
 
-// What one residual block of the problem measures, and when.
+// Measurement and time of one residual block of the problem.
 struct BlockInfo {
   ceres::ResidualBlockId id = nullptr;
   SensorKind kind = SensorKind::Prior;
@@ -25,7 +25,7 @@ struct BlockInfo {
   const CircleCost* circles = nullptr;
 };
 
-// RMS over a camera's points; 0 where exposures are all the same, or not known.
+// RMS over a camera's points; 0 if exposures are equal or unknown.
 double exposureSpread_s(const BoardObservations& observations);
 
 struct ProblemBuilder {
@@ -39,19 +39,19 @@ struct ProblemBuilder {
 
   bool has(const double* block) const { return problem.HasParameterBlock(block); }
   bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
-  // Where nothing turns about some axis the gyroscope could take any turn about it.
+  // Without rotation about some axis, the gyroscope's rotation about it is undetermined.
   bool turnsGyroscope(std::size_t imu) const;
-  // Where hardly anything accelerates along some axis, errors of the circles would pass for a board of another size.
+  // Without acceleration along some axis, circle errors would be taken for another size of the board.
   bool scaleIsHeld() const;
-  // Where splines cannot follow the accelerations, the delay would be the one at which they miss least.
+  // If splines cannot follow the accelerations, the delay would take the value with the smallest misfit.
   bool delayIsHeld(std::size_t imu) const;
-  // A clock with this prior. One whose offset is given is the reference's own, as far as anybody knows.
+  // A clock with this prior. A given offset belongs to a clock that is presumably the reference's own.
   bool drifts(const SensorPrior& prior) const;
 
   void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
-  bool rolls(std::size_t camera) const;          // its shutter, or as if it did for a test
-  bool exposuresVary(std::size_t camera) const;  // so much that the exposure's share can be told
-  void hold(double* block);                      // if it is in the problem
+  bool rolls(std::size_t camera) const;          // rolling shutter, or one assumed for a test
+  bool exposuresVary(std::size_t camera) const;  // so much that they determine the exposure's share
+  void hold(double* block);                      // fixes it if it is in the problem
 };
 
 }  // namespace evical

@@ -18,7 +18,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMedianOfChi2With3 = 2.3659738843753377;
 constexpr std::size_t kNeighbours = 16;  // on either side
 
-// The sigma per axis of errors whose norms these are.
+// Sigma per axis of errors with these norms.
 double scaleOfNorms(std::vector<double> norms) {
   return medianOf(std::move(norms)) / std::sqrt(kMedianOfChi2With3);
 }
@@ -27,7 +27,7 @@ struct Range {
   std::size_t begin, end;
 };
 
-// The range around `i` with `kNeighbours` fit samples on either side.
+// Range around `i` with `kNeighbours` fit samples on either side.
 Range neighboursOf(std::size_t i, const std::vector<std::uint8_t>& fit) {
   Range range{i, i + 1};
   for (std::size_t left = kNeighbours; left > 0 && range.begin > 0;) left -= fit[--range.begin] ? 1 : 0;
@@ -35,7 +35,7 @@ Range neighboursOf(std::size_t i, const std::vector<std::uint8_t>& fit) {
   return range;
 }
 
-// Of the samples that are fit, without one of them.
+// Norms of the fit samples in a range, without one of them.
 std::vector<double> normsIn(Range range, const std::vector<double>& norms,
                             const std::vector<std::uint8_t>& fit, std::size_t without) {
   std::vector<double> found;
@@ -92,7 +92,7 @@ std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_
     }
     if (count == 0) return;
     notes.push_back(fmt::format(
-        "{}: {} of {} samples of the {} contradict the motion (at {}{}) and were left out", data.name, count,
+        "{}: {} of {} samples of the {} contradict the motion (at {}{}) and were excluded", data.name, count,
         std::count(could.begin(), could.end(), 1), sensor, times, count > kMostTimes ? ", ..." : ""));
   };
   say("gyroscope", fit.gyroscope, used.gyroscope);

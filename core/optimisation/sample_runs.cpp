@@ -8,7 +8,7 @@
 namespace evical {
 namespace {
 
-// `timeOf` tells when the sensor measured what is stamped so, `within` whether the splines reach there.
+// `timeOf` converts a stamp to the time of measurement; `within` checks whether the splines cover it.
 template <class TimeOf, class Within>
 std::vector<SampleRun> runsOf(const CalibrationInput& input, const CalibrationState& all, std::size_t imu,
                               TimeOf&& timeOf, Within&& within) {

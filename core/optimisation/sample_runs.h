@@ -1,5 +1,4 @@
-// Samples of a gyroscope or an accelerometer that share spline segments and the knots of its biases: one block of the
-// batch each.
+// Gyroscope or accelerometer samples that share spline segments and bias knots: one block of the batch each.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -14,14 +13,14 @@ namespace evical {
 struct SampleRun {
   std::size_t imu;
   SegmentTimes segment;
-  double stamp_s;          // of the first, on the IMU's own clock
-  double time_s, last_s;   // when it and the last one were measured, on the reference's
+  double stamp_s;          // first sample, on the IMU's own clock
+  double time_s, last_s;   // times of the first and last sample, on the reference's
   std::size_t begin, end;  // of the IMU's samples
 };
 
-// Of the samples that lie within the splines. Of an accelerometer without those that begin late in a segment or end
-// early, as where a delay has carried a few across a border: its outermost control points would rest on next to nothing,
-// and say as little of these samples.
+// Runs of the samples within the splines. An accelerometer's outermost runs are dropped if they begin late in
+// a segment or end early, as when a delay moves a few samples across a border: they would hardly constrain
+// its outermost control points, and these hardly the samples.
 std::vector<SampleRun> gyroscopeRuns(const CalibrationInput& input, const CalibrationState& state,
                                      std::size_t imu);
 std::vector<SampleRun> accelerometerRuns(const CalibrationInput& input, const CalibrationState& state,

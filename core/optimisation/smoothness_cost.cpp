@@ -5,7 +5,7 @@
 namespace evical {
 namespace {
 
-// With respect to delta, as So3Manifold wants it.
+// Derivative by delta, as So3Manifold requires.
 void writeByRotation(const Eigen::Matrix3d& by_delta, double* jacobian) {
   Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> out(jacobian);
   out.leftCols<3>() = by_delta;
@@ -23,7 +23,7 @@ bool SmoothRotationCost::Evaluate(double const* const* parameters, double* resid
   const Eigen::Vector3d before = quaternionLog(a.conjugate() * b), after = quaternionLog(b.conjugate() * c);
   Eigen::Map<Eigen::Vector3d>{residuals} = weight_ * (after - before);
   if (!jacobians) return true;
-  // Log(A^T B) by B is the right Jacobian's inverse, by A minus the left one's, which is its transpose.
+  // d Log(A^T B) by B: inverse right Jacobian; by A: minus the inverse left one, which is its transpose.
   const Eigen::Matrix3d by_later_before = so3RightJacobianInverse(before),
                         by_later_after = so3RightJacobianInverse(after);
   if (jacobians[0]) writeByRotation(weight_ * by_later_before.transpose(), jacobians[0]);

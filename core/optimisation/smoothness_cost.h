@@ -1,4 +1,4 @@
-// Weak costs on a trajectory that no IMU measures, so that stretches without views stay determined:
+// Weak costs on a trajectory without an IMU, which determine stretches without views:
 // zero for constant velocity, r = acceleration / sigma with the acceleration from three
 // neighbouring control points, without unit.
 #pragma once

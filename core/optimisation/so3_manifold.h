@@ -1,8 +1,8 @@
 // Quaternion blocks (x y z w, as Eigen stores them) perturbed on the right: R -> R Exp(delta).
 //
 // PlusJacobian is [I; 0]: cost functions write derivatives with respect to delta into the first three of the
-// four columns, and zero into the last. That spares the chain through the quaternion, and is why these
-// blocks' Jacobians can't be compared with derivatives with respect to the quaternion's numbers.
+// four columns, and zero into the last. This avoids the chain rule through the quaternion. These blocks'
+// Jacobians can therefore not be compared with derivatives by the quaternion's numbers.
 #pragma once
 
 #include <ceres/manifold.h>

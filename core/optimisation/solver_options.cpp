@@ -7,17 +7,17 @@ namespace {
 
 constexpr std::tuple kSolverFields{
     Field{"function_tolerance", &SolverOptions::function_tolerance, 1e-6, within(1e-14, 1e-2), "",
-          "The last stage ends when the cost changes by less than this fraction."},
+          "Relative cost change at which the last stage ends."},
     Field{"stage_tolerance", &SolverOptions::stage_tolerance, 1e-4, within(1e-14, 1e-1), "",
-          "The same for the stages before the last."},
-    Field{"max_iterations", &SolverOptions::max_iterations, 30, within(1, 1000), "",
-          "Iterations of one solve.", Level::Expert},
+          "Relative cost change at which a stage before the last ends."},
+    Field{"max_iterations", &SolverOptions::max_iterations, 30, within(1, 1000), "", "Iterations per solve.",
+          Level::Expert},
     Field{"max_rounds", &SolverOptions::max_rounds, 5, within(1, 100), "",
-          "Solves of one stage, each with measurements assigned to spline segments anew."},
+          "Solves per stage; measurements are assigned to spline segments again before each."},
     Field{"segment_drift", &SolverOptions::segment_drift, 0.05, within(0.001, 0.5), "knots",
-          "A time offset may move this far before measurements are assigned to spline segments anew."},
+          "Time offset change after which measurements are assigned to spline segments again."},
     Field{"threads", &SolverOptions::threads, 2, within(1, 256), "",
-          "Threads of the batch, those of its linear algebra included.", Level::Public}};
+          "Threads of the batch, including its linear algebra.", Level::Public}};
 constexpr auto kSolverDefaults = defaultsOf<SolverOptions, kSolverFields>();
 
 }  // namespace

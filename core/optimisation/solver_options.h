@@ -1,4 +1,4 @@
-// How the batch optimisation goes about it.
+// Options of the batch optimisation's solver.
 #pragma once
 
 #include "core/base/option_struct.h"

@@ -1,4 +1,4 @@
-// The stretch of both splines that one cost function's measurements fall into, and
+// Segment of both splines that contains one cost function's measurements, and
 // its evaluation from Ceres' blocks.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace evical {
 
 struct SegmentTimes {
   int rotation = 0, position = 0;                         // segment indices
-  double rotation_start_s = 0.0, position_start_s = 0.0;  // where the segments begin
+  double rotation_start_s = 0.0, position_start_s = 0.0;  // start times of the segments
   double rotation_spacing_s = 0.0, position_spacing_s = 0.0;
 
   double rotationPlace(double time_s) const { return (time_s - rotation_start_s) / rotation_spacing_s; }
@@ -41,7 +41,7 @@ inline VectorSample positionAt(const SegmentTimes& times, const double* const* b
                                times.position_spacing_s);
 }
 
-// The third derivative of the position, the same all over the segment.
+// Third derivative of the position, constant over the segment.
 inline Eigen::Vector3d jerkOf(const SegmentTimes& times, const double* const* blocks) {
   const auto point = [&](int k) { return Eigen::Map<const Eigen::Vector3d>(blocks[k]); };
   const double spacing_s = times.position_spacing_s;

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-// Which segments of a spline hold a view.
+// Segments of a spline that contain a view.
 std::vector<std::uint8_t> seenSegments(const CalibrationInput& input, const CalibrationState& state,
                                        double start_s, double spacing_s, int segments) {
   std::vector<std::uint8_t> seen(static_cast<std::size_t>(std::max(0, segments)));
@@ -24,8 +24,8 @@ std::vector<std::uint8_t> seenSegments(const CalibrationInput& input, const Cali
   return seen;
 }
 
-// acceleration(k, n): from control points k - 2 n, k - n, k, times the square of their distance in time. They
-// count where all segments between hold views. So far apart that noise of single views hardly counts.
+// acceleration(k, n): from control points k - 2 n, k - n, k, times the square of their distance in time. Used
+// if all segments between contain views. The distance is so large that noise of single views hardly matters.
 template <class Acceleration>
 double rms(const std::vector<std::uint8_t>& seen, double spacing_s, Acceleration&& acceleration) {
   constexpr double kApart_s = 0.1;

@@ -1,5 +1,5 @@
-// How strongly a trajectory that no IMU measures is accelerated, where views tell it: what is
-// to be expected between them.
+// Acceleration of a trajectory without an IMU, determined from its views: the expected acceleration
+// between them.
 #pragma once
 
 #include "core/data/calibration_setup.h"

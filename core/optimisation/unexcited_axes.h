@@ -1,5 +1,5 @@
-// Axes of an IMU along which a recording holds no more than noise: nothing there tells scale or misalignment,
-// and an estimate that is free to choose takes the scale that hides other errors, down to 0.
+// Axes of an IMU along which a recording contains only noise: scale and misalignment are undetermined there,
+// and a free estimate takes the scale that hides other errors, down to 0.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +16,12 @@ struct Weights;
 struct UnexcitedAxes {
   std::vector<Eigen::Vector3d> gyroscope, accelerometer;
 
-  // Where what is mounted there moves the same wherever along them it is: the axis of a rotation that has
-  // only one, and all without rotation.
+  // Directions along which a displacement does not change a mounted sensor's motion: the axis of a rotation
+  // about a single axis, and all directions without rotation.
   std::vector<Eigen::Vector3d> axesWithoutRotation() const;
 };
 
-// Samples that are used and lie in the splines' range, against their noise as `weights` have it.
+// Uses the selected samples in the splines' range, compared with their noise in `weights`.
 UnexcitedAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const Weights& weights,
                         std::size_t imu);
 

@@ -102,7 +102,7 @@ void UnknownColumns::addBlocks(CalibrationProblem& problem) {
 }
 
 void UnknownColumns::makeParts() {
-  constexpr std::size_t kParts = 16;  // so many that two threads end together, so few that sums stay cheap
+  constexpr std::size_t kParts = 16;  // enough to balance two threads, few enough to keep sums cheap
   order_.resize(blocks_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {

@@ -1,5 +1,6 @@
-// Where the unknowns of a built problem stand in its normal equations: control points in order of time, which makes a
-// band of them (core/numerics/bordered_band.h), and for its border first the calibrated quantities, then the biases' knots.
+// Columns of a built problem's unknowns in its normal equations: control points in order of time, which form
+// a band (core/numerics/bordered_band.h), and as its border the calibrated quantities and then the biases'
+// knots.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,17 +22,17 @@ class CalibrationProblem;
 struct Unknown {
   double* values = nullptr;
   int size = 0;
-  int columns = 0;                            // of its tangent space; 0: it is held
-  bool spline = false;                        // of the band, or else of the border
-  Eigen::Index first = 0;                     // column of either
-  const ceres::Manifold* manifold = nullptr;  // null where its numbers are its tangent space
+  int columns = 0;                            // of its tangent space; 0: fixed
+  bool spline = false;                        // in the band, otherwise in the border
+  Eigen::Index first = 0;                     // column in the band or the border
+  const ceres::Manifold* manifold = nullptr;  // null if its numbers are its tangent space
   bool leading = true;  // derivatives by the tangent are the first of those by the numbers
   std::vector<double> lower = {}, upper = {};  // bounds of its numbers; empty without any
 };
 
 class UnknownColumns {
  public:
-  // As the problem is built now.
+  // Columns of the problem in its current state.
   explicit UnknownColumns(CalibrationProblem& problem);
 
   Eigen::Index splineSize() const { return spline_size_; }
@@ -40,11 +41,11 @@ class UnknownColumns {
   Eigen::Index borderSize() const { return quantitySize() + drift_size_; }
   Eigen::Index size() const { return splineSize() + borderSize(); }
   Eigen::Index halfBandwidth() const { return half_bandwidth_; }
-  // Of each quantity within the border; one more for the end.
+  // First column of each quantity within the border, plus the end.
   const std::vector<Eigen::Index>& firstColumn() const { return first_column_; }
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  // Of unknown k's tangent space, in all columns: the band's, then the border's.
+  // Column of unknown k's tangent space among all columns: the band's, then the border's.
   Eigen::Index firstOf(const Unknown& unknown) const {
     return unknown.spline ? unknown.first : spline_size_ + unknown.first;
   }
@@ -55,8 +56,9 @@ class UnknownColumns {
   // Indices into unknowns(), in the order of the cost function's blocks.
   std::span<const std::int32_t> unknownsOf(std::size_t block) const;
 
-  // Residual blocks in order of time, in parts that are the same for any number of threads: to rows of the band from
-  // first_row to end_row no other part's blocks add, save that those of parts before reach across its begin.
+  // Residual blocks in order of time, in parts that are the same for any number of threads. Only this part's
+  // blocks add to rows of the band from first_row to end_row, except that earlier parts reach across its
+  // begin.
   struct Part {
     std::size_t begin, end;  // of order()
     Eigen::Index first_row, end_row;

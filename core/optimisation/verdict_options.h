@@ -1,4 +1,4 @@
-// How sure a result is, and what makes it doubtful.
+// Options of the reported sigmas, and limits beyond which a result is doubtful.
 #pragma once
 
 #include "core/base/option_struct.h"

@@ -7,7 +7,7 @@ namespace evical {
 
 std::optional<double> weakSigma(const QuantityInfo& info, const OptimisationOptions& options,
                                 const PriorOwner& owner) {
-  constexpr double kBoardWithin_m = 100.0;  // a limit for a board that no view locates
+  constexpr double kBoardWithin_m = 100.0;  // limits a board without views
   switch (info.id) {
     case QuantityId::Translation:
       return info.owner == QuantityOwner::Board ? kBoardWithin_m : options.translation_sigma_m;

@@ -1,5 +1,5 @@
-// The default priors: a quantity without a prior in the session is near its value in a new state. The batch and the
-// combination of several results use the same sigmas.
+// Default priors: a quantity without a prior in the session is near its value in a new state. The batch and
+// the combination of several results use the same sigmas.
 #pragma once
 
 #include "core/data/quantity.h"
@@ -10,14 +10,14 @@
 
 namespace evical {
 
-// What a sigma depends on besides the options.
+// Parameters of a sigma in addition to the options.
 struct PriorOwner {
   int image_height_px = 0;  // of a camera
   const Board* board = nullptr;
   double spacing_sigma = 0.0;  // of that board
 };
 
-// The sigma of each of the quantity's numbers; empty without a weak prior. Lenses and gravity have other priors.
+// Sigma of each of the quantity's numbers; empty without a weak prior. Lenses and gravity have other priors.
 std::optional<double> weakSigma(const QuantityInfo& info, const OptimisationOptions& options,
                                 const PriorOwner& owner);
 

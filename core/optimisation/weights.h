@@ -1,4 +1,4 @@
-// How much each measurement counts in the batch: found from its residuals, round by round.
+// Weights of the measurements in the batch, determined iteratively from their residuals.
 #pragma once
 
 #include "core/data/unfit_samples.h"
@@ -11,28 +11,28 @@ namespace evical {
 
 struct CalibrationInput;
 
-// How much larger residuals are than the sigmas given for them, per sensor. The batch divides its weights by
-// these, so that wrong noise densities or circle covariances don't decide between camera and IMU.
+// Ratios of residuals to their given sigmas, per sensor. The batch divides its weights by them, so that wrong
+// noise densities or circle covariances do not change the balance between camera and IMU.
 struct NoiseScales {
   std::vector<double> circles;                          // by camera
   std::vector<double> gyroscopes, accelerometers;       // by IMU
   double smooth_rotation = 1.0, smooth_position = 1.0;  // without an IMU: accelerations at the knots
 };
 
-// used[camera][view][i]: circle i of the view's list takes part.
+// used[camera][view][i]: circle i of the view's list is used.
 using CircleSelection = std::vector<std::vector<std::vector<std::uint8_t>>>;
 
 struct Weights {
   NoiseScales scales;
   CircleSelection used_circles;
   std::vector<SampleSelection> used_samples;  // by IMU
-  // By IMU: along these a mapping stays as it is, and translations stay at 0.
+  // By IMU: along these axes a mapping stays unchanged, and translations stay at 0.
   std::vector<UnexcitedAxes> held_axes;
 };
 
 CircleSelection allCircles(const CalibrationInput& input);
 
-// Noise as it is given, all circles, all samples that are fit, nothing held.
+// Given noise, all circles, all fit samples, no fixed axes.
 Weights givenWeights(const CalibrationInput& input);
 
 }  // namespace evical

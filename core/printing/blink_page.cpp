@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// What @...@ stands for is put in below.
+// Template; code below replaces the @...@ marks.
 constexpr std::string_view kPage = R"(<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -34,9 +34,9 @@ pre { background: #eee; padding: 0.7em; }
 <body>
 <div id="setup">
 <h1>Blinking board</h1>
-<p class="warning">This page flashes all of the screen. Flashing light can trigger seizures in people with
+<p class="warning">This page flashes the whole screen. Flashing light can trigger seizures in people with
 photosensitive epilepsy.</p>
-<p>For the intrinsics of an event camera that stands still. Set the browser's zoom to 100 % and the
+<p>For the intrinsics of an event camera at rest. Set the browser's zoom to 100 % and the
 screen to full brightness.</p>
 <ol>
 <li><p>Measure the length of this bar with a ruler:</p>
@@ -45,8 +45,8 @@ screen to full brightness.</p>
 <li><p><label>Flash at <select id="rate"></select></label> <span id="refresh"></span></p></li>
 <li><p>In the session:</p>
 <pre id="session"></pre></li>
-<li><p><button id="start">Flash in full screen</button> Escape or a click ends it.</p></li>
-<li><p>Record for some seconds from each of 15 or more places: the camera still, or all but still, the board in every
+<li><p><button id="start">Flash in full screen</button> Press Escape or click to stop.</p></li>
+<li><p>Record a few seconds from each of at least 15 poses: the camera at rest, or almost at rest, the board in every
 part of the image, near and far, tilted by 20 to 40 degrees to all four sides.</p></li>
 </ol>
 </div>
@@ -58,14 +58,15 @@ shape-rendering="@RENDERING@"><g id="ink">
 const board = @BOARD@;
 const byId = (id) => document.getElementById(id);
 
-// As large as the screen allows, the spacing a whole number of the screen's own pixels. All but the last in CSS pixels.
+// Largest layout that fits the screen, with a spacing of a whole number of device pixels. Sizes are in CSS
+// pixels.
 function layOut(width_px, height_px, ratio) {
   const largest = Math.min(width_px / board.width_mm, height_px / board.height_mm);
   const spacing_px = Math.max(1, Math.floor(largest * board.spacing_mm * ratio)) / ratio;
   return { spacing_px, px_per_mm: spacing_px / board.spacing_mm };
 }
 
-// Of the screen's pixels, by the bar; nothing until it was measured.
+// Spacing in metres from the measured length of the bar; undefined until it was measured.
 function trueSpacing_m(layout, bar_px, length_mm) {
   return length_mm > 0 ? layout.spacing_px * length_mm / bar_px / 1000 : undefined;
 }
@@ -80,7 +81,7 @@ function sessionText(spacing_m) {
 
 let layout, frames_per_half = 1, flashing = false, frames = 0;
 
-// The fastest up to 30 Hz is the first choice.
+// Possible rates; the default is the fastest one up to 30 Hz.
 function ratesOf(refresh_hz) {
   const rates = [];
   for (let frames = 1; refresh_hz / (2 * frames) >= 5; ++frames) rates.push({ frames, hz: refresh_hz / (2 * frames) });
@@ -93,7 +94,7 @@ function show() {
   byId("session").textContent = sessionText(trueSpacing_m(layout, bar_px, parseFloat(byId("length").value)));
 }
 
-// In full screen as was told before; else in what there is, which is then told.
+// Places the board in the current window and updates the session's text.
 function place() {
   layout = layOut(window.innerWidth, window.innerHeight, window.devicePixelRatio || 1);
   show();
@@ -121,7 +122,7 @@ function start() {
   requestAnimationFrame(tick);
 }
 
-// Where the browser lets pages do so.
+// Keeps the screen on, if the browser allows it.
 function stayAwake() {
   if (navigator.wakeLock) navigator.wakeLock.request("screen").catch(() => {});
 }
@@ -132,7 +133,7 @@ function stop() {
   if (document.fullscreenElement) document.exitFullscreen();
 }
 
-// Median of the times between a second's frames.
+// Refresh rate from the median interval between 60 frames.
 function measureRefresh(then) {
   const times = [];
   const next = (now) => {
@@ -147,7 +148,7 @@ function measureRefresh(then) {
 measureRefresh((refresh_hz) => {
   const { rates, chosen } = ratesOf(refresh_hz);
   for (const rate of rates) byId("rate").add(new Option(rate.hz.toFixed(1) + " Hz", rate.frames, false, rate === chosen));
-  byId("refresh").textContent = `(the screen shows ${refresh_hz.toFixed(0)} pictures a second)`;
+  byId("refresh").textContent = `(the screen's refresh rate is ${refresh_hz.toFixed(0)} Hz)`;
 });
 byId("length").addEventListener("input", show);
 byId("start").addEventListener("click", () => {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 
-// One row of pixels after another. What is painted within a row is taken in bands, in each of which boxes begin and
-// end nowhere but at its edges.
+// Renders row by row. Each row of pixels is divided into bands, so that boxes begin and end only at a band's
+// edges.
 class SheetRaster {
  public:
   SheetRaster(const BoardSheet& sheet, double resolution_dpi)
@@ -49,7 +49,7 @@ class SheetRaster {
   }
 
  private:
-  // In pixels, in order. A circle's edge is taken at the middles of eight bands.
+  // Band edges in pixels, in order. Circles are sampled at the centres of eight bands.
   std::vector<double> edgesWithin(int row) const {
     constexpr int kBandsOfCircle = 8;
     std::vector<double> edges = {static_cast<double>(row), row + 1.0};
@@ -99,10 +99,10 @@ class SheetRaster {
     }
   }
 
-  // The caption, in a strip of its own.
+  // Draws the caption in a separate strip.
   void letter() {
     constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-    constexpr double kCapital = 21.0;  // its height in pixels at scale 1
+    constexpr double kCapital = 21.0;  // height of a capital letter in pixels at scale 1
     const double letter_px = 0.7 * sheet_.text_size_mm * px_per_mm_;
     const int thickness = std::max(1, static_cast<int>(std::lround(0.12 * letter_px)));
     const auto above = static_cast<int>(std::ceil(2.0 * letter_px)), below = above;
@@ -128,15 +128,16 @@ std::string boardPng(const Board& board, double resolution_dpi, const SheetOptio
                      const TagPrint& print) {
   constexpr double kLeast_dpi = 10.0, kMost_dpi = 4800.0, kMostPixels = 2e9;
   if (!(resolution_dpi >= kLeast_dpi && resolution_dpi <= kMost_dpi))
-    throw badInput("dpi", fmt::format("must lie in {}..{}", kLeast_dpi, kMost_dpi),
-                   "300 or 600 are what printers print");
+    throw badInput("dpi", fmt::format("must be in {}..{}", kLeast_dpi, kMost_dpi),
+                   "Use 300 or 600, as printers do");
   const BoardSheet sheet = layOut(board, options, print);
   SheetRaster raster(sheet, resolution_dpi);
   const double pixels = static_cast<double>(raster.width_px()) * raster.height_px();
   if (pixels > kMostPixels)
     throw badInput("dpi",
-                   fmt::format("makes a picture of {} x {} pixels", raster.width_px(), raster.height_px()),
-                   "Use fewer, or PDF or SVG, which have no pixels");
+                   fmt::format("gives an image of {} x {} pixels, which is too large", raster.width_px(),
+                               raster.height_px()),
+                   "Use a lower resolution, or PDF or SVG, which have no pixels");
   GrayPng png(raster.width_px(), raster.height_px(), resolution_dpi);
   std::vector<std::uint8_t> row;
   for (int y = 0; y < raster.height_px(); ++y) {

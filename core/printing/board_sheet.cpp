@@ -13,10 +13,10 @@ namespace {
 constexpr double kFooterHeight_mm = 18.0;  // ruler and caption below the board
 constexpr double kRulerLength_mm = 100.0, kRulerWidth_mm = 0.25;
 constexpr double kFooterIndent_mm = 10.0, kRulerBelow_mm = 4.0, kCaptionBelow_mm = 10.0;
-constexpr double kLargestText_mm = 3.0, kLetterWidth = 0.6;  // of its size, at most
+constexpr double kLargestText_mm = 3.0, kLetterWidth = 0.6;  // upper bound, relative to the text size
 constexpr double kLargestSheet_mm = 5080.0;                  // 14400 units, PDF 1.7 annex C
 
-// What is printed, from its own top left corner.
+// The pattern, from its own top left corner.
 struct Pattern {
   Eigen::Vector2d size_mm = Eigen::Vector2d::Zero();
   std::vector<Eigen::Vector2d> centres_mm;
@@ -64,25 +64,25 @@ std::string describe(const Board& board, const TagPrint& print) {
   }
 }
 
-// As large as the board needs, but no narrower than the ruler.
+// Size that the board needs, at least the width of the ruler.
 Eigen::Vector2d ownSize_mm(const Board& board, const Eigen::Vector2d& needed_mm) {
   const Eigen::Vector2d size_mm =
       needed_mm.cwiseMax(Eigen::Vector2d(kRulerLength_mm + 2.0 * kFooterIndent_mm, 0.0));
   if (size_mm.maxCoeff() > kLargestSheet_mm)
     throw badInput("board",
-                   fmt::format("needs a sheet of {:.1f} m x {:.1f} m, and 5 m is the most",
-                               1e-3 * size_mm.x(), 1e-3 * size_mm.y()),
+                   fmt::format("needs a sheet of {:.1f} m x {:.1f} m; the maximum is 5 m", 1e-3 * size_mm.x(),
+                               1e-3 * size_mm.y()),
                    board.hasCircles() ? "Check that spacing and radius are in metres"
                                       : "Check that spacing and size are in metres");
   return size_mm;
 }
 
-// Upright or lying, whichever it fits on. `beside_mm` of what is needed is not the board's.
+// Portrait or landscape, as the board fits. `beside_mm`: part of the needed size that is not the board.
 Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const Eigen::Vector2d& needed_mm,
                              const Eigen::Vector2d& beside_mm) {
   const Eigen::Vector2d upright(paper.short_mm, paper.long_mm), lying(paper.long_mm, paper.short_mm);
   constexpr double kRounding_mm = 1e-6;
-  double largest = 0.0;  // of what the board may be, by what it is
+  double largest = 0.0;  // largest scale of the board that fits
   for (const Eigen::Vector2d& size_mm : {upright, lying}) {
     if ((needed_mm.array() <= size_mm.array() + kRounding_mm).all()) return size_mm;
     largest = std::max(largest, ((size_mm - beside_mm).array() / (needed_mm - beside_mm).array()).minCoeff());
@@ -90,13 +90,12 @@ Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const Eigen
   const double spacing_mm = std::floor(1e4 * largest * board.spacing_m) / 10.0;
   throw badInput(
       "board",
-      fmt::format(
-          "needs {:.0f} mm x {:.0f} mm with its margins and the ruler, and {} has {:.0f} mm x {:.0f} mm",
-          needed_mm.x(), needed_mm.y(), paper.name, paper.short_mm, paper.long_mm),
-      "Take larger paper, fewer rows or columns, or a smaller margin" +
-          (spacing_mm > 0.0
-               ? fmt::format("; all sizes in proportion, a spacing of {} mm fits", shortNumber(spacing_mm))
-               : std::string()));
+      fmt::format("needs {:.0f} mm x {:.0f} mm with margins and ruler; {} has {:.0f} mm x {:.0f} mm",
+                  needed_mm.x(), needed_mm.y(), paper.name, paper.short_mm, paper.long_mm),
+      "Use larger paper, fewer rows or columns, or a smaller margin" +
+          (spacing_mm > 0.0 ? fmt::format("; with all sizes in proportion, a spacing of {} mm fits",
+                                          shortNumber(spacing_mm))
+                            : std::string()));
 }
 
 }  // namespace
@@ -119,7 +118,8 @@ const std::vector<Paper>& papers() {
 
 BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrint& print) {
   validate(board);
-  if (!(options.margin_m >= 0.0)) throw badInput("margin", "is below 0", "Give a margin in metres");
+  if (!(options.margin_m >= 0.0))
+    throw badInput("margin", "is negative", "Give a margin in metres, 0 or more");
   const Pattern pattern = board.hasCircles() ? circlesOf(board) : squaresOf(board, print);
   const double margin_mm = 1e3 * options.margin_m;
   const Eigen::Vector2d field_mm = pattern.size_mm + Eigen::Vector2d::Constant(2.0 * margin_mm);
@@ -131,7 +131,7 @@ BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrin
   sheet.width_mm = size_mm.x();
   sheet.height_mm = size_mm.y();
   sheet.radius_mm = 1e3 * board.radius_m;
-  // In the middle of what the footer leaves.
+  // Centred in the area above the footer.
   const Eigen::Vector2d field_at_mm = 0.5 * (size_mm - needed_mm);
   const Eigen::Vector2d first_mm = field_at_mm + Eigen::Vector2d::Constant(margin_mm);
   sheet.field = {field_at_mm.x(), field_at_mm.y(), field_mm.x(), field_mm.y(), false};

@@ -18,7 +18,7 @@ void paintSquare(const Eigen::Vector2d& corner_m, double size_m, Boxes& boxes) {
   boxes.push_back({corner_m, Eigen::Vector2d::Constant(size_m), false});
 }
 
-// A dark square with a border, and on it its bright bits, neighbours in a row as one.
+// Paints a dark square with its border, and on it the bright bits; neighbours in a row form one rectangle.
 void paintTag(const Eigen::Vector2d& corner_m, double size_m, int border_bits, const PatternBits& bits,
               Boxes& boxes) {
   paintSquare(corner_m, size_m, boxes);
@@ -56,7 +56,7 @@ Boxes tagGrid(const Board& board, int border_bits) {
   const int needed = board.rows * board.cols;
   const std::vector<TagBits> tags = firstTags(needed);
   if (needed > static_cast<int>(tags.size()))
-    throw badInput("board", fmt::format("needs {} tags, and tag36h11 has {}", needed, tags.size()),
+    throw badInput("board", fmt::format("needs {} tags, but tag36h11 has {}", needed, tags.size()),
                    "Use fewer rows or columns");
   Boxes boxes;
   const double gap_m = board.spacing_m - board.tag_size_m;
@@ -84,7 +84,7 @@ Boxes charuco(const Board& board, const std::string& markers) {
   return boxes;
 }
 
-// Of points nothing but their places is known.
+// Dots at the points of a board without a pattern: only their positions are known.
 std::vector<PaintedBox> dots(const Board& board) {
   constexpr double kOfSpacing = 0.15;
   std::vector<PaintedBox> boxes;

@@ -1,4 +1,4 @@
-// What is printed of boards without circles: rectangles, painted one over the other.
+// Rectangles of boards without circles, painted one over the other.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -9,10 +9,10 @@
 
 namespace evical {
 
-// What a board's numbers leave open.
+// Properties of printed tags that the board's dimensions do not determine.
 struct TagPrint {
-  int border_bits = 2;                  // of an AprilGrid's tags: Kalibr's 2, or 1
-  std::string markers = kUsualMarkers;  // of a ChArUco board: ArUco's dictionary by its bits
+  int border_bits = 2;                  // AprilGrid: 2 as in Kalibr, or 1
+  std::string markers = kUsualMarkers;  // ChArUco board: name of ArUco's dictionary
 };
 
 struct PaintedBox {
@@ -21,8 +21,8 @@ struct PaintedBox {
   bool bright = false;
 };
 
-// In the order of painting, on bright ground. Throws CalibrationError (BadInput) where the board needs more tags
-// than there are, or a dictionary that there is not.
+// In painting order, on a bright background. Throws CalibrationError (BadInput) if the board needs more tags
+// than the dictionary has, or if the dictionary is unknown.
 std::vector<PaintedBox> boardSquares(const Board& board, const TagPrint& print);
 
 }  // namespace evical

@@ -14,7 +14,7 @@
 
 namespace evical {
 
-// Count of an occurrence, and the byte of the file of the first.
+// Number of occurrences, and the byte of the first one in the file.
 struct Occurrences {
   std::uint64_t count = 0, first_byte = 0;
   void add(std::uint64_t byte) {
@@ -22,7 +22,7 @@ struct Occurrences {
   }
 };
 
-// Data that decoders drop or count; the reader makes faults of them.
+// Data that decoders drop or count; the reader reports them as faults.
 struct BlockFindings {
   Occurrences outside;               // events beyond the sensor
   Occurrences untimed;               // events before the first complete time
@@ -30,7 +30,7 @@ struct BlockFindings {
   Occurrences wraps;                 // of the time, which continues
   Occurrences imu;                   // IMU records without a known scale
   Occurrences exposure;              // events that measure grey levels and belong to no frame
-  std::uint64_t rolling_frames = 0;  // whose pixels are exposed one column after the other
+  std::uint64_t rolling_frames = 0;  // exposed column by column
   std::uint64_t triggers = 0;
 };
 
@@ -44,11 +44,11 @@ class BlockDecoder {
 
   const BlockFindings& findings() const { return findings_; }
 
-  // IMU samples between the events, since the vector was emptied last; for formats that have an IMU.
+  // IMU samples between the events, since the vector was last emptied; for formats with an IMU.
   std::vector<RawImuSample>& imuSamples() { return imu_samples_; }
-  // The same of frames.
+  // Frames, as above.
   virtual std::vector<Frame>* frames() { return nullptr; }
-  virtual void finish() {}  // the file ends here
+  virtual void finish() {}  // called at the file's end
 
  protected:
   std::vector<RawImuSample> imu_samples_;
@@ -68,7 +68,7 @@ class SensorArea {
   unsigned width_ = 65536, height_ = 65536;
 };
 
-// Appends to a vector without a check an event: room for `most` is made ahead.
+// Appends to a vector without a check per event: room for `most` is reserved first.
 class EventAppender {
  public:
   explicit EventAppender(std::vector<Event>& events) : events_(events), count_(events.size()) {}

@@ -105,7 +105,7 @@ bool BlockReader::handOut(Packet& packet) {
   return true;
 }
 
-// After the events of their block.
+// Reported after the events of their block.
 bool BlockReader::handOutSamples(Packet& packet) {
   std::vector<RawImuSample>& samples = decoder_->imuSamples();
   if (imu_wanted_ && !samples.empty()) {
@@ -139,21 +139,21 @@ void BlockReader::finish() {
   };
   if (!bytes_.empty()) {
     addFault(FaultKind::Truncated,
-             fmt::format("The last record, at byte {} of {}, is not whole; it is left out.",
+             fmt::format("The last record, at byte {} of {}, is incomplete; it is left out.",
                          position_ - bytes_.size(), position_));
   }
-  report(FaultKind::Outside, found.outside, "events lie outside of the sensor and are left out");
+  report(FaultKind::Outside, found.outside, "events are outside of the sensor and are left out");
   report(FaultKind::Untimed, found.untimed, "events have no time or place yet and are left out");
   report(FaultKind::Corrupt, found.unknown, "records are of no known kind and are left out");
-  report(FaultKind::TimeWrap, found.wraps, "times the counter of the time began anew; times go on");
+  report(FaultKind::TimeWrap, found.wraps, "wraps of the time counter; times continue");
   report(FaultKind::ImuLeftOut, found.imu, "IMU records have no known scale and are left out");
   report(FaultKind::ExposureLeftOut, found.exposure,
-         "events measure grey levels that make no whole frame; they are left out");
+         "events measure grey levels of no complete frame; they are left out");
   if (found.rolling_frames > 0)
     faults_.push_back(
         {format_.streams.at(frames_stream_).name, FaultKind::Metadata, 0.0,
-         fmt::format("{} frames are of a rolling shutter that goes from column to column; each is "
-                     "taken for the middle of its exposures.",
+         fmt::format("{} frames are of a rolling shutter that exposes column by column; each gets "
+                     "the middle of its exposures.",
                      found.rolling_frames)});
   if (disordered_ > 0) {
     addFault(FaultKind::Unsorted, fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",

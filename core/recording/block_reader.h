@@ -1,5 +1,5 @@
 // Reads files with a header and then packed events, in blocks of a fixed size: one stream of events, and one
-// each of IMU samples, frames and triggers if the format has them. Faults report anomalies, with the byte at
+// each of IMU samples, frames and triggers if the format has them. Faults report anomalies and the byte at
 // which each began.
 #pragma once
 
@@ -18,8 +18,8 @@ namespace evical {
 struct BlockFormat {
   std::string name;                   // of the family: "prophesee_raw"
   std::vector<StreamInfo> streams;    // events first, if any; then IMU samples, frames, triggers
-  std::uint64_t data_offset = 0;      // behind the header
-  std::vector<RecordingFault> notes;  // what reading the header found
+  std::uint64_t data_offset = 0;      // after the header
+  std::vector<RecordingFault> notes;  // faults of the header
 };
 
 class BlockReader : public RecordingReader {

@@ -1,5 +1,5 @@
-// Little-endian numbers and strings out of untrusted bytes: no read goes past the end, a failed one makes
-// ok() false for good and yields zeros.
+// Little-endian numbers and strings out of untrusted bytes: no read goes past the end; a failed one makes
+// ok() false permanently and yields zeros.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 namespace evical {
 
 static_assert(std::endian::native == std::endian::little,
-              "the readers copy little-endian numbers as they are");
+              "the readers copy little-endian numbers without conversion");
 
 class ByteCursor {
  public:

@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kFewestEventsPerS = 50.0;  // of a file that is worth a guess
+constexpr double kFewestEventsPerS = 50.0;  // of a plausible file of events
 constexpr std::size_t kEnoughRows = 100;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Meaning of columns of numbers without names, and the unit of times: guessed from their first rows. For
-// tables of text and arrays of NumPy.
+// Meaning of unnamed columns of numbers, and the unit of times, guessed from their first rows. For
+// text tables and NumPy arrays.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace evical {
 struct ColumnNumbers {
   double first = 0.0, last = 0.0, largest = std::numeric_limits<double>::lowest();
   bool whole = true, decreases = false, polarity = true;
-  int pixels = 0, others = 0;  // whether the numbers can be coordinates
+  int pixels = 0, others = 0;  // numbers that can be coordinates, and others
 
   void add(double number, bool first_row);
   bool isPixel() const { return pixels > others; }  // a row may be bad
@@ -26,16 +26,16 @@ struct EventColumns {
 };
 
 // The column that never decreases and exceeds the others is the time, one of two values the polarity; of the
-// rest the order is x, y. Nothing where four columns cannot be events.
+// rest the order is x, y. nullopt if four columns cannot be events.
 std::optional<EventColumns> guessEventColumns(std::span<const ColumnNumbers> columns);
 
-// Whole times from here on are ns: since 1970 it is 1973, and as us it would be the year 5138.
+// Whole times from here on are ns: as ns since 1970 this is 1973, as us the year 5138.
 inline constexpr double kEpoch_ns = 1e17;
 
-// Fractions are seconds; whole numbers us, or ns where us would be no time or no rate of events.
+// Fractions are seconds; whole numbers us, or ns if us give an implausible time or event rate.
 std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows);
 
-// True for a brighter polarity: 1 is, 0 and -1 are not. Nothing for others, which may be triggers.
+// True for a brighter polarity: 1; false for 0 and -1. nullopt for others, which may be triggers.
 template <class Number>
 std::optional<bool> brighterOf(Number polarity) {
   if (polarity == Number(1)) return true;

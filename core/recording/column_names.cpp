@@ -19,14 +19,14 @@ constexpr std::string_view kRateWords[] = {
     "gyro", "gyr",    "gyros",           "gyroscope",   "gyroscopes",   "omega", "angular",
     "ang",  "angvel", "angularvelocity", "angularrate", "rotationrate", "rate",  "rates",
     "w",    "g"};
-// Words in columns that name a sensor, but contain something else of it.
+// Words in columns that name a sensor, but contain another quantity of it.
 constexpr std::string_view kOtherWords[] = {
     "covariance", "cov",          "variance", "var",         "std",         "stddev",     "bias", "biases",
     "delta",      "dt",           "integral", "orientation", "quat",        "quaternion", "mag",  "magn",
     "magnet",     "magnetometer", "magnetic", "temp",        "temperature", "accuracy",   "user", "gravity",
     "relative",   "status",       "offset",   "scale",       "clipping",    "attitude",   "pose", "position",
     "count",      "id",           "exposure", "duration",    "interval",    "jerk"};
-// With one of these, the column is a time, for any sensor.
+// With one of these words, the column is a time, for any sensor.
 constexpr std::string_view kStampWords[] = {"time",  "times",  "timestamp", "timestamps",
                                             "stamp", "stamps", "datetime"};
 constexpr std::string_view kTimeWords[] = {"time",    "times",    "timestamp",  "timestamps",   "stamp",
@@ -80,7 +80,7 @@ std::string spaced(std::string_view name) {
   std::string text;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const bool camel = i > 0 && isUpper(name[i]) && isLower(name[i - 1]);
-    // Not within units ("s2"), nor within "x0": three letters make a word.
+    // Not within units ("s2") or within "x0": a word has at least three letters.
     const bool number = i > 2 && isDigit(name[i]) && isWordLetter(name[i - 1]) && !isDigit(name[i - 1]) &&
                         isWordLetter(name[i - 2]) && isWordLetter(name[i - 3]) && !isDigit(name[i - 2]);
     if (camel || number) text += ' ';
@@ -107,7 +107,7 @@ int axisOf(std::string_view word) {
   return found == std::end(kAxes) ? -1 : static_cast<int>(found - std::begin(kAxes));
 }
 
-// Only letters and digits, so that "m/s^2", "m s^-2" and "m_s2" are one.
+// Only letters and digits, so that "m/s^2", "m s^-2" and "m_s2" are equal.
 std::string plainUnit(std::string_view unit) {
   std::string plain;
   for (const char c : replaced(replaced(std::string(unit), "\xC2\xB0", "deg"), "\xC2\xB2", "2"))
@@ -115,7 +115,7 @@ std::string plainUnit(std::string_view unit) {
   return plain;
 }
 
-// Takes "[...]" and "(...)" out of `text`: units, or an axis, which stays.
+// Removes "[...]" and "(...)" from `text`: units; an axis stays.
 std::string takeBrackets(std::string& text) {
   std::string unit;
   for (std::size_t begin = text.find_first_of("[("); begin != std::string::npos;
@@ -150,7 +150,7 @@ void splitAxes(Words& words) {
   }
 }
 
-// Takes the axis off the words: the last letter that is one, else the last digit.
+// Removes the axis from the words: the last letter that is an axis, otherwise the last digit.
 void takeAxis(Words& words, ColumnName& column) {
   const auto take = [&](auto isAxis, auto number) {
     const auto found = std::find_if(words.rbegin(), words.rend(), isAxis);
@@ -166,7 +166,7 @@ void takeAxis(Words& words, ColumnName& column) {
          [](const std::string& w) { return w[0] - '0'; });
 }
 
-// The words at the end that are a unit of this kind, and no part of a name.
+// The words at the end that are a unit of this kind and not part of a name.
 std::string takeUnit(Words& words, ColumnKind kind) {
   const auto isUnit = [kind](const std::string& unit) {
     return kind == ColumnKind::AngularRate ? angularRateUnitOf(unit).has_value()
@@ -190,7 +190,7 @@ std::string joinedWords(const Words& words) {
   return text;
 }
 
-// Whose component a vector's column is; Other if it is none of an IMU's.
+// Sensor of a vector's component; Other if it is not an IMU's.
 ColumnKind vectorKind(const Words& words) {
   if (hasOne(words, kOtherWords)) return ColumnKind::Other;
   if (has(words, "alpha")) return ColumnKind::Alpha;
@@ -221,7 +221,7 @@ ColumnKind plainKind(const Words& words) {
   return ColumnKind::Other;
 }
 
-// One of the three columns of a vector; nothing if it is none.
+// One of the three columns of a vector; nullopt otherwise.
 std::optional<ColumnName> vectorColumn(Words words, const std::string& unit) {
   splitAxes(words);
   ColumnName column;

@@ -43,13 +43,13 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Reco
     for (const StreamInfo& stream : reader.streams())
       if (isWritable(stream, format)) names += (names.empty() ? "" : ", ") + stream.name;
     throw badInput(missing.front(),
-                   fmt::format("the recording has no stream with this name that {} holds", format.name),
+                   fmt::format("the recording has no stream with this name that {} can contain", format.name),
                    fmt::format("It has: {}", names.empty() ? "none" : names));
   }
   if (chosen.empty())
     throw badInput(request.input.string(),
                    format.one_camera
-                       ? fmt::format("the recording has no events, and {} holds nothing else", format.name)
+                       ? fmt::format("the recording has no events, and {} contains nothing else", format.name)
                        : fmt::format("the recording has neither events nor IMU samples{}",
                                      format.frames ? " nor frames with times" : ""));
   return chosen;
@@ -66,7 +66,7 @@ void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& form
         stream.type == StreamType::Points)
       names += (names.empty() ? "" : ", ") + stream.name;
   if (!names.empty())
-    context.progress.log(LogLevel::Warning, fmt::format("{} holds no {}; left out: {}.", format.name,
+    context.progress.log(LogLevel::Warning, fmt::format("{} cannot contain {}; left out: {}.", format.name,
                                                         format.frames ? "points, nor frames without times"
                                                         : format.one_camera ? "IMU samples, frames and points"
                                                                             : "frames and points",
@@ -108,18 +108,18 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
     if (stream.type != StreamType::Events) continue;
     context.progress.log(
         LogLevel::Warning,
-        fmt::format("The size of the sensor of {} is not in the file; its events reach {} x {}, "
-                    "which is written.",
+        fmt::format("The sensor size of {} is not in the file. Its events reach {} x {}; this size is "
+                    "written.",
                     stream.name, stream.resolution_px.width_px, stream.resolution_px.height_px));
   }
 }
 
-// Formats for one camera count times from its start, so they cannot store events with wrong timestamps.
+// Formats of one camera count times from its start, so they cannot store events with wrong timestamps.
 void sayStrays(const StampFilter<Event>& stamps, const RunContext& context) {
   if (stamps.strays() == 0) return;
   context.progress.log(
       LogLevel::Warning,
-      fmt::format("{} events are left out: their timestamps are {:.3g} s away from those of the others.",
+      fmt::format("{} events are left out: their timestamps differ by {:.3g} s from those of the others.",
                   stamps.strays(), std::abs(secondsSince(stamps.strayFrom_ns(), stamps.strayTime_ns()))));
 }
 
@@ -155,7 +155,7 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
     sayStrays(stamps, context);
   }
   if (exposed)
-    context.progress.log(LogLevel::Warning, "How long frames were exposed has no place in the new file.");
+    context.progress.log(LogLevel::Warning, "Exposure times of frames are not written: the format has none.");
   summary.faults = reader.faults();
 }
 
@@ -198,10 +198,11 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
   copyPackets(*reader, *writer, targets, format.one_camera, summary, context);
   writer->finish();
   if (const std::int64_t origin_ns = writer->origin_ns(); origin_ns != 0)
-    context.progress.log(LogLevel::Info,
-                         fmt::format("{} cannot hold these times: they count from the first event now. In a "
-                                     "session with other sensors, give the camera clock_offset_s: {:.6f}.",
-                                     format.name, 1e-9 * static_cast<double>(origin_ns)));
+    context.progress.log(
+        LogLevel::Info,
+        fmt::format("{} cannot contain these times: they now count from the first event. In a "
+                    "session with other sensors, set the camera's clock_offset_s: {:.6f}.",
+                    format.name, 1e-9 * static_cast<double>(origin_ns)));
   if (!format.isFolder()) sayNewNames(summary.streams, writer->streamNames(), context);
   return summary;
 }

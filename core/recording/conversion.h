@@ -15,7 +15,7 @@ struct ConversionRequest {
   std::filesystem::path input, output;
   std::string format;                // of recordingFormats(); empty: by the output's extension
   std::vector<std::string> streams;  // names; all that the format supports if empty
-  Resolution resolution_px;          // of event streams whose file does not state it
+  Resolution resolution_px;          // of event streams, if the file does not state it
 };
 
 struct ConversionSummary {
@@ -26,8 +26,8 @@ struct ConversionSummary {
 };
 
 // The output appears when it is complete; a folder is created if necessary. IMU samples are in the units of
-// the target. If neither the file nor the request gives a sensor's size, the events are read once more to
-// find it. Throws CalibrationError, and Cancelled.
+// the target. If neither the file nor the request gives a sensor's size, another pass over the events
+// determines it. Throws CalibrationError, and Cancelled.
 ConversionSummary convertRecording(const ConversionRequest& request, const RunContext& context);
 
 }  // namespace evical

@@ -24,7 +24,7 @@ std::unique_ptr<RecordingWriter> createLz4Aedat4(const std::filesystem::path& pa
   return createAedat4(path, streams, false);
 }
 
-// One line a format; everything that writes recordings walks this table.
+// One line per format; everything that writes recordings uses this table.
 constexpr RecordingFormat kFormats[] = {
     {"bag", ".bag", "ROS 1 bag", createPlainBag, true},
     {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap, true},
@@ -45,7 +45,7 @@ std::string names() {
 }  // namespace
 
 void RecordingWriter::writeFrame(std::size_t /*stream*/, const Frame& /*frame*/) {
-  throw badInput("recording", "this format holds no frames", "Formats that do: bag, mcap");
+  throw badInput("recording", "this format cannot contain frames", "Choose bag or mcap");
 }
 
 std::span<const RecordingFormat> recordingFormats() {
@@ -56,8 +56,8 @@ const RecordingFormat& recordingFormat(std::string_view name) {
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                   [&](const RecordingFormat& format) { return name == format.name; });
   if (found == std::end(kFormats)) {
-    throw badInput(std::string(name), "this is no format that can be written",
-                   fmt::format("There are: {}", names()));
+    throw badInput(std::string(name), "this format cannot be written",
+                   fmt::format("Choose one of: {}", names()));
   }
   return *found;
 }
@@ -66,7 +66,7 @@ const RecordingFormat& recordingFormatOf(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   for (const RecordingFormat& format : kFormats)
     if (!format.isFolder() && extension == format.extension) return format;
-  throw badInput(path.string(), "the name does not tell the format",
+  throw badInput(path.string(), "the name does not determine the format",
                  fmt::format("Choose one of: {}", names()));
 }
 

@@ -28,7 +28,7 @@ EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions
 }
 
 // Number of counted rows, with this one if the sensor may have it: memory grows with the events' coordinates,
-// not with a file's claim.
+// not with the size that a file claims.
 unsigned EventStatistics::rowsWith(unsigned y_px) {
   if (y_px < static_cast<unsigned>(most_rows_)) {
     counted_px_.height_px = std::max(counted_px_.height_px, static_cast<int>(y_px) + 1);
@@ -101,7 +101,7 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
   if (outside_ > 0 && summary.info.resolution_px.known()) {
     faults.push_back(
         {name, FaultKind::Outside, 0.0,
-         fmt::format("{} events lie outside of {} x {} pixels.", outside_,
+         fmt::format("{} events are outside of {} x {} pixels.", outside_,
                      summary.info.resolution_px.width_px, summary.info.resolution_px.height_px)});
   }
   if (const double step_s = stamp_step_.step_s(); step_s > 0.0)

@@ -15,7 +15,7 @@ class EventStatistics {
 
   void add(EventSpan events);
 
-  // Completes the summary's numbers and appends what is wrong.
+  // Completes the summary's numbers and appends faults.
   void finish(StreamSummary& summary, std::vector<RecordingFault>& faults);
 
  private:

@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kMostFirstSamples = 10;  // that drivers stamp before their clock is set
+constexpr std::size_t kMostFirstSamples = 10;  // stamped before the driver's clock is set
 constexpr double kUnset_s = 3600.0;
 
 using Faults = std::vector<RecordingFault>;
@@ -49,10 +49,9 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
     if (i <= kMostFirstSamples && interval_s > kUnset_s) {
       faults.push_back(
           {name, FaultKind::Corrupt, 0.0,
-           fmt::format(
-               "The first {} samples are stamped {:.3f} s before those that follow, as if the clock was "
-               "not set yet: calibrations leave them out.",
-               i, interval_s)});
+           fmt::format("The first {} samples are stamped {:.3f} s before the next one, as if the clock was "
+                       "not set yet: calibrations leave them out.",
+                       i, interval_s)});
     } else if (interval_s < 0.0) {
       const char* reset =
           samples[i - 1].time_ns - samples[i].time_ns > kClockReset_ns ? "; the clock was reset" : "";
@@ -61,8 +60,8 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
            fmt::format("Time runs backwards by {:.3f} ms at sample {}{}.", -1e3 * interval_s, i, reset)});
     } else if (interval_s > options.imu_gap_periods * period_s && period_s > 0.0) {
       gaps.push_back({name, FaultKind::Gap, at_s,
-                      fmt::format("No samples for {:.3f} ms, where {:.3f} ms are usual.", 1e3 * interval_s,
-                                  1e3 * period_s)});
+                      fmt::format("No samples for {:.3f} ms; the usual interval is {:.3f} ms.",
+                                  1e3 * interval_s, 1e3 * period_s)});
     } else {
       square_sum_s2 += (interval_s - period_s) * (interval_s - period_s);
       ++regular;
@@ -74,8 +73,8 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   if (jitter_s > options.imu_jitter_periods * period_s) {
     faults.push_back(
         {name, FaultKind::Jitter, 0.0,
-         fmt::format("The intervals of samples scatter by {:.3f} ms about {:.3f} ms: were they stamped when "
-                     "they arrived?",
+         fmt::format("Sample intervals scatter by {:.3f} ms around {:.3f} ms: were samples stamped on "
+                     "arrival?",
                      1e3 * jitter_s, 1e3 * period_s)});
   }
 }
@@ -88,7 +87,7 @@ Samples ownSamples(const Samples& samples, Measures measures) {
   return own;
 }
 
-// If the two sensors are sampled separately, each has its own times.
+// Sensors that are sampled separately have separate times.
 void checkTimesOfSensors(const std::string& name, const Samples& samples, const InspectionOptions& options,
                          Faults& faults) {
   const auto isOfBoth = [](const ImuSample& sample) { return sample.measured_by == MeasuredBy::Both; };
@@ -125,8 +124,8 @@ void checkSaturated(const std::string& name, const Samples& samples, const ImuAx
       {name, FaultKind::SaturatedAxis,
        secondsSince(samples.front().time_ns, samples[saturated.front()].time_ns),
        fmt::format(
-           "{} is at its limit of {:.4g} for {} samples, which calibrations leave out: move less fast, "
-           "or widen the IMU's range.",
+           "{} is at its limit of {:.4g} for {} samples, which calibrations leave out: move more slowly, "
+           "or increase the IMU's range.",
            axis.name, std::abs(axis.of(samples[saturated.front()])), saturated.size())});
 }
 
@@ -142,7 +141,7 @@ void checkSpikes(const std::string& name, const Samples& samples, const char* se
   faults.push_back(
       {name, FaultKind::Corrupt, secondsSince(samples.front().time_ns, samples[spikes.front()].time_ns),
        fmt::format(
-           "{} of {} samples of the {} contradict those beside them (at {}{}): calibrations leave them out.",
+           "{} of {} samples of the {} contradict their neighbours (at {}{}): calibrations leave them out.",
            spikes.size(), count, sensor, times, spikes.size() > kMostTimes ? ", ..." : "")});
 }
 
@@ -150,14 +149,14 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
                 Faults& faults) {
   const Samples forces = ownSamples(samples, measuresForce<ImuSample>);
   const double norm = medianForceNorm(forces);
-  // Brisk motion makes the norms larger, but not their mean in a frame that does not turn.
+  // Fast motion increases the norms, but not the norm of their mean in a frame that does not rotate.
   if (!forces.empty() && !isGravity(norm, options) &&
       !isGravity(steadyForceNorm(samples).value_or(norm), options)) {
     const bool in_g = isGravity(norm * kStandardGravity_m_s2, options);
     faults.push_back(
         {name, FaultKind::Unit, 0.0,
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
-                     in_g ? ": the file has it in g" : "; is gravity removed, or the unit another?")});
+                     in_g ? ": the file has it in g" : "; is gravity removed, or the unit different?")});
   }
   const double fastest = largestRate(samples);
   if (fastest > options.largest_rate_rad_s) {
@@ -182,7 +181,7 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
   if (good.size() < samples.size()) {
     const auto found = std::find_if_not(samples.begin(), samples.end(), isMeasurable);
     faults.push_back({name, FaultKind::NotFinite, secondsSince(samples.front().time_ns, found->time_ns),
-                      fmt::format("{} samples hold values that are no numbers, or that no sensor measures.",
+                      fmt::format("{} samples have values that are not finite, or that no sensor measures.",
                                   samples.size() - good.size())});
   }
   checkTimesOfSensors(name, samples, options, faults);

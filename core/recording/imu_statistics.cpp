@@ -73,7 +73,8 @@ double medianForceNorm(const std::vector<RawImuSample>& samples) {
 std::optional<double> steadyForceNorm(const std::vector<ImuSample>& samples) {
   constexpr double kPiece_s = 2.0, kLongestGap_s = 0.1;
   std::vector<double> norms;
-  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // the piece's first frame from this one
+  Eigen::Quaterniond turned =
+      Eigen::Quaterniond::Identity();  // first frame of the piece from the current frame
   Eigen::Vector3d sum_m_s = Eigen::Vector3d::Zero();
   double length_s = 0.0;
   for (std::size_t i = 1; i < samples.size(); ++i) {

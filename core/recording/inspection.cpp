@@ -63,7 +63,7 @@ ImuStreamKind kindOf(std::uint64_t samples, std::uint64_t without_rate, std::uin
   return alternating ? ImuStreamKind::Alternating : ImuStreamKind::Whole;
 }
 
-// Marks which sensor measured each sample of a stream of known kind.
+// Marks the sensor of each sample in a stream of known kind.
 void setMeasuredBy(const std::vector<RawImuSample>& raw, ImuStreamKind kind,
                    std::vector<ImuSample>& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -145,7 +145,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
   inspection.format = reader.format();
   std::map<std::size_t, EventStatistics> events;
   std::map<std::size_t, std::vector<RawImuSample>> imu_samples;
-  std::map<std::size_t, TimeStatistics> others;  // streams of frames and points that hand something out
+  std::map<std::size_t, TimeStatistics> others;  // streams with frames or points
   selectAll(reader);
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
     const StreamInfo& info = reader.streams()[i];

@@ -15,7 +15,7 @@
 
 namespace evical {
 
-// A step back in time beyond this is a clock that was reset.
+// A larger step back in time is a clock reset.
 inline constexpr std::int64_t kClockReset_ns = kSecond_ns;
 
 struct StreamSummary {
@@ -31,35 +31,35 @@ struct StreamSummary {
   std::uint64_t sum_x = 0, sum_y = 0, sum_t = 0;  // modulo 2^64; times in the file's own unit
   Resolution seen_px;                             // largest coordinates + 1
 
-  double shortest_exposure_s = 0.0, longest_exposure_s = 0.0;  // of frames; 0: not known
+  double shortest_exposure_s = 0.0, longest_exposure_s = 0.0;  // of frames; 0: unknown
 
-  // IMU, as the file has them.
-  // Of the numbers below: what the format states or, where that is SI, a guess from the numbers; "unknown"
-  // where they allow none.
+  // IMU numbers in the file's units.
+  // Units of the numbers below: stated by the format or, if that is SI, guessed from the numbers; "unknown"
+  // if they allow no guess.
   std::string acceleration_unit, angular_rate_unit;
   Eigen::Vector3d mean_acceleration = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_angular_rate = Eigen::Vector3d::Zero();
   double median_acceleration = 0.0;                   // of the norm
-  std::uint64_t without_rate = 0, without_force = 0;  // samples without a measurement of that sensor
+  std::uint64_t without_rate = 0, without_force = 0;  // samples without that sensor
 };
 
-// Sensors of an IMU in a stream. Alternating: both, but each sample has only one.
+// Sensors of an IMU stream. Alternating: both, but each sample has only one.
 enum class ImuStreamKind { Whole, Gyroscope, Accelerometer, Alternating };
 ImuStreamKind imuStreamKind(const StreamSummary& stream);
 ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples);  // by the values that are always 0
 
 struct Inspection {
   std::string format;
-  std::vector<StreamSummary> streams;  // as RecordingReader::streams()
+  std::vector<StreamSummary> streams;  // in the order of RecordingReader::streams()
   std::vector<RecordingFault> faults;
 };
 
-// Reads to the end, including frames, which are not decoded; call on a fresh reader. Event memory is a count
-// per pixel; IMU samples are kept.
+// Reads to the end, including frames, which are not decoded; requires a fresh reader. Memory for events is a
+// count per pixel; IMU samples are kept.
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
                             const RunContext& context = {});
 
-// Gaps, time running backwards, jitter, stuck or saturated axes, units, numbers that are none. SI expected.
+// Gaps, time running backwards, jitter, stuck or saturated axes, units, invalid numbers. Expects SI units.
 std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<ImuSample>& samples,
                                      const InspectionOptions& options = {});
 

@@ -52,7 +52,7 @@ Json streamJson(const StreamSummary& stream, bool with_checksums) {
   if (info.host_clock_offset_s) json["host_clock_offset_s"] = *info.host_clock_offset_s;
   json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
   if (with_checksums) {
-    // In the file's own unit of time.
+    // In the file's own time unit.
     const bool in_us = info.time_unit_ns == 1000;
     json.update({{"sum_x", stream.sum_x},
                  {"sum_y", stream.sum_y},

@@ -1,4 +1,4 @@
-// The stable JSON of `evical inspect --json`.
+// Stable JSON of `evical inspect --json`.
 #pragma once
 
 #include "core/recording/inspection.h"
@@ -7,7 +7,7 @@
 
 namespace evical {
 
-// `with_checksums` adds sums by which readers are compared.
+// `with_checksums` adds checksums for the comparison of readers.
 std::string inspectionJson(const Inspection& inspection, bool with_checksums);
 
 }  // namespace evical

@@ -33,7 +33,7 @@ JoinedReader::JoinedReader(std::vector<Part> parts) {
   gatherFaults();
 }
 
-// Some properties of streams become known while they are read.
+// Some properties of streams become known during reading.
 void JoinedReader::takeStreams(const State& state) {
   const std::vector<StreamInfo>& streams = state.part.reader->streams();
   for (std::size_t i = 0; i < streams.size(); ++i) streams_[state.first_stream + i] = streams[i];
@@ -55,7 +55,7 @@ void JoinedReader::select(const std::vector<std::size_t>& streams) {
     const std::size_t behind = state.first_stream + state.part.reader->streams().size();
     std::vector<std::size_t> own;
     for (const std::size_t stream : streams) {
-      static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller's
+      static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller
       if (stream >= state.first_stream && stream < behind) own.push_back(stream - state.first_stream);
     }
     state.part.reader->select(own);
@@ -63,7 +63,7 @@ void JoinedReader::select(const std::vector<std::size_t>& streams) {
   }
 }
 
-// The part that is behind goes first, so that they are read side by side.
+// The part with the earliest time is read first, so that all advance together.
 bool JoinedReader::read(Packet& packet) {
   for (;;) {
     State* behind = nullptr;

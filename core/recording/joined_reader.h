@@ -18,7 +18,7 @@ class JoinedReader : public RecordingReader {
     std::unique_ptr<RecordingReader> reader;
     std::string name;  // of a reader's only stream; empty: unchanged
   };
-  // At least one part.
+  // Requires at least one part.
   explicit JoinedReader(std::vector<Part> parts);
 
   const std::vector<StreamInfo>& streams() const override { return streams_; }

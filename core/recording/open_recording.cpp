@@ -34,13 +34,12 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT 2, 3.1 and 4, Prophesee RAW and "
-    "DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, NumPy's .npy and .npz, text or CSV: a "
-    "folder "
-    "with events.txt and imu.txt (or .csv), or one such file, and folders of pictures (EuRoC, Kalibr, DSEC, "
-    "TUM-VIE, others)";
+    "Use a ROS 1 bag (format 2.0), ROS 2 bag (MCAP, sqlite3), AEDAT 2, 3.1 or 4, Prophesee RAW or DAT, "
+    "HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, NumPy's .npy or .npz, text or CSV: a "
+    "folder with events.txt and imu.txt (or .csv), or one such file, or a folder of pictures (EuRoC, "
+    "Kalibr, DSEC, TUM-VIE, others)";
 
-// Formats that users may try, by their first bytes.
+// Other formats that users may try, by their first bytes.
 struct OtherFormat {
   std::string_view magic;
   const char *problem, *advice;
@@ -53,7 +52,7 @@ constexpr OtherFormat kOtherFormats[] = {
     {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first"},
     {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`"},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
-     "Readable are 2.0, 3.1 and 4.0; convert it with jAER or iniVation's DV"},
+     "Convert it with jAER or iniVation's DV to 2.0, 3.1 or 4.0"},
 };
 
 std::string firstBytes(const std::filesystem::path& path) {
@@ -73,7 +72,7 @@ bool isRos2File(const std::filesystem::path& path, std::string_view start) {
          (start.starts_with(ros::kZstdMagic) && packed_bag);
 }
 
-// libhdf5 writes past its own memory on some damaged files.
+// libhdf5 writes beyond its memory on some damaged files.
 std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path) {
   if (!recordingServer().empty()) return std::make_unique<SeparateReader>(path, recordingServer());
   return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path); });
@@ -85,8 +84,8 @@ void requireFiles(const std::filesystem::path& folder) {
     std::error_code ignored;
     const std::filesystem::file_status status = entry.status(ignored);
     if (std::filesystem::is_other(status))
-      throw badInput(entry.path().string(), "this is no file that can be read twice",
-                     "Take it out of the folder");
+      throw badInput(entry.path().string(), "this file cannot be read twice (a pipe or device)",
+                     "Remove it from the folder");
   }
 }
 
@@ -106,7 +105,7 @@ std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> r
 
 void requireNoNames(const std::filesystem::path& path, const ColumnNames& names) {
   if (!names.empty())
-    throw badInput(path.string(), "this is no text table, so its columns cannot be named",
+    throw badInput(path.string(), "this is not a text table, so its columns cannot be named",
                    "Remove columns from the session");
 }
 
@@ -148,11 +147,11 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
   }
   if (std::filesystem::is_directory(status)) return openFolder(path, names);
   if (!std::filesystem::is_regular_file(status)) {
-    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder");
+    throw badInput(path.string(), "this cannot be read twice (a pipe or device)", "Give a file or a folder");
   }
   const std::string start = firstBytes(path);
   if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
-  // "% time, x, y, p" of a table begins as Prophesee's files do.
+  // The table header "% time, x, y, p" begins like Prophesee's files.
   if (!start.starts_with("% ") || !isTextTable(path))
     if (std::unique_ptr<RecordingReader> reader = openBinary(path, start)) {
       requireNoNames(path, names);
@@ -160,13 +159,13 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
     }
   const bool is_table = isTextTable(path);
   if (isGzip(start) && !is_table)
-    throw badInput(path.string(), "this is packed with gzip, and not a text", "Unpack it first");
+    throw badInput(path.string(), "this is packed with gzip, but is not a text", "Unpack it first");
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }
   if (!names.empty() || is_table) return std::make_unique<TextTableReader>(path, names);
   if (prophesee::isBareDat(start)) return openProphesee(path);
-  throw badInput(path.string(), "the format is not known", kReadable);
+  throw badInput(path.string(), "the format is unknown", kReadable);
 }
 
 }  // namespace
@@ -175,7 +174,7 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   try {
     return openPath(path, names);
   } catch (const std::filesystem::filesystem_error& error) {
-    throw badInput(path.string(), "cannot be reached: " + error.code().message(),
+    throw badInput(path.string(), "cannot be accessed: " + error.code().message(),
                    "Check the path and its permissions");
   }
 }

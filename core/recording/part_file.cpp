@@ -16,17 +16,17 @@
 namespace evical {
 namespace {
 
-// A rename would put the file in the place of a device or a pipe.
+// A rename would replace a device or a pipe by the file.
 void requireFileOrNothing(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
   throw badInput(path.string(),
-                 std::filesystem::is_directory(status) ? "this is a folder" : "this is there and is no file",
+                 std::filesystem::is_directory(status) ? "this is a folder" : "this exists and is not a file",
                  "Choose another output");
 }
 
-// mkostemp makes files private; a recording should be as readable as any other file of this person.
+// mkostemp makes files private; a recording should have the usual permissions of this user's files.
 void giveUsualPermissions(int file) {
   const mode_t mask = ::umask(0);
   ::umask(mask);
@@ -66,8 +66,8 @@ void PartFile::overwrite(std::uint64_t position, std::string_view bytes) {
 }
 
 void PartFile::finish() {
-  // Buffered bytes meet a full disk only here. Without the sync a power cut may leave the new name with
-  // nothing behind it, and the old content gone.
+  // Buffered bytes may fail on a full disk only here. Without the sync a power cut could leave the new name
+  // without content, and the old content lost.
   if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("cannot be written");
   if (std::fclose(std::exchange(file_, nullptr)) != 0 ||
       std::rename(part_path_.c_str(), path_.c_str()) != 0) {
@@ -82,7 +82,7 @@ void PartFile::fail(const char* what) {
   const std::string reason = std::strerror(errno);
   close();
   throw calibrationFailed(path_.string(), fmt::format("the file {}: {}", what, reason),
-                          "Check the folder, its permissions and the space on the disk");
+                          "Check the folder, its permissions and the disk space");
 }
 
 void PartFile::close() {

@@ -1,4 +1,4 @@
-// An output file that takes its name when it is whole.
+// An output file that gets its name when it is complete.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace evical {
 
-// A number's bytes in the machine's order, which is that of the files: little endian.
+// A number's bytes in the machine's byte order, which is that of the files: little endian.
 template <class Number>
 std::string numberBytes(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-// Writes next to `path`, under another name that begins with `path`'s; finish() writes it to the disk and
-// renames it, the destructor removes it if finish() was not reached. Of several that write to one path the
-// last to finish stays, complete. All functions throw CalibrationError with path and reason: BadInput if
-// something else than a file exists at `path`, otherwise CalibrationFailed.
+// Writes next to `path`, under another name that begins with `path`'s; finish() flushes it to the disk and
+// renames it, the destructor removes it without finish(). If several write to one path, the last one to
+// finish remains, complete. All functions throw CalibrationError with path and reason: BadInput if something
+// other than a file exists at `path`, otherwise CalibrationFailed.
 class PartFile {
  public:
   explicit PartFile(std::filesystem::path path);
@@ -28,11 +28,11 @@ class PartFile {
 
   void append(std::string_view bytes);
   void overwrite(std::uint64_t position,
-                 std::string_view bytes);  // what is already written; then append again
+                 std::string_view bytes);  // replaces written bytes; append() continues at the end
   std::uint64_t size() const { return size_; }
   void finish();
 
-  // Place of the content until then, for libraries that write it themselves.
+  // Path of the content until then, for libraries that write it themselves.
   const std::filesystem::path& partPath() const { return part_path_; }
 
  private:

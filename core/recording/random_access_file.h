@@ -1,4 +1,4 @@
-// A file's bytes anywhere in it, read in large blocks.
+// Random access to a file's bytes, read in large blocks.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ class RandomAccessFile {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit RandomAccessFile(const std::filesystem::path& path);
 
-  std::uint64_t size() const { return size_; }  // when it was opened
+  std::uint64_t size() const { return size_; }  // at opening
 
-  // The bytes until the next call; false unless all of them are there.
+  // Bytes, valid until the next call; false unless all of them exist.
   bool read(std::uint64_t position, std::uint64_t count, std::string_view& bytes);
 
  private:

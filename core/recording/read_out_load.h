@@ -1,4 +1,4 @@
-// Detects a camera whose read-out is at its limit. It loses events, and the others get late timestamps.
+// Detects a camera at the limit of its read-out. It loses events, and the others get late timestamps.
 #pragma once
 
 #include "core/data/event.h"
@@ -13,7 +13,7 @@ namespace evical {
 // Counts events in windows of 10 ms. At its limit a read-out gives the same count in many windows; a scene does not.
 class ReadOutLoad {
  public:
-  // In order of time.
+  // Call in order of time.
   void add(EventSpan events) {
     for (auto event = events.begin(); event != events.end();) {
       const std::int64_t bin = event->time_ns / kBin_ns;

@@ -19,7 +19,7 @@ class RecordingReader {
  public:
   virtual ~RecordingReader() = default;
 
-  // All streams of the file, also those that cannot be decoded; known as soon as the file is open.
+  // All streams of the file, including those that cannot be decoded; known after opening.
   virtual const std::vector<StreamInfo>& streams() const = 0;
 
   // Selects the streams of read(), by index; all of type Events, Imu and Points if never called. Frames stay
@@ -27,7 +27,7 @@ class RecordingReader {
   virtual void select(const std::vector<std::size_t>& streams) = 0;
 
   // The next packet, never an empty one, its events in order of time; false at the end. Reuses the
-  // packet's storage. Packets come as the file has them: between packets, and between streams, time
+  // packet's storage. Packets are in the file's order: between packets, and between streams, time
   // may run backwards a little.
   virtual bool read(Packet& packet) = 0;
 
@@ -39,16 +39,16 @@ class RecordingReader {
   virtual std::string format() const = 0;  // "rosbag", "text"
 };
 
-// Header lines that count instead of those of text tables, by the stream's name: "t_ns,-,ax,ay,az,gx,gy,gz".
+// Header lines that replace those of text tables, by the stream's name: "t_ns,-,ax,ay,az,gx,gy,gz".
 using ColumnNames = std::map<std::string, std::string>;
 
-// Opens a file or folder by its content. Throws CalibrationError (BadInput) if there
-// is nothing readable at `path`, or if `names` are of something else than text tables.
+// Opens a file or folder by its content. Throws CalibrationError (BadInput) if `path` cannot be
+// read, or if `names` do not belong to text tables.
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path,
                                                const ColumnNames& names = {});
 
-// Index of the stream of this name and one of these types, of several the first type's; throws CalibrationError
-// (BadInput) that lists those there are.
+// Index of the stream of this name and one of these types; of several the first type's. Throws
+// CalibrationError (BadInput) that lists the existing ones.
 std::size_t findStream(const RecordingReader& reader, const std::string& name,
                        std::span<const StreamType> types);
 inline std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {

@@ -1,5 +1,5 @@
-// The separate process that reads HDF5 files: this program again, or the interpreter of the Python module. A program that sets
-// no server forks instead, which is safe only before it starts threads.
+// Separate process that reads HDF5 files: this program again, or the interpreter of the Python module. A
+// program that sets no server forks instead, which is safe only before it starts threads.
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,8 @@
 namespace evical {
 namespace {
 
-// Most samples that wait for the other sensor. If there are more, its stream is stored elsewhere in the file or has ended.
+// Most samples that wait for the other sensor. If there are more, its stream is elsewhere in the file or has
+// ended.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 20;
 constexpr std::size_t kPacket_samples = 256;
 

@@ -51,7 +51,8 @@ bool sendAll(int socket, std::string_view bytes) {
 
 enum class Silence { Awaited, Limited };
 
-// Waits in short pieces, and ignores pieces that took much longer than asked: then this program was stopped (Ctrl-Z).
+// Waits in short pieces, and ignores pieces that took much longer than requested: the program was stopped
+// (Ctrl-Z).
 bool isReadable(int socket, Silence silence) {
   constexpr int kPiece_ms = 100;
   for (int waited_ms = 0; waited_ms < SeparateReader::longest_silence_ms;) {
@@ -181,7 +182,7 @@ void takeFrame(ByteCursor& cursor, Frame& frame) {
   frame.bytes.assign(bytes.begin(), bytes.end());
 }
 
-// Points come from text only, which is read without this.
+// Points come only from text, which is read in this process.
 std::string messageOf(const Packet& packet, double fraction_read) {
   std::string message;
   putInto(message, Answer::Packet);
@@ -225,13 +226,13 @@ std::string answerTo(const std::string& question, RecordingReader& reader) {
   return answer + stateOf(reader);
 }
 
-// Libraries' own messages at a crash are hidden: this program explains them.
+// The libraries' messages at a crash are suppressed: this program explains the crash.
 void beQuiet() {
   const int nothing = ::open("/dev/null", O_WRONLY);
   if (nothing >= 0) ::dup2(nothing, STDERR_FILENO);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  std::signal(SIGINT, SIG_IGN);  // who waits for it decides
+  std::signal(SIGINT, SIG_IGN);  // the waiting process decides
   std::signal(SIGTERM, SIG_IGN);
   for (const int fatal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(fatal, SIG_DFL);
 }
@@ -244,7 +245,7 @@ void beQuiet() {
   throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
 }
 
-// Starts the server with the socket at the descriptor that it expects. A fork would inherit locks of other
+// Starts the server with the socket at the expected descriptor. A fork would inherit locks of other
 // threads; a new process does not.
 pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path, int socket) {
   std::vector<std::string> words = command;
@@ -255,7 +256,7 @@ pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, socket, kServerSocket);
-  // Ctrl-C is for this program, which ends the server; until the server ignores it, it waits.
+  // Ctrl-C addresses this program, which ends the server; the signal is blocked until the server ignores it.
   sigset_t held;
   ::sigemptyset(&held);
   for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&held, signal);
@@ -364,7 +365,7 @@ SeparateReader::~SeparateReader() {
   end();
 }
 
-// In any state: nobody waits for it any more.
+// In any state: the result is not used any more.
 void SeparateReader::end() {
   if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   if (process_ <= 0) return;
@@ -394,7 +395,7 @@ void SeparateReader::select(const std::vector<std::size_t>& streams) {
     throwError(path_, std::string_view(answer).substr(1));
 }
 
-// The next is asked for before this one is looked at, so that both processes work.
+// Requests the next packet before this one is processed, so that both processes work.
 bool SeparateReader::ask() {
   std::string question;
   putInto(question, Question::Read);
@@ -413,9 +414,9 @@ bool SeparateReader::read(Packet& packet) {
     faults_.push_back(
         {"", FaultKind::Corrupt, 0.0,
          end.kind == End::Kind::Silent
-             ? fmt::format("The file cannot be read further than {:.0f} %: {}. The rest is lost.", percent,
+             ? fmt::format("The file can only be read up to {:.0f} %: {}. The rest is lost.", percent,
                            end.reason)
-             : fmt::format("The file is damaged: the process that reads it ended ({}) after {:.0f} % of it. "
+             : fmt::format("The file is damaged: the process that reads it ended ({}) after {:.0f} %. "
                            "The rest is lost.",
                            end.reason, percent)});
     return false;
@@ -449,11 +450,11 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
   for (Frame& frame : packet.frames) takeFrame(cursor, frame);
 }
 
-// Killed by the system or a person, which is not evidence against the file.
+// Killed by the system or a person: the file may be intact.
 void SeparateReader::throwIfKilled(const End& end) const {
   if (end.kind == End::Kind::Killed)
-    throw calibrationFailed(path_.string(), "the process that reads it was killed",
-                            "Close other programs: perhaps memory ran out. Then try again");
+    throw calibrationFailed(path_.string(), "the process that reads it was killed; memory may have run out",
+                            "Close other programs, and try again");
 }
 
 SeparateReader::End SeparateReader::howItEnded() {

@@ -1,5 +1,5 @@
-// A reader in a separate process, for libraries that can crash on a damaged file: only that process ends, and
-// the recording is read up to there.
+// Reader in a separate process, for libraries that can crash on a damaged file: only that process ends, and
+// the recording is read up to this point.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -22,10 +22,11 @@ inline constexpr int kServerSocket = 3;
 class SeparateReader : public RecordingReader {
  public:
   using Open = std::function<std::unique_ptr<RecordingReader>()>;
-  // A process that does not answer for so long is considered hanging and is killed. Sleeping disks and networks are faster.
+  // A process that does not answer for longer is considered hanging and is killed. Sleeping disks and
+  // networks are faster.
   static inline int longest_silence_ms = 30'000;
 
-  // Calls `open` in a copy of this process; what it throws is thrown here. `path` for messages.
+  // Calls `open` in a copy of this process; its exceptions are thrown here. `path`: for messages.
   SeparateReader(const std::filesystem::path& path, const Open& open);
   // Starts `server`, a command that is given the path, and serves a reader at kServerSocket (recording_server.h).
   SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server);
@@ -48,7 +49,7 @@ class SeparateReader : public RecordingReader {
   void takeState(std::string_view message);
   void takePacket(std::string_view message, Packet& packet);
   struct End {
-    // Killed: from outside. Silent: it did not answer, and was ended.
+    // Killed: by another process. Silent: no answer, and killed by this process.
     enum class Kind { Exit, Signal, Killed, Silent } kind;
     std::string reason;
   };

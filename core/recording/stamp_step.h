@@ -1,4 +1,5 @@
-// By how much the time stamps of events step. Some drivers and files round them to ms, and stamp thousands of events alike.
+// Step of the time stamps of events. Some drivers and files round them to ms, and give thousands of events
+// the same stamp.
 #pragma once
 
 #include "core/base/time.h"
@@ -12,7 +13,7 @@ namespace evical {
 
 class StampStep {
  public:
-  // In order of time. Only the first events are looked at.
+  // Call in order of time. Only the first events are checked.
   void add(EventSpan events) {
     constexpr std::uint64_t kMost = 500'000;
     for (const Event& event : events) {
@@ -26,7 +27,7 @@ class StampStep {
     }
   }
 
-  // 0 where stamps are as fine as sensors give them.
+  // 0 if stamps have the sensor's resolution.
   double step_s() const {
     constexpr std::uint64_t kFewestSteps = 20, kFewestAlike = 3;
     const bool coarse = step_ns_ > kFine_ns && steps_ >= kFewestSteps && seen_ >= kFewestAlike * steps_;
@@ -34,8 +35,7 @@ class StampStep {
   }
 
  private:
-  static constexpr std::int64_t kFine_ns =
-      100'000;  // a tenth of what the time offset of a good recording is known to
+  static constexpr std::int64_t kFine_ns = 100'000;  // a tenth of a good recording's time offset sigma
 
   std::uint64_t seen_ = 0, steps_ = 0;
   std::int64_t last_ns_ = 0, step_ns_ = std::numeric_limits<std::int64_t>::max();

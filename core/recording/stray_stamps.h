@@ -1,5 +1,5 @@
-// Time stamps count only if those that follow bear them out: one event of next year, or a first one stamped 0,
-// must not move a recording's beginning or make everything after it late.
+// Filter of stray time stamps. A stamp counts only if the following ones confirm it: a single event in the
+// future, or a first one stamped 0, must not move a recording's begin or make all others late.
 #pragma once
 
 #include <cstddef>
@@ -8,30 +8,29 @@
 
 namespace evical {
 
-// Largest difference of a stamp from those before it without further proof, and the number of agreeing ones
-// that are proof.
+// Largest difference of an unconfirmed stamp from earlier ones, and the number of agreeing stamps
+// that confirm one.
 struct StampTolerance {
   std::int64_t ahead_ns, behind_ns;
   std::size_t enough;
 };
-// Events hardly ever pause for longer; what does is looked at, and costs little. Packets of IMU samples may.
+// Events hardly ever pause for longer; longer pauses are checked, at little cost. Packets of IMU samples may.
 inline constexpr StampTolerance kEventStamps = {100'000'000, 1'000'000'000, 16};
 inline constexpr StampTolerance kSampleStamps = {1'000'000'000, 1'000'000'000, 3};
-// Stamps of one frame agree, and prove nothing.
+// Stamps within one frame agree, and do not confirm one another.
 inline constexpr StampTolerance kPointStamps = {1'000'000'000, 1'000'000'000, 1000};
 
-// Items of one sensor in transit, in the order in which they were recorded. Those that jump wait until enough
-// follow that agree with them, or until one agrees again with the items before: then they were strays. The
-// first ones wait for a moment: drivers stamp them 0, or by a clock that is not set yet. Item has a member
-// time_ns.
+// Items of one sensor in the order of recording. Items after a jump wait until enough following ones agree
+// with them, or until one agrees with the items before the jump: then they were strays. The first items wait
+// for a moment: drivers stamp them 0, or by a clock that is not set yet. Item has a member time_ns.
 template <class Item>
 class StampFilter {
  public:
   explicit StampFilter(StampTolerance tolerance) : tolerance_(tolerance) {}
 
-  // Leaves in `items` those that count so far.
+  // Keeps in `items` those that are confirmed so far.
   void filter(std::vector<Item>& items);
-  // Call at the end. Few items in all count unchanged.
+  // Call at the end. If there are few items in total, all are kept.
   void finish(std::vector<Item>& items);
 
   std::uint64_t strays() const { return strays_; }
@@ -41,7 +40,7 @@ class StampFilter {
 
  private:
   static constexpr std::size_t kMostWaiting = 100'000;
-  static constexpr std::int64_t kEnough_ns = 50'000'000;  // a packet with a wrong stamp is shorter
+  static constexpr std::int64_t kEnough_ns = 50'000'000;  // packets with a wrong stamp are shorter
 
   bool near(const Item& item, std::int64_t time_ns) const {
     return item.time_ns <= time_ns + tolerance_.ahead_ns && item.time_ns >= time_ns - tolerance_.behind_ns;
@@ -54,7 +53,7 @@ class StampFilter {
   StampTolerance tolerance_;
   bool started_ = false, proven_ = false;
   std::int64_t latest_ns_ = 0;
-  std::vector<Item> waiting_, held_;  // held_: the first ones, until they are proven
+  std::vector<Item> waiting_, held_;  // held_: the first ones, until confirmed
   std::uint64_t strays_ = 0;
   std::int64_t stray_time_ns_ = 0, stray_from_ns_ = 0;
 };

@@ -37,7 +37,7 @@ std::string scalarYaml(const std::string& key, const Json& json) {
   return json.is_number_float() ? numberYaml(key, json.get<double>()) : json.dump();
 }
 
-// On one line: a map of scalars, a list of numbers.
+// Flow style, on one line: a map of scalars, a list of numbers.
 std::string flowYaml(const std::string& key, const Json& json) {
   std::string text;
   for (const auto& [name, value] : json.items()) {
@@ -52,7 +52,7 @@ bool isFlow(const Json& json) {
   return json.empty() || (isFlat(json) && (json.is_object() || !json.front().is_string()));
 }
 
-// The lines of a map or of a list; the first one begins where the caller has put what stands before it.
+// Lines of a map or a list; the caller has written the beginning of the first line.
 std::string blockYaml(const std::string& key, const Json& json, std::size_t indent) {
   std::string text;
   for (const auto& [name, value] : json.items()) {
@@ -228,7 +228,7 @@ std::string yamlOf(const Json& json) {
   return blockYaml({}, json, 0);
 }
 
-// Names need not be UTF-8. Numbers that are none become null.
+// Names need not be UTF-8. Numbers that are not finite become null.
 std::string textOf(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -278,7 +278,7 @@ std::string findingsTable(const std::vector<Finding>& findings) {
   const auto& first = findings.front().numbers;
   const bool joint = !first.empty() && first.front().joint.isThere();
   std::string text = fmt::format("{:<52}{:>26}{:>26}{}\n", "number", "before", "now, alone",
-                                 joint ? fmt::format("{:>26}", "both together") : "");
+                                 joint ? fmt::format("{:>26}", "both jointly") : "");
   for (const Finding& finding : findings)
     for (const ComparedNumber& number : finding.numbers) text += numberRow(finding, number);
   text += fmt::format("\n{:<52}{:<12}{:>24}{:>9}{:>12}{:>16}\n", "quantity", "from", "change", "sigmas",
@@ -296,14 +296,14 @@ std::string endText(const Assessment& assessment) {
 }
 
 std::string stepText(const MaintenanceStep& step) {
-  std::string text = fmt::format("at {:.1f} s (noticed at {:.1f} s): {} by {}\n", step.at_s, step.noticed_s,
+  std::string text = fmt::format("at {:.1f} s (detected at {:.1f} s): {} by {}\n", step.at_s, step.noticed_s,
                                  findingText(step), changeText(step));
-  for (const std::string& other : step.alternatives) text += fmt::format("  or else: {}\n", other);
+  for (const std::string& other : step.alternatives) text += fmt::format("  alternative: {}\n", other);
   return text;
 }
 
 std::string repeatedRow(const RepeatedQuantity& quantity, const RepeatedNumber& number) {
-  double least = 0.0;  // of what it varies by
+  double least = 0.0;  // of its variation
   for (const double each : {number.deviation, number.mean_sigma, number.joint_sigma})
     if (each > 0.0 && (least == 0.0 || each < least)) least = each;
   const int decimals = decimalsFor(least, 6, 6);
@@ -366,11 +366,10 @@ std::string shownUnit(const std::string& unit) {
 }
 
 std::string windowsText(const CheckedWindows& windows) {
-  std::string text =
-      fmt::format("windows of {}: {} of {} used, in {} of them rotation alone explains what moves",
-                  windows.sensor, windows.used, windows.all, windows.turning_alone);
+  std::string text = fmt::format("windows of {}: {} of {} used; rotation alone explains the motion in {}",
+                                 windows.sensor, windows.used, windows.all, windows.turning_alone);
   for (const CheckedWindows::LeftOut& one : windows.left_out)
-    text += fmt::format("; {} left out: {}", one.windows, one.words);
+    text += fmt::format("; {} excluded: {}", one.windows, one.words);
   return text;
 }
 
@@ -405,8 +404,7 @@ std::string assessmentTable(const Maintenance& maintenance) {
   for (const MaintenanceStep& step : maintenance.steps) text += stepText(step);
   for (const MaintainedImu& imu : maintenance.imus)
     if (!imu.stops.empty())
-      text +=
-          fmt::format("{}: {} stops; least known from them: {}\n", imu.name, imu.stops.size(), imu.weakest);
+      text += fmt::format("{}: {} stops; weakest direction: {}\n", imu.name, imu.stops.size(), imu.weakest);
   return text + endText(maintenance);
 }
 

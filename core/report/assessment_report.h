@@ -1,4 +1,5 @@
-// What a check, a maintenance and a repeat say, for people and programs. Keys are a contract, the same in YAML and JSON.
+// Reports of a check, a maintenance and a repeat, for people and programs. Keys are a contract, the same in
+// YAML and JSON.
 #pragma once
 
 #include "core/data/calibration_check.h"
@@ -34,7 +35,8 @@ std::string shownUnit(const std::string& unit);                               //
 // A sentence without its full stop.
 std::string windowsText(const CheckedWindows& windows);
 
-// Tables of their own: stops of all IMUs, a line each; a track over time, and each number of a repeat, with their sigmas.
+// Separate tables: stops of all IMUs, one per line; a track over time; each number of a repeat with its
+// sigmas.
 std::string stopsCsv(const Maintenance& maintenance);
 std::string trackCsv(const MaintenanceTrack& track);
 std::string repeatCsv(const Repeatability& repeat);

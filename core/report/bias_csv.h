@@ -1,5 +1,5 @@
-// Biases that drift, as comma separated text: one line a knot of each IMU, between
-// which they are straight lines.
+// Drifting biases as comma-separated text: one line for each knot of each IMU. Biases are linear between
+// knots.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -8,8 +8,8 @@
 
 namespace evical {
 
-// imu, time_s (the IMU's own clock, since the recording's start), biases and their standard deviations. Empty
-// where all biases are constant.
+// Columns: imu, time_s (the IMU's own clock, since the recording's start), biases and their standard
+// deviations. Empty if all biases are constant.
 std::string biasesCsv(const NamedResult& named);
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// The result's tables as text for other programs: comma separated, one line of names.
+// The result's tables for other programs: comma-separated, with a line of names.
 #pragma once
 
 #include "core/data/calibration_state.h"

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// A number that is all of the word.
+// Parses a number; the whole text must be the number.
 template <class Number>
 bool parse(const std::string& word, Number& number) {
   const char* const end = word.data() + word.size();
@@ -33,7 +33,7 @@ CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::s
   }
   if (!missing.empty())
     throw badInput(file.string(), "has no column " + missing,
-                   "An earlier version may have written it: detect once more");
+                   "Detect again: an earlier version may have written the file");
 }
 
 bool CsvReader::next() {
@@ -44,14 +44,14 @@ bool CsvReader::next() {
     const std::size_t count = words_.size();
     if (!split() || (!places_.empty() && words_.size() != count))
       throw badInput(fmt::format("{} (line {})", file_.string(), number_),
-                     fmt::format("has {} columns, {} are named", words_.size(), count),
-                     "The file is damaged: detect once more");
+                     fmt::format("has {} columns instead of {}", words_.size(), count),
+                     "The file is damaged: detect again");
     return true;
   }
   return false;
 }
 
-// Words that hold commas stand in quotes, quotes in them twice.
+// Text with commas is in quotes; quotes in it are doubled.
 bool CsvReader::split() {
   words_.assign(1, {});
   bool quoted = false;
@@ -72,12 +72,12 @@ bool CsvReader::split() {
 CalibrationError CsvReader::error(std::size_t column, const std::string& problem) const {
   return badInput(fmt::format("{} (line {})", file_.string(), number_),
                   fmt::format("{} '{}' {}", columns_[column], text(column), problem),
-                  "The file is damaged: detect once more");
+                  "The file is damaged: detect again");
 }
 
 double CsvReader::real(std::size_t column) const {
   double number = 0.0;
-  if (!parse(text(column), number) || !std::isfinite(number)) throw error(column, "is no number");
+  if (!parse(text(column), number) || !std::isfinite(number)) throw error(column, "is not a number");
   return number;
 }
 
@@ -90,7 +90,7 @@ int CsvReader::integer(std::size_t column, int minimum, int maximum) const {
 
 std::size_t CsvReader::choice(std::size_t column, const std::vector<std::string_view>& words) const {
   const auto found = std::find(words.begin(), words.end(), text(column));
-  if (found == words.end()) throw error(column, "is not known");
+  if (found == words.end()) throw error(column, "is unknown");
   return static_cast<std::size_t>(found - words.begin());
 }
 

@@ -1,4 +1,4 @@
-// Tables of our own read back: lines whose columns are found by their names.
+// Reader for Evical's own tables; columns are identified by their names.
 #pragma once
 
 #include "core/base/error.h"
@@ -15,12 +15,12 @@ namespace evical {
 
 class CsvReader {
  public:
-  // Throws CalibrationError (BadInput), as all of this does, where the file cannot be read or a column is missing.
+  // All members throw CalibrationError (BadInput) if the file cannot be read or a column is missing.
   CsvReader(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
   bool next();  // the next line that is not empty; false at the end
 
-  // Of the line, by the column's place among those asked for.
+  // Values of the line, by the column's position among the requested ones.
   const std::string& text(std::size_t column) const { return words_[places_[column]]; }
   double real(std::size_t column) const;  // finite
   int integer(std::size_t column, int minimum, int maximum) const;

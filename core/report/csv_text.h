@@ -1,14 +1,14 @@
-// Words in CSV.
+// Text in CSV.
 #pragma once
 
 #include <string>
 
 namespace evical {
 
-// Names may hold commas and quotes; lines of their own they don't get.
+// Quoted text: names may contain commas and quotes; line breaks are replaced.
 std::string quotedCsv(const std::string& text);
 
-// The same only where it holds one of these.
+// Quoted only if the text contains one of these.
 std::string csvWord(const std::string& text);
 
 }  // namespace evical

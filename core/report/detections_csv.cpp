@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLargestCount = std::numeric_limits<int>::max();
 
-// Their columns, in the order of the functions below.
+// Columns in the order of the functions below.
 const std::vector<std::string> kDetectionColumns = {"camera",
                                                     "window_time_s",
                                                     "grid",
@@ -61,7 +61,7 @@ CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
   c.covariance_px2(0, 1) = c.covariance_px2(1, 0) = line.real(8);
   c.covariance_px2(1, 1) = line.real(9);
   if (!(c.covariance_px2(0, 0) > 0.0 && c.covariance_px2.determinant() > 0.0))
-    throw line.error(7, "makes no covariance with those behind it");
+    throw line.error(7, "is not a valid covariance with the next two columns");
   c.velocity_px_s = {line.real(10), line.real(11)};
   c.semi_axes_px = {line.real(12), line.real(13)};
   c.angle_rad = line.real(14);
@@ -96,10 +96,10 @@ BoardObservations& cameraOf(const std::string& name, std::vector<BoardObservatio
 template <class Items>
 void checkOrder(const Items& items, const CsvReader& line) {
   if (items.size() > 1 && items.back().time_s < items[items.size() - 2].time_s)
-    throw line.error(1, "runs backwards");
+    throw line.error(1, "decreases");
 }
 
-// A view's circles follow each other in order of their indices.
+// The circles of a view are consecutive, in order of their indices.
 void addCircle(const CsvReader& line, int points_of_board, std::vector<BoardView>& views) {
   const CircleObservation circle = circleFrom(line, points_of_board);
   const double time_s = line.real(1);

@@ -1,4 +1,4 @@
-// What was found of the board as tables, with all digits: read back, they are the same observations.
+// Detections of the board as tables, with all digits: reading them back gives identical observations.
 #pragma once
 
 #include "core/base/text_sink.h"
@@ -10,16 +10,16 @@
 
 namespace evical {
 
-// One line a point: where it was, how sure, how fast.
+// One line for each point: position, covariance, velocity.
 std::string detectionsCsv(const std::vector<BoardObservations>& cameras);
-// Handed on view by view.
+// The same, passed on view by view.
 void detectionsCsv(const std::vector<BoardObservations>& cameras, const TextSink& sink);
 
-// One line a window, frame or time: what became of it.
+// One line for each window, frame or time, with its outcome.
 std::string windowsCsv(const std::vector<BoardObservations>& cameras);
 
-// Views and windows from a folder's detections.csv and windows.csv, by camera; of a board with so many points.
-// Throws CalibrationError (BadInput) for what is missing or damaged.
+// Views and windows from a folder's detections.csv and windows.csv, by camera, for a board with
+// `points_of_board` points. Throws CalibrationError (BadInput) if data are missing or damaged.
 std::vector<BoardObservations> readDetections(const std::filesystem::path& folder, int points_of_board);
 
 }  // namespace evical

@@ -55,7 +55,7 @@ std::string intrinsicsRows(const CameraIntrinsics& camera, const std::array<doub
 
 namespace {
 
-// Fixed parameters correlate with nothing.
+// Fixed parameters have zero correlation.
 std::string correlationYaml(const IntrinsicsResult& result) {
   const IntrinsicsVector sigmas = result.standardDeviations();
   std::string text = "correlation:  # fx, fy, cx, cy, distortion\n";
@@ -74,7 +74,7 @@ std::string correlationYaml(const IntrinsicsResult& result) {
   return text;
 }
 
-// A character a cell: how many circles were seen there.
+// One character for each cell, by its number of circles.
 std::string coveragePicture(const ImageMap& image) {
   constexpr std::array kShades = {'.', '-', '+', '#'};  // none, up to 5, up to 20, more
   std::string text;
@@ -126,19 +126,20 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
   text += intrinsicsRows(r.intrinsics, sigmasOf(r));
   text += fmt::format("    {:<26}{:>12.4f} px RMS over the image, at most {:.4f}\n", "projection, +-",
                       r.image.rms_px, r.image.max_px);
-  text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
+  text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} times its sigmas\n", "reprojection",
                       r.reprojection_rms_px, r.normalised_rms);
   if (r.edge_lead_std_px > 0.0)
     text +=
         fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
-  text += fmt::format("    {:<26}{:>12} of {}, {} circles, {} dropped; tilted by up to {:.0f} deg\n", "views",
-                      r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  text +=
+      fmt::format("    {:<26}{:>12} of {}, {} circles, {} rejected; tilted by up to {:.0f} deg\n", "views",
+                  r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
   if (named.story.tried.size() > 1)
     for (const TriedModel& tried : named.story.tried)
-      text += fmt::format("    {:<26}{:>12.2f} of their sigmas, {} of {} circles\n",
+      text += fmt::format("    {:<26}{:>12.2f} times their sigmas, {} of {} circles\n",
                           fmt::format("errors, {}", cameraModelName(tried.model)), tried.spread_sigma,
                           tried.circles_used, tried.circles);
-  text += "Where circles were seen (. none, - few, + some, # many):\n" + coveragePicture(r.image);
+  text += "Circles by part of the image (. none, - few, + some, # many):\n" + coveragePicture(r.image);
   for (const std::string& advice : r.advice) text += fmt::format("Advice: {}\n", advice);
   text +=
       fmt::format("Time: {:.1f} s in {} passes\nVerdict: {}", r.elapsed_s, r.passes, statusName(r.status));

@@ -1,4 +1,4 @@
-// Calibrated intrinsics as text: our YAML map with sigmas, and a table.
+// Calibrated intrinsics as text: Evical's YAML map with sigmas, and a table.
 #pragma once
 
 #include "core/data/intrinsics_result.h"
@@ -16,10 +16,10 @@ struct NamedIntrinsics {
   IntrinsicsStory story = {};
 };
 
-// Reads back as intrinsics of a session (core/format/intrinsics_yaml.h).
+// Readable as intrinsics of a session (core/format/intrinsics_yaml.h).
 std::string intrinsicsResultYaml(const NamedIntrinsics& named);
 
-// Sigmas fx fy cx cy d0..d4 by the keys of intrinsicsYaml; and intrinsics with them as rows of a table.
+// Sigmas fx fy cx cy d0..d4 with the keys of intrinsicsYaml; and rows of a table with intrinsics and sigmas.
 std::string intrinsicsStdYaml(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas,
                               int indent);
 std::string intrinsicsRows(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas);

@@ -18,7 +18,7 @@ std::vector<std::string> columnNames(const NamedResult& named);
 struct QuantityWords {
   std::string sensor;    // "left"
   std::string quantity;  // "gyroscope bias"
-  std::string part;      // "x", "xy"; empty where the quantity is one number
+  std::string part;      // "x", "xy"; empty if the quantity is one number
 };
 
 QuantityWords quantityWords(const QuantityAddress& number, const NamedResult& named);

@@ -1,4 +1,4 @@
-// One recording of a repeat beside another one, or beside the solution of all together.
+// Comparison of one recording of a repeat with another one, or with the joint solution.
 #pragma once
 
 #include "core/data/repeatability.h"
@@ -8,14 +8,15 @@
 
 namespace evical {
 
-// A column of Repeatability, or all that fit together.
+// Column of Repeatability; this value means the joint solution of all that fit.
 inline constexpr std::size_t kAllTogether = static_cast<std::size_t>(-1);
 
-// Nothing where this one does not tell the number.
+// Absent if this recording does not determine the number.
 std::optional<ValueWithSigma> numberOf(const RepeatedNumber& number, std::size_t column);
 
-// `b` minus `a`. What all recordings were told alike counts in both sigmas, so that the difference's is rather too large.
-// All together hold what a recording that fits says: what both have in common is no difference.
+// `b` minus `a`. Both sigmas include the priors that all recordings have in common, so the difference's sigma
+// is too large rather than too small. The joint solution includes the data of a recording that fits, which do
+// not contribute to the difference.
 std::optional<ValueWithSigma> differenceOf(const Repeatability& repeat, const RepeatedNumber& number,
                                            std::size_t a, std::size_t b);
 

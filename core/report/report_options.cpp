@@ -7,11 +7,10 @@ namespace {
 
 constexpr std::tuple kReportFields{
     Switch{"split_half_check", &ReportOptions::split_half_check, true,
-           "Estimate once more from each half of the recording, and say how far the two differ.",
-           Level::Public},
+           "Estimate again from each half of the recording, and report the differences.", Level::Public},
     Field{"split_half_check_block_s", &ReportOptions::split_half_check_block_s, 2.5, within(0.2, 1000.0), "s",
-          "Blocks of this length go to the one half and to the other in turn; shorter where that makes fewer "
-          "than 4.",
+          "Length of the blocks that are assigned to the two halves in turn; shorter if there are fewer than "
+          "4 blocks.",
           Level::Expert}};
 constexpr auto kReportDefaults = defaultsOf<ReportOptions, kReportFields>();
 

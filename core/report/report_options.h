@@ -1,4 +1,4 @@
-// What people may choose about the report.
+// Options of the report.
 #pragma once
 
 #include "core/base/option_struct.h"

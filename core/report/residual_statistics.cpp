@@ -33,7 +33,7 @@ void addMoments(ResidualStatistics& statistics) {
       std::sqrt(std::max(0.0, sum2 / (2.0 * n) - statistics.normalised_mean * statistics.normalised_mean));
 }
 
-// Bins reach as far as five times the spread; what lies beyond counts in the density but has no bin.
+// Bins cover five times the spread; larger residuals count in the density but have no bin.
 void addHistogram(ResidualStatistics& statistics) {
   const double reach = kHistogramReach * std::max(1.0, statistics.normalised_std);
   statistics.bin_width = 2.0 * reach / kBins;

@@ -1,4 +1,4 @@
-// What the circles' reprojection residuals of one camera say, made ready to be drawn.
+// Statistics of one camera's reprojection residuals, prepared for plots.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -15,7 +15,7 @@ namespace evical {
 struct WindowResidual {
   int view = 0;  // index into the camera's views
   double time_s = 0.0;
-  double rms_px = 0.0;  // of the distances of its circles that were used
+  double rms_px = 0.0;  // over its used circles
   int circles = 0;
 };
 
@@ -29,7 +29,7 @@ struct ResidualStatistics {
   double bin_width = 0.0, normalised_mean = 0.0, normalised_std = 0.0;
   std::vector<double> bin_middle, bin_density;
 
-  std::vector<WindowResidual> windows;  // in time order; without those of which nothing was used
+  std::vector<WindowResidual> windows;  // in time order; without windows that have no used circles
 
   struct Cell {
     int count = 0;
@@ -37,13 +37,13 @@ struct ResidualStatistics {
   };
   Resolution resolution_px;
   int columns = 0, rows = 0;
-  std::vector<Cell> cells;  // row by row; empty where the intrinsics are not known
+  std::vector<Cell> cells;  // row by row; empty if the intrinsics are unknown
 };
 
 ResidualStatistics residualStatistics(const std::vector<CircleResidual>& residuals, int camera,
                                       const std::optional<CameraIntrinsics>& intrinsics);
 
-// Points of the ellipse that holds 1 - exp(-sigmas^2 / 2) of a normal distribution.
+// Points of the ellipse that contains 1 - exp(-sigmas^2 / 2) of a normal distribution.
 std::vector<Eigen::Vector2d> sigmaEllipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
                                           double sigmas);
 

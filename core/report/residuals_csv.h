@@ -8,8 +8,8 @@
 
 namespace evical {
 
-// One line a circle: where it was measured, by how much the prediction lies beside it, how sure it was, and whether
-// the estimate rests on it.
+// One line for each circle: measured position, residual of the prediction, sigmas, and whether the estimate
+// uses it.
 void residualsCsv(const NamedResult& named, std::span<const CircleResidual> residuals, const TextSink& sink);
 
 }  // namespace evical

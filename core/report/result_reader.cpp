@@ -20,7 +20,7 @@
 namespace evical {
 namespace {
 
-// Unlike YamlNode::real this takes what isn't finite: a sigma that couldn't be found is written as .nan.
+// Unlike YamlNode::real this accepts values that are not finite: an unknown sigma is written as .nan.
 double number(const YamlNode& node) {
   const std::string text = node.text();
   if (text == ".nan") return std::numeric_limits<double>::quiet_NaN();
@@ -78,14 +78,14 @@ void getSigma(const YamlNode& map, const QuantityInfo& info, Sigma& sigma) {
   sigma /= yamlSigmaFactor(info);
 }
 
-// All but intrinsics, which have a map of their own. Without a pose a sensor means nothing.
+// Reads all quantities except intrinsics, which have a separate map. The pose is mandatory.
 template <class Rows, class State, class Uncertainty>
 void readQuantities(const YamlNode& sensor, const Rows& rows, State& state, Uncertainty& uncertainty) {
   forEachQuantity(rows, [&](const auto& row) {
     if constexpr (!std::is_same_v<decltype(row.value(state)), std::optional<CameraIntrinsics>&>) {
       const bool pose = row.info.id == QuantityId::Rotation || row.info.id == QuantityId::Translation;
       if (pose && row.info.owner != QuantityOwner::Board)
-        static_cast<void>(sensor[row.info.section][row.info.key]);  // throws where it is missing
+        static_cast<void>(sensor[row.info.section][row.info.key]);  // throws if it is missing
       const auto section = quantitySection(sensor, row.info);
       if (!section) return;
       get(*section, row.info.key, row.value(state));
@@ -146,7 +146,7 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
 std::size_t cameraOf(const YamlNode& name, const NamedResult& named) {
   const auto found = std::find_if(named.cameras.begin(), named.cameras.end(),
                                   [&](const auto& each) { return each.name == name.text(); });
-  if (found == named.cameras.end()) throw name.error("is none of the cameras");
+  if (found == named.cameras.end()) throw name.error("is not one of the cameras");
   return static_cast<std::size_t>(found - named.cameras.begin());
 }
 
@@ -192,7 +192,7 @@ SensorDescription readImu(const YamlNode& map, const std::string& name, Calibrat
   return readKnown(map, name);
 }
 
-// Of the covariance: whose number each is, and which.
+// Columns of the covariance: sensor and quantity of each number.
 std::vector<QuantityAddress> readColumns(const YamlNode& list, const NamedResult& named,
                                          const CalibrationState& state) {
   std::map<std::string, QuantityAddress> known;
@@ -229,7 +229,7 @@ void readUncertainty(const YamlNode& root, const NamedResult& named, const Calib
   const auto count = static_cast<Eigen::Index>(uncertainty.columns.size());
   const std::vector<YamlNode> sigmas = (*map)["std"].items(), rows = (*map)["correlation"].items();
   if (sigmas.size() != uncertainty.columns.size() || rows.size() != sigmas.size())
-    throw map->error("columns, std and correlation must be of one size");
+    throw map->error("columns, std and correlation must have the same size");
   uncertainty.standard_deviations.resize(count);
   uncertainty.correlation.resize(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -262,7 +262,7 @@ void readSplitHalfCheck(const YamlNode& map, SplitHalfCheck& validation) {
   }
 }
 
-// One, or several by name: the world's first.
+// One board, or several by name: the world's first.
 void readBoards(const YamlNode& root, NamedResult& named, CalibrationResult& result) {
   if (const auto board = root.find("board"))
     readQuantities(*board, kBoardQuantities, result.state.board, result.uncertainty.board);
@@ -312,7 +312,7 @@ void checkVersion(const YamlNode& version) {
   constexpr int kVersion = 1;
   if (version.text() != std::to_string(kVersion))
     throw version.error(
-        fmt::format("is {}: this program reads files of version {}", version.text(), kVersion),
+        fmt::format("is {}; this program reads files of version {}", version.text(), kVersion),
         "Calibrate again, or use the program that wrote it");
 }
 

@@ -22,7 +22,7 @@ std::string anglesRow(const Eigen::Quaterniond& rotation) {
                      angles.y(), angles.z(), warning.empty() ? "" : " (" + warning + ")");
 }
 
-// Of a matrix the scales: misalignments are in result.yaml.
+// For a matrix only the scales: misalignments are in result.yaml.
 std::string quantityRows(const ShownQuantity& quantity) {
   std::string text;
   for (const ShownNumber& number : quantity.numbers) {
@@ -39,7 +39,7 @@ std::string quantityRows(const ShownQuantity& quantity) {
   return text;
 }
 
-// Angles below the rotation that leads to the reference, in words of their own.
+// Rows of a sensor, with roll, pitch and yaw below the rotation to the reference.
 std::string sensorRows(const std::vector<ShownQuantity>& quantities, const Eigen::Quaterniond& rotation) {
   std::string text;
   for (const ShownQuantity& quantity : quantities) {
@@ -66,7 +66,7 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
     text += intrinsicsRows(state.lens.inUse().value_or(CameraIntrinsics{}), *sigmas);
   if (i >= named.result->cameras.size()) return text;
   const CameraFit& fit = named.result->cameras[i];
-  text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
+  text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} times its sigmas\n", "reprojection",
                       fit.reprojection_rms_px, fit.normalised_rms);
   const int found = fit.windows_complete + fit.windows_partial;
   return text +

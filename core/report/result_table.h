@@ -1,4 +1,4 @@
-// A result as text for a terminal: every number with its +- (one standard deviation), and the verdict.
+// Result as text for a terminal: every number with its +- (one standard deviation), and the verdict.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -9,7 +9,7 @@ namespace evical {
 
 std::string resultTable(const NamedResult& named);
 
-// What of a sensor was given and not estimated, in words: "rotation, time offset"; empty if nothing was.
+// Quantities of a sensor that were given and not estimated: "rotation, time offset"; empty if none.
 std::string givenOf(const UncertaintyReport& uncertainty, const std::string& sensor);
 
 // Roll, pitch, yaw in degrees about x, y, z (R = Rz Ry Rx), for people only.

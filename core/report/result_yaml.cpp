@@ -34,7 +34,7 @@ void addSigma(const QuantityInfo& info, const Sigma& sigma, YamlSections& sectio
   sections.add(info.section, info.std_key, quantityYaml(Sigma(yamlSigmaFactor(info) * sigma), roundedYaml));
 }
 
-// Where clocks drift it matters when the time offset is what it is.
+// If clocks drift, the time offset refers to a given time.
 template <class State>
 void addTimeOfOffset(const State& state, YamlSections& sections) {
   if (state.time_offset_drift_ppm != 0.0)
@@ -43,7 +43,7 @@ void addTimeOfOffset(const State& state, YamlSections& sections) {
 
 enum class Written { Values, Sigmas, Both };
 
-// The rows that `chosen` takes, but for intrinsics, which have a map of their own.
+// Rows that `chosen` selects, except intrinsics, which have a separate map.
 template <class Rows, class State, class Uncertainty, class Chosen>
 void addQuantities(const Rows& rows, const State& state, const Uncertainty& uncertainty, Written written,
                    YamlSections& sections, Chosen&& chosen) {
@@ -160,7 +160,7 @@ std::string boardYaml(const BoardState& state, const BoardUncertainty& sigma, st
   return sections.text(indent);
 }
 
-// One, or several by name: the world's first.
+// One board, or several by name: the world's first.
 std::string boardsYaml(const NamedResult& named) {
   const CalibrationResult& result = *named.result;
   if (named.boards.size() < 2) {
@@ -213,7 +213,7 @@ std::string splitHalfCheckYaml(const SplitHalfCheck& validation) {
   return text;
 }
 
-// Which windows a person left out.
+// Windows that were rejected by hand.
 std::string rejectedYaml(const NamedResult& named) {
   std::string text;
   for (const RejectedWindow& window : named.result->rejected_windows)
@@ -222,7 +222,7 @@ std::string rejectedYaml(const NamedResult& named) {
   return text.empty() ? text : "rejected_windows:\n" + text;
 }
 
-// What makes it doubtful, or fail, one by one.
+// Reasons why the result is doubtful or failed, one by one.
 std::string causesYaml(const std::vector<QualityWarning>& causes) {
   std::string text;
   for (const QualityWarning& cause : causes) {

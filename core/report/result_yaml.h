@@ -1,4 +1,4 @@
-// result.yaml: what a calibration says, as a file that programs and people read. Keys are a contract.
+// result.yaml: result of a calibration for programs and people. Keys are a contract.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -13,24 +13,23 @@
 
 namespace evical {
 
-// What a session and its recording say of a sensor, handed on to other programs. Empty, 0: not known.
+// Description of a sensor from the session and the recording, for other programs. Empty or 0: unknown.
 struct SensorDescription {
   std::string name, stream = {};
-  // Of an IMU:
+  // IMU only:
   ImuNoise noise = {0.0, 0.0, 0.0, 0.0};
   double rate_hz = 0.0;
-  // Of a camera; older files do not say it, and are of events.
+  // Camera only; absent in older files, which have event cameras.
   CameraKind kind = CameraKind::Events;
-  // Of an IMU whose accelerometer has a stream of its own; `stream` is then the gyroscope's.
+  // IMU whose accelerometer has a separate stream; `stream` is then the gyroscope's.
   std::string accelerometer_stream = {};
 
   bool operator==(const SensorDescription&) const = default;
 };
 
-// A result that can be read by itself. Nobody changes the numbers any more, so that all who show or write
-// them share them.
+// Self-contained result. The numbers are final and shared by all users.
 struct NamedResult {
-  std::string reference;                         // a sensor's name
+  std::string reference;                         // name of a sensor
   std::vector<SensorDescription> cameras, imus;  // as those of the state
   std::vector<std::string> boards = {"board"};   // the world's, then the further ones
   std::string version;
@@ -40,16 +39,16 @@ struct NamedResult {
 
 std::vector<std::string> sensorNames(const std::vector<SensorDescription>& sensors);
 
-// As its cameras are listed.
+// In the order of its cameras.
 std::vector<CameraKind> cameraKinds(const NamedResult& named);
 
 const char* statusName(CalibrationStatus status);
 
-// A failed run without numbers is written too: status, reason, notes and whatever lists are filled.
+// A failed run without numbers is written, too: status, reason, notes and all lists that are not empty.
 std::string resultYaml(const NamedResult& named);
 
-// All but trajectory, iterations and residuals. Absent numbers stay at their defaults, so that truth.yaml can
-// be read too. Throws CalibrationError (BadInput).
+// Reads everything except trajectory, iterations and residuals. Absent numbers keep their defaults, so that
+// truth.yaml can be read, too. Throws CalibrationError (BadInput).
 NamedResult readResultYaml(const std::filesystem::path& file);
 NamedResult parseResultYaml(const std::string& text, const std::string& place);
 

@@ -1,4 +1,4 @@
-// Where each sensor of a result sits against the reference, and how that is said.
+// Pose of each sensor of a result relative to the reference, and its description.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -10,7 +10,7 @@
 
 namespace evical {
 
-// Takes points of the sensor to the reference: p_reference = R p_sensor + t.
+// Transforms points of the sensor to the reference: p_reference = R p_sensor + t.
 struct SensorPose {
   enum class Kind { Camera, Imu };
 
@@ -19,18 +19,18 @@ struct SensorPose {
   RigidTransform reference_from_sensor;
   double time_offset_s = 0.0;  // t_reference = t_sensor + that
   std::size_t number = 0;      // among the cameras, or the IMUs
-  // Of rigs without an IMU: programs chain their cameras, each to the one before it.
+  // Rigs without an IMU: other programs chain the cameras, each to the previous one.
   std::optional<RigidTransform> camera_from_camera_before = {};
 };
 
-// Cameras, then IMUs; the reference, which sits at itself, is none of them.
+// Cameras, then IMUs, without the reference.
 std::vector<SensorPose> sensorPoses(const NamedResult& named);
 
 // "takes points of left to left_imu: p_left_imu = R p_left + t"
 std::string directionWords(const SensorPose& pose);
 
-// A warning where roll and yaw turn about the same axis, or nearly: they cannot be told apart there, and change wildly
-// with the last digit. Empty elsewhere.
+// Warning if roll and yaw rotate about almost the same axis (gimbal lock): they are not separable, and change
+// by a large amount with the last digit. Otherwise empty.
 std::string anglesWarning(const Eigen::Vector3d& roll_pitch_yaw_deg);
 
 }  // namespace evical

@@ -34,7 +34,7 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
   return all;
 }
 
-// Follows from two time offsets.
+// Derived from two time offsets.
 constexpr QuantityInfo kLatency{.id = QuantityId::Latency,
                                 .name = "latency",
                                 .title = "latency",

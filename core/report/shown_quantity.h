@@ -1,5 +1,4 @@
-// Calibrated quantities as people read them: in shown units, number by number. Tables, the report and the
-// window are formats of these.
+// Calibrated quantities in displayed units, number by number. Tables, the report and the window display them.
 #pragma once
 
 #include "core/data/quantity.h"
@@ -22,19 +21,20 @@ struct ShownQuantity {
   std::vector<ShownNumber> numbers;
 };
 
-// Those there are, in the order of quantity.h; without the place if asked, which a reference does not have.
+// All present quantities, in the order of quantity.h; the pose can be omitted, which a reference does not
+// have.
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place = true);
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
-// None where its size is held; of a further board also its place in the world.
+// Empty if the board's size is fixed; for a further board also its pose in the world.
 std::vector<ShownQuantity> shownBoard(const NamedResult& named, std::size_t board);
 BoardUncertainty boardUncertainty(const UncertaintyReport& report,
-                                  std::size_t board);                 // all 0 where there is none
+                                  std::size_t board);                 // all 0 if absent
 std::string boardTitle(const NamedResult& named, std::size_t board);  // "Board", or "Board tags" of several
 
 // "ms against the gyroscope"
 std::string unitAndRemark(const ShownQuantity& quantity);
 
-// Of a 3 x 3 matrix: scales stand on its diagonal, misalignments beside it.
+// Elements of a 3 x 3 matrix: scales on the diagonal, misalignments off it.
 bool isScale(const ShownNumber& number);
 
 }  // namespace evical

@@ -1,5 +1,4 @@
-// What the estimated trajectory says an IMU should have measured, beside what it did measure: for plots and
-// for judging a fit by eye.
+// IMU signals predicted by the estimated trajectory, next to the measured ones, for plots.
 #pragma once
 
 #include "core/base/progress.h"
@@ -20,8 +19,8 @@ struct SensorSignal {
   std::vector<Eigen::Vector3d> measured, predicted;
 };
 
-// In the IMU's own frame. Scale, misalignment, bias, lever arm, time offset and delay are in the predictions, so that
-// measured - predicted is noise if all is well.
+// In the IMU's own frame. Predictions include scale, misalignment, bias, lever arm, time offset and delay, so
+// that measured - predicted is noise if the model is correct.
 struct SignalPrediction {
   SensorSignal rate_rad_s, force_m_s2;
 };

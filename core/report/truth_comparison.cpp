@@ -62,10 +62,9 @@ std::string comparisonTable(const TruthComparison& comparison) {
   }
   text += fmt::format("{:<40}{:>14.6f}\n", "gravity direction [deg]", comparison.gravity_direction_deg);
   for (const CameraError& camera : comparison.cameras)
-    text +=
-        fmt::format("{}: rotation off by {:.4f} deg, translation by {:.3f} mm, time offset by {:.4f} ms\n",
-                    camera.name, camera.rotation_deg, camera.translation_mm, camera.time_offset_ms);
-  return text + fmt::format("normalised errors: RMS {:.2f} (1 where the sigmas are honest)\n",
+    text += fmt::format("{}: errors: rotation {:.4f} deg, translation {:.3f} mm, time offset {:.4f} ms\n",
+                        camera.name, camera.rotation_deg, camera.translation_mm, camera.time_offset_ms);
+  return text + fmt::format("normalised errors: RMS {:.2f} (1 if the sigmas are correct)\n",
                             comparison.normalisedRms());
 }
 

@@ -1,4 +1,4 @@
-// A result against the truth of a simulated recording: errors, and whether the reported sigmas are honest.
+// Comparison of a result with the truth of a simulated recording: errors, and consistency of the sigmas.
 #pragma once
 
 #include "core/data/quantity_difference.h"
@@ -22,7 +22,7 @@ struct TruthComparison {
   double normalisedRms() const { return evical::normalisedRms(quantities); }
 };
 
-// What is compared of a result.
+// Compared quantities of a result.
 Estimate estimateOf(const NamedResult& named);
 
 // Throws CalibrationError (BadInput) when the two name different sensors or references.

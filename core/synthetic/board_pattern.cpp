@@ -6,7 +6,7 @@
 namespace evical {
 namespace {
 
-constexpr int kBorderModules = 2;  // as Kalibr prints them
+constexpr int kBorderModules = 2;  // as in Kalibr's prints
 constexpr int kTagSide_modules = kTagSide_bits + 2 * kBorderModules;
 
 }  // namespace
@@ -58,7 +58,7 @@ bool BoardPattern::inDarkSquare(const Eigen::Vector2f& p) const {
   return (row + col) % 2 == 0;
 }
 
-// In a bright square; they are numbered row by row, and the first square of all is dark.
+// In bright squares, numbered row by row; the first square of all is dark.
 bool BoardPattern::inMarker(const Eigen::Vector2f& p) const {
   const auto row = static_cast<int>(std::floor(p.y() / spacing_m_)) + 1,
              col = static_cast<int>(std::floor(p.x() / spacing_m_)) + 1;

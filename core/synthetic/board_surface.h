@@ -1,5 +1,5 @@
-// The simulated board's sheet where it is bent: BoardState's parabola (core/data/calibration_state.h) in metres of the
-// real board.
+// The simulated board's sheet if it is bent: BoardState's parabola (core/data/calibration_state.h) in metres
+// of the real board.
 #pragma once
 
 #include "core/synthetic/scenario.h"
@@ -36,8 +36,8 @@ class BoardSurface {
   Eigen::Matrix2f rounded_1_m_;
 };
 
-// With x = on_plane + z along, and z = x' C x / 2: a quadratic equation. Rays that miss the sheet, far beyond its edge,
-// keep their place on the plane.
+// With x = on_plane + z along, and z = x' C x / 2: a quadratic equation. Rays that miss the sheet, far beyond
+// its edge, stay on the plane.
 inline BoardSurface::Hit BoardSurface::hit(const Eigen::Vector2f& on_plane_m,
                                            const Eigen::Vector3f& camera_m) const {
   const float depth_m = -camera_m.z();

@@ -1,4 +1,4 @@
-// Views of a perfect front end, and noisy observations made from them without events.
+// Views of a perfect front end, and noisy observations derived from them without events.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -9,13 +9,13 @@
 
 namespace evical {
 
-// One circle as it truly is in the image.
+// The true image of one circle.
 struct TrueCircle {
   int circle = 0;
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();      // of the ellipse, ideal pixels
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();  // ideal pixels
   bool inside = false;                                      // the whole circle is in the image
-  bool hidden = false;                                      // a hand is before some of it
+  bool hidden = false;                                      // a hand covers some of it
 
   bool isVisible() const { return inside && !hidden; }
 };
@@ -25,8 +25,8 @@ struct TrueCircle {
 std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
                                       std::size_t camera, double stamp_s);
 
-// Circles that are wholly in the image and not hidden; and whether they suffice for a partial grid (docs/maths.md, 5.4),
-// here at least 4 and 40 %.
+// Circles that are completely in the image and not hidden; and whether they suffice for a partial grid
+// (docs/maths.md, 5.4), here at least 4 and 40 %.
 int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 

@@ -69,7 +69,7 @@ Image clouds(int size, Random& random) {
   Image sum(size), white(size);
   for (float& v : white.values) v = static_cast<float>(random.normal());
   for (const int radius : {4, 8, 16, 32, 64}) {
-    Image octave(size);  // of the same noise, shifted
+    Image octave(size);  // from the same noise, shifted
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) octave.at(x, y) = white.at(x + 97 * radius, y + 61 * radius);
     for (int pass = 0; pass < 6; ++pass) boxRows(octave, radius);

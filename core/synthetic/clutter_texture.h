@@ -16,7 +16,7 @@ struct ClutterTextureOptions {
 class ClutterTexture {
  public:
   explicit ClutterTexture(const ClutterTextureOptions& options);
-  // The same picture through further blur.
+  // The same picture with additional blur.
   ClutterTexture(const ClutterTexture& sharper, double blur_texels);
 
   // Log reflectance, bilinear; finite coordinates within +-kReach texels, beyond them the border's.
@@ -32,8 +32,8 @@ class ClutterTexture {
   }
 
  private:
-  static constexpr int kSize = 1024;         // texels a side, a power of two
-  static constexpr int kStride = kSize + 1;  // the first column once more, so that neighbours are adjacent
+  static constexpr int kSize = 1024;              // texels per side, a power of two
+  static constexpr int kStride = kSize + 1;       // repeats the first column, so that neighbours are adjacent
   static constexpr float kOffset = 4.0f * kSize;  // makes coordinates positive: truncation is floor
 
   static float clamped(float value, float reach) {

@@ -11,9 +11,9 @@
 namespace evical {
 namespace {
 
-constexpr double kRamp_s = 1.0;  // in which the envelope comes and goes
+constexpr double kRamp_s = 1.0;  // rise and fall time of the envelope
 
-// From 0 to 1 over u = 0 to 1, flat to the second order at both ends; with derivatives by u.
+// Smooth step from 0 to 1 over u = 0 to 1, flat to the second order at both ends; with derivatives by u.
 MotionValue smoothStep(double u) {
   if (u <= 0.0) return {0.0, 0.0, 0.0};
   if (u >= 1.0) return {1.0, 0.0, 0.0};
@@ -37,7 +37,7 @@ MotionValue sumOf(const std::vector<MotionSinusoid>& sinusoids, double time_s) {
   return sum;
 }
 
-// About an axis of the body, on top of what it does already.
+// Adds a rotation about an axis of the body.
 void turnOnTop(MotionState& state, const Eigen::Vector3d& axis, const MotionValue& angle) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle.value, axis));
   const Eigen::Vector3d w = turn.conjugate() * state.angular_velocity_in_body_rad_s,
@@ -47,7 +47,7 @@ void turnOnTop(MotionState& state, const Eigen::Vector3d& axis, const MotionValu
   state.angular_acceleration_in_body_rad_s2 = dw + w.cross(angle.first * axis) + angle.second * axis;
 }
 
-// Spread evenly in the logarithm of the frequency, so that no two axes move together.
+// Frequencies evenly spread in the logarithm, so that no two axes move together.
 std::vector<MotionSinusoid> sinusoids(double rms, double lowest_hz, double highest_hz, Random random) {
   constexpr int kCount = 4;
   std::vector<MotionSinusoid> all;
@@ -82,7 +82,7 @@ MotionValue DriveMotionModel::moving(double time_s) const {
   return {up.value - down.value, up.first - down.first, up.second - down.second};
 }
 
-// Directions of up in the body on a spiral of equal areas, as far from the first as tilt allows.
+// Directions of up in the body on a spiral of equal areas, within the largest tilt from the first one.
 Eigen::Quaterniond DriveMotionModel::attitude(long stop) const {
   const long count = std::max(motion_.attitudes, 1), k = stop % count;
   if (k == 0) return Eigen::Quaterniond::Identity();

@@ -19,7 +19,7 @@ class DriveMotionModel {
   // State of the reference IMU, at seconds since the start on its clock. The world's z axis points up.
   MotionState at(double time_s) const;
 
-  // 1 on the way, 0 in stops.
+  // 1 while moving, 0 in stops.
   MotionValue moving(double time_s) const;
 
  private:

@@ -39,7 +39,7 @@ ImuStep readStep(const YamlNode& map, const DriveScenario& scenario) {
   const std::string name = map["imu"].text();
   const auto found = std::find_if(scenario.imus.begin(), scenario.imus.end(),
                                   [&](const SimulatedImu& imu) { return imu.name == name; });
-  if (found == scenario.imus.end()) throw map["imu"].error("is none of the scenario's IMUs");
+  if (found == scenario.imus.end()) throw map["imu"].error("is not one of the scenario's IMUs");
   step.imu = static_cast<std::size_t>(found - scenario.imus.begin());
   get(map, "at_s", step.at_s, 0.0, 1e6, "s");
   get(map, "rotation_deg", step.rotation_rad, -180.0, 180.0, kRadPerDeg);
@@ -158,7 +158,7 @@ bool isDriveScenario(const std::filesystem::path& path) {
 
 DriveScenario readDriveScenario(const std::filesystem::path& path) {
   DriveScenario scenario = readDriveFrom(path, 0);
-  if (scenario.imus.empty()) throw badInput(path.string(), "has no IMUs", "Give it a list `imus`");
+  if (scenario.imus.empty()) throw badInput(path.string(), "has no IMUs", "Add a list `imus`");
   return scenario;
 }
 

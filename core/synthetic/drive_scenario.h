@@ -1,5 +1,5 @@
-// A simulated log of IMUs alone: a drive with stops in different attitudes, and IMUs of which something changes on
-// the way. All that is simulated follows from these numbers and the seed.
+// A simulated log of IMUs only: a drive with stops in different attitudes, and IMUs with changes on the way.
+// The simulation is determined by these numbers and the seed.
 #pragma once
 
 #include "core/synthetic/scenario.h"
@@ -16,9 +16,9 @@ namespace evical {
 // Motion between stops: the rig rotates into the next attitude, and sways and wobbles on the way, by sums of
 // sinusoids with a smooth envelope.
 struct DriveMotion {
-  int stops = 0;          // 0: it never stops
-  int attitudes = 1;      // that stops take in turn
-  double tilt_rad = 0.0;  // how far attitudes lean from the first at most; pi: all around
+  int stops = 0;          // 0: no stops
+  int attitudes = 1;      // attitudes of the stops, in turn
+  double tilt_rad = 0.0;  // largest tilt of attitudes relative to the first; pi: all around
   double stop_s = 4.0, drive_s = 6.0;
   Eigen::Vector3d wobble_rad = {0.04, 0.05, 0.08};  // RMS about x, y, z of the reference
   Eigen::Vector3d sway_m = {0.5, 0.5, 0.05};        // RMS along the world's x, y, z
@@ -47,19 +47,20 @@ struct DriveScenario {
   std::int64_t start_ns = 1'700'000'000'000'000'000;
   double gravity_m_s2 = 9.81;  // along the world's -z
   DriveMotion motion;
-  std::vector<SimulatedImu> imus;  // the first is the reference; with their values at the calibration
+  std::vector<SimulatedImu> imus;  // the first is the reference; values at the time of the calibration
   std::vector<ImuStep> steps;
   double trajectory_hz = 0.0;  // 0: no trajectory is written
   double trajectory_noise_m = 1e-3, trajectory_noise_rad = 1e-4;
 
-  // With all steps until then.
+  // The IMU with all steps until then.
   SimulatedImu imuAt(std::size_t imu, double time_s) const;
 };
 
-// True for a drive scenario; otherwise it is a scenario of cameras.
+// True for a drive scenario; false for a scenario of cameras.
 bool isDriveScenario(const std::filesystem::path& path);
 
-// Absent keys keep the defaults; `base:` names another one that this one changes. Throws CalibrationError (BadInput).
+// Absent keys keep the defaults; `base:` names a scenario that this one modifies. Throws CalibrationError
+// (BadInput).
 DriveScenario readDriveScenario(const std::filesystem::path& path);
 
 // The keys of result.yaml with the values at the end, and the steps.

@@ -18,7 +18,7 @@ struct Measured {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
-// First-order noise: the decayed previous sample, and as much new noise as keeps its size.
+// First-order noise: the decayed previous sample, plus new noise so that the variance is constant.
 class ShakenMount {
  public:
   ShakenMount(const MountShake& shake, double rate_hz, Random random)
@@ -48,7 +48,7 @@ Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eige
                                        (state.acceleration_in_world_m_s2 - gravity_m_s2))};
 }
 
-// spoilSamples takes scenarios of cameras.
+// spoilSamples needs a scenario of cameras.
 void spoil(const DriveScenario& drive, std::size_t imu, std::vector<ImuSample>& samples) {
   Scenario scenario;
   scenario.seed = drive.seed;
@@ -73,7 +73,7 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
   SimulatedImu imu;
   ShakenMount mount(scenario.imus[index].shake, rate_hz, Random(scenario.seed, kShake, index));
   for (std::size_t k = 0; k < count; ++k) {
-    // IMUs do not sample at one moment.
+    // IMUs do not sample at the same time.
     const double time_s = (static_cast<double>(k) + 0.3 * static_cast<double>(index)) / rate_hz;
     std::size_t done = 0;
     for (const ImuStep& step : scenario.steps) done += step.at_s <= time_s ? 1 : 0;

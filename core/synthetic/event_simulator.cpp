@@ -48,7 +48,7 @@ void forEachItem(int items, int threads, const std::function<void(int, int)>& wo
   if (failure) std::rethrow_exception(failure);
 }
 
-// Background activity and hot pixels: events without light.
+// Background activity and hot pixels: events without changes of light.
 void addNoise(const Scenario& scenario, std::size_t index, std::uint64_t packet, double begin_s, double end_s,
               std::vector<Event>& events) {
   constexpr std::uint64_t kNoiseStream = 0xa0u, kHotStream = 0xb0u;
@@ -76,14 +76,14 @@ void addNoise(const Scenario& scenario, std::size_t index, std::uint64_t packet,
   }
 }
 
-// Brings the workers' events into one order; what jitter has moved beyond the packet's end
-// waits for the next one.
+// Merges the workers' events in time order; events that jitter has moved beyond the packet's end
+// are kept for the next one.
 class PacketSorter {
  public:
   explicit PacketSorter(const Scenario& scenario, std::size_t camera)
       : scenario_(scenario), camera_(camera), readout_(scenario.cameras[camera].pixel) {}
 
-  // All events of the packet; those returned are not later than all that are still to come.
+  // All events of the packet; no later packet has earlier ones.
   EventSpan sorted(const std::vector<std::vector<Event>>& found, std::uint64_t packet, double end_s) {
     events_.swap(waiting_);
     const std::size_t old = events_.size();
@@ -106,7 +106,7 @@ class PacketSorter {
   }
 
  private:
-  // Late by the absolute value of a normal variable.
+  // Delayed by the absolute value of a normal variable.
   void jitter(std::size_t first, std::uint64_t packet) {
     constexpr std::uint64_t kJitterStream = 0xd0u;
     const double sigma_s = scenario_.cameras[camera_].pixel.stamp_jitter_s;

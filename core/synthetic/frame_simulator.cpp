@@ -16,8 +16,8 @@
 namespace evical {
 namespace {
 
-constexpr int kExposures = 3;     // moments within one
-constexpr double kWhite = 235.0;  // what white paper gives, of 255
+constexpr int kExposures = 3;     // instants per exposure
+constexpr double kWhite = 235.0;  // value of white paper, of 255
 
 class FrameRenderer {
  public:
@@ -28,7 +28,7 @@ class FrameRenderer {
         motion_(scenario),
         light_(sceneOf(scenario, index), index, camera_.frames->blur_px) {}
 
-  // The pixels of a row of the frame whose middle is exposed at this time on the reference's clock.
+  // Renders the pixels of a row of the frame whose middle is exposed at this time on the reference's clock.
   void render(int row, double time_s, Random& noise, std::uint8_t* pixels) const {
     const FrameModel& model = *camera_.frames;
     const Resolution& size = camera_.intrinsics.resolution_px;

@@ -1,4 +1,4 @@
-// Frames of a simulated camera: the board and its background, blurred by the lens while rows are exposed.
+// Frames of a simulated camera: the board and its background, with lens blur and motion blur of exposures.
 #pragma once
 
 #include "core/base/progress.h"
@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// Calls `sink` with frames in order of time, 8 bit, stamped with the middle of the exposure of the middle row
-// on the camera's clock. Deterministic from the seed, for any number of threads. The camera is one with
+// Calls `sink` with frames in order of time, 8 bit, stamped with the middle of the middle row's exposure
+// on the camera's clock. Deterministic from the seed, for any number of threads. The camera must have
 // `frames`.
 void simulateFrames(const Scenario& scenario, std::size_t camera,
                     const std::function<void(const Frame&)>& sink, const RunContext& context = {},

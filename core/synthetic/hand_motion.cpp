@@ -10,9 +10,10 @@
 namespace evical {
 namespace {
 
-constexpr double kStopRamp_s = 0.25;  // from full speed to none
+constexpr double kStopRamp_s = 0.25;  // from full speed to rest
 
-// From 0 to 1 over u = 0 to 1, its derivative, and its integral from 0; flat to the second order at both ends.
+// Smooth step from 0 to 1 over u = 0 to 1, its derivative, and its integral from 0; flat to the second order
+// at both ends.
 double smoothFraction(double u) {
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }

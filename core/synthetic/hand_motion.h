@@ -1,4 +1,4 @@
-// Additions of hands to a motion of sinusoids (HandModel): tremor, bumps and steps of each quantity, and
+// Additions of hand-held motion to sinusoids (HandModel): tremor, bumps and steps of each quantity, and
 // stops, which stretch time.
 #pragma once
 
@@ -23,12 +23,12 @@ struct MotionSinusoid {
   MotionValue at(double time_s) const;
 };
 
-// The motion's time as a function of the clock's: constant during stops. Twice differentiable.
+// Time of the motion as a function of the clock's time: constant during stops. Twice differentiable.
 MotionValue motionTime(const HandModel& hand, double time_s);
-// A value of the motion's time as one of the clock's.
+// Converts derivatives by the motion's time to derivatives by the clock's.
 MotionValue throughTime(const MotionValue& value, const MotionValue& time);
 
-// A quick turn there and back.
+// A quick movement there and back.
 struct Jerk {
   double size, middle_s;
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kPacket_ns = 50'000'000;
 
-// Gauss-Markov: a first-order filter over white noise.
+// Gauss-Markov process: a first-order filter of white noise.
 void wander(const SimulatedImu& imu, Random random, std::vector<ImuSample>& samples) {
   const ImuFaults& faults = imu.faults;
   if (faults.gyroscope_wander_rad_s <= 0.0 && faults.accelerometer_wander_m_s2 <= 0.0) return;
@@ -60,7 +60,7 @@ void spoilStamps(const Scenario& scenario, const ImuFaults& faults, Random rando
     if (faults.stamp_jitter_s > 0.0) late_s += faults.stamp_jitter_s * random.normal();
     sample.time_ns += nanosecondsFrom(late_s);
   }
-  // They come together, some microseconds apart, when the last one is there.
+  // Samples of a batch arrive together, some microseconds apart, after the last one was measured.
   constexpr std::int64_t kApart_ns = 20'000;
   const auto batch = static_cast<std::size_t>(faults.batch);
   for (std::size_t first = 0; batch > 1 && first < samples.size(); first += batch) {
@@ -94,7 +94,7 @@ void spoilSamples(const Scenario& scenario, std::size_t index, std::vector<ImuSa
   const SimulatedImu& imu = scenario.imus[index];
   const ImuFaults& faults = imu.faults;
   if (faults == ImuFaults{} || samples.empty()) return;
-  // A stream of chance for each, so that one fault does not change another.
+  // A random stream for each fault, so that one fault does not change another.
   enum Stream : std::uint64_t { Wander = 0x110, Spikes = 0x120, Stamps = 0x130, Losses = 0x140 };
   const auto chance = [&](Stream stream) { return Random(scenario.seed, stream, index); };
   wander(imu, chance(Wander), samples);

@@ -15,8 +15,8 @@ struct SimulatedBiases {
 // Stamps on the IMU's own clock, nanoseconds in the scenario's epoch; SI units.
 std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t imu);
 
-// Means of the biases over all samples: they walk from where the scenario has them, and a gyroscope that feels
-// forces shows their mean.
+// Means of the biases over all samples: biases are random walks that start at the scenario's values, and a
+// gyroscope with g-sensitivity has a mean error.
 SimulatedBiases meanBiases(const Scenario& scenario, std::size_t imu);
 
 }  // namespace evical

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostSteps = 256;  // in one stretch
+constexpr int kMostSteps = 256;  // per interval
 constexpr char kMoving = -1;
 constexpr double kSettlingTimes = 3.0;  // time constants after which the low-pass filter follows a ramp
 
@@ -48,7 +48,7 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
   }
 }
 
-// Log of the light against that halfway between ink and paper, which corners have less of.
+// Log of the light relative to that halfway between ink and paper; corners have less because of vignetting.
 void PixelArray::findOwnLight() {
   if (model_.low_pass_light_power == 0.0 && model_.low_pass_polarity == 0.0) return;
   const Resolution& size = scenario_.cameras[camera_].intrinsics.resolution_px;
@@ -90,7 +90,7 @@ void PixelArray::reset(const RigidTransform& world_from_camera) {
   std::fill(settled_.begin(), settled_.end(), kMoving);
 }
 
-// On what it sees, its reference at this part of the way between its thresholds.
+// Initialises a pixel to its light, with its reference at this fraction between its thresholds.
 void PixelArray::settle(float input, float part, Pixel& pixel) const {
   pixel.level = pixel.input = input;
   pixel.reference = pixel.level + part * (pixel.threshold_on + pixel.threshold_off) - pixel.threshold_on;
@@ -110,7 +110,7 @@ PixelArray::Step PixelArray::stepBetween(double begin_s, double end_s) const {
           static_cast<float>(model_.leak_rate_hz * (end_s - begin_s))};
 }
 
-// More light, a faster pixel; darkening is slower than brightening.
+// More light makes a pixel faster; darkening is slower than brightening.
 PixelArray::Response PixelArray::responseOf(const Step& step, float input, int x, int y,
                                             const Pixel& pixel) const {
   if (own_light_.empty() || model_.low_pass_s <= 0.0) return step.response;
@@ -121,7 +121,7 @@ PixelArray::Response PixelArray::responseOf(const Step& step, float input, int x
   return {std::exp(-1.0f / lag), lag, lag * (step.end_s - step.begin_s)};
 }
 
-// Drawn again after each event.
+// The threshold is drawn again after each event.
 float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const {
   const float mean = on ? pixel.threshold_on : pixel.threshold_off;
   if (model_.threshold_noise <= 0.0) return mean;
@@ -150,7 +150,7 @@ void PixelArray::begin(double begin_s, double end_s,
   const auto instantAt = [&](double time_s) { return renderer_.at(world_from_camera_at(time_s), time_s); };
   const SceneRenderer::Instant first = instantAt(begin_s), middle = instantAt(0.5 * (begin_s + end_s)),
                                last = instantAt(end_s);
-  constexpr int kSamples = 8;  // a side: the fastest place is near one of them
+  constexpr int kSamples = 8;  // per side: the fastest place is near one of them
   float travel_px = 0.0f;
   SceneRenderer::TileView view;
   for (int i = 0; i <= kSamples; ++i) {
@@ -168,7 +168,7 @@ void PixelArray::begin(double begin_s, double end_s,
   for (int k = 0; k <= steps; ++k) instants_.push_back(instantAt(begin_s + (end_s - begin_s) * k / steps));
 }
 
-// In steps that are as long as a screen takes to turn.
+// In steps as long as a screen takes to switch.
 void PixelArray::runFlashingRow(int tile_row, std::vector<Event>& events) {
   constexpr double kStep_s = 7e-4;
   const double length_s = end_s_ - begin_s_;
@@ -241,8 +241,8 @@ void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pix
   if (after < pixel.reference + thresholdNow(pixel, true, x, y) &&
       after > pixel.reference - thresholdNow(pixel, false, x, y))
     return;
-  // Steps are long against the filter: its answer bends within one, and a straight line would stamp events
-  // too late where slopes grow and too early where they fall.
+  // Steps are long compared with the filter's time constant: its response is curved within a step, and linear
+  // interpolation would stamp events too late where slopes increase and too early where they decrease.
   const double bend_s = kSettlingTimes * response.constant_s, length_s = step.end_s - step.begin_s;
   if (bend_s <= 0.0 || 2.0 * bend_s > length_s) {
     emitCrossings(step, before, after, x, y, pixel, events);

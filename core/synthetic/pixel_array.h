@@ -13,8 +13,8 @@
 
 namespace evical {
 
-// The stamp of something that a pixel's comparator sees at `time_s` on the reference's clock: late by the
-// latency, on the camera's clock, a whole microsecond. Jitter comes on top.
+// Stamp of an event that a pixel's comparator detects at `time_s` on the reference's clock: delayed by the
+// latency, on the camera's clock, an integer microsecond. Jitter is added later.
 std::int64_t pixelStamp_ns(const Scenario& scenario, std::size_t camera, double time_s);
 
 class PixelArray {
@@ -23,11 +23,11 @@ class PixelArray {
 
   int tileRows() const { return renderer_.tileRows(); }
 
-  // Settles all pixels on their present light; their references are anywhere within the thresholds, as if
+  // Settles all pixels on their present light, with random references within the thresholds, as if
   // they had been running before. This is the recording's start.
   void reset(const RigidTransform& world_from_camera);
 
-  // A stretch of a few milliseconds, then each of its rows of tiles once, in any
+  // Begins an interval of a few milliseconds; afterwards each of its rows of tiles once, in any
   // order and from several threads.
   void begin(double begin_s, double end_s, const std::function<RigidTransform(double)>& world_from_camera_at);
 
@@ -55,7 +55,7 @@ class PixelArray {
   struct Step {
     double begin_s, end_s;
     Response response;  // of a pixel at the light halfway
-    float lamp, leak;   // log of the lamp's light at the step's end, part of a threshold that leaks away
+    float lamp, leak;   // log of the lamp's light at the step's end, leaked part of a threshold
   };
 
   void advance(const Step& step, float input, int x, int y, Pixel& pixel, std::vector<Event>& events) const;
@@ -78,19 +78,19 @@ class PixelArray {
   std::size_t camera_;
   const EventPixelModel& model_;
   SceneRenderer renderer_;
-  std::unique_ptr<FlashingBoard> flashing_;  // where the board blinks, in the renderer's place
-  std::unique_ptr<RoomRenderer> room_;       // where there is a room, the same
+  std::unique_ptr<FlashingBoard> flashing_;  // replaces the renderer if the board blinks
+  std::unique_ptr<RoomRenderer> room_;       // replaces the renderer if there is a room
   int width_px_;
   float step_travel_px_;
-  // May pixels be skipped if nothing moves, and does the lamp alone make them fire?
+  // True if pixels may be skipped when nothing moves; true if the lamp alone causes events.
   bool rests_, lamp_is_weak_;
-  std::vector<float> own_light_;  // log, added to what a pixel sees; empty where all answer alike
+  std::vector<float> own_light_;  // log, added to a pixel's light; empty if all pixels have the same response
   std::vector<Pixel> pixels_;
-  std::vector<char> settled_;  // per tile: the content that all pixels have come to rest on
+  std::vector<char> settled_;  // per tile: the content on which all pixels have settled
 
   double begin_s_ = 0.0, end_s_ = 0.0;
-  std::vector<SceneRenderer::Instant> instants_;  // a power of two and one, evenly spaced from begin to end
-  std::vector<RoomRenderer::Instant> room_instants_;  // the same
+  std::vector<SceneRenderer::Instant> instants_;  // a power of two plus one, evenly spaced from begin to end
+  std::vector<RoomRenderer::Instant> room_instants_;  // likewise
 };
 
 }  // namespace evical

@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostRoomSteps = 256;  // in one stretch
+constexpr int kMostRoomSteps = 256;  // per interval
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void PixelArray::beginInRoom(const std::function<RigidTransform(double)>& world_
     return room_->at(world_from_camera_at(begin_s_ + part * (end_s_ - begin_s_)));
   };
   const RoomRenderer::Instant first = instantAt(0.0), middle = instantAt(0.5), last = instantAt(1.0);
-  constexpr int kSamples = 8;  // a side: the fastest place is near one of them
+  constexpr int kSamples = 8;  // per side: the fastest place is near one of them
   float travel_px = 0.0f;
   RoomRenderer::TileView view;
   for (int i = 0; i <= kSamples; ++i)

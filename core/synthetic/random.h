@@ -1,6 +1,5 @@
-// A small generator that gives the same numbers on every machine and can be started
-// anywhere from a few integers, so that what is drawn does not depend on threads or order.
-// S. Vigna, "splitmix64" (public domain algorithm).
+// A small random generator with the same numbers on every machine, seeded by a few integers at any point, so
+// that random numbers do not depend on threads or order. S. Vigna, "splitmix64" (public domain algorithm).
 #pragma once
 
 #include <Eigen/Core>

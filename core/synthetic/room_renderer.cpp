@@ -15,8 +15,8 @@ namespace {
 constexpr int kBlurs = 5;
 constexpr double kSharpest_texels = 0.5;
 
-// Step blurred by a Gaussian, nearly: a cubic of the same variance, 0 to 1 within so many sigmas to either
-// side.
+// Approximation of a step blurred by a Gaussian: a cubic of the same variance, 0 to 1 within this many sigmas
+// to either side.
 constexpr float kStepReach = 2.236f;
 
 float blurredStep(float sigmas) {
@@ -93,7 +93,7 @@ RoomRenderer::Cone RoomRenderer::coneOf(const Tile& tile) const {
   return cone;
 }
 
-// The one that the ray meets first: of all walls before the camera the one with the largest 1/z.
+// The wall that the ray meets first: the one with the largest 1/z of all walls in front of the camera.
 int RoomRenderer::nearestWall(const Instant& instant, const Eigen::Vector2f& ray,
                               float* inverse_depth) const {
   int nearest = 0;
@@ -109,7 +109,7 @@ int RoomRenderer::nearestWall(const Instant& instant, const Eigen::Vector2f& ray
   return nearest;
 }
 
-// Image motion of a point at this depth away from the pixel.
+// Image motion at this depth, away from the pixel.
 float RoomRenderer::travel(std::size_t pixel, float inverse_depth_1_m, const Instants& instants) const {
   const Eigen::Vector2f& ray = rays_[pixel];
   if (!(inverse_depth_1_m > 0.0f)) return 0.0f;
@@ -129,11 +129,11 @@ float RoomRenderer::travel(std::size_t pixel, float inverse_depth_1_m, const Ins
   return path;
 }
 
-// Boxes whose spheres may be seen there, the nearest first.
+// Boxes whose bounding spheres may be visible in the tile, the nearest first.
 void RoomRenderer::findBoxes(const Tile& tile, const Instants& instants, TileView& view) const {
   view.boxes.clear();
   const Cone cone = coneOf(tile);
-  constexpr double kSlack_rad = 0.02;  // what moves between the three instants, and what blur adds
+  constexpr double kSlack_rad = 0.02;  // motion between the three instants, and blur
   const auto distance = [&](int k) { return instants[1]->box_middles_m[static_cast<std::size_t>(k)].norm(); };
   for (std::size_t k = 0; k < room_.boxes.size(); ++k) {
     const auto seenAt = [&](const Instant* instant) {
@@ -148,17 +148,17 @@ void RoomRenderer::findBoxes(const Tile& tile, const Instants& instants, TileVie
   std::sort(view.boxes.begin(), view.boxes.end(), [&](int a, int b) { return distance(a) < distance(b); });
 }
 
-// Told by the tile's corners: a side's outline is straight, and so, nearly, is the tile's.
-// Where a tile's corner is on a side, over its edges: past which of them it is, and whether well within all.
+// Position of a tile's corner relative to a side: which edges it is beyond, and whether it is well inside all
+// of them. Corners suffice, since a side's outline is straight, and so, nearly, is the tile's.
 struct RoomRenderer::CornerPlace {
-  bool before = false;  // the side's plane is before the camera there
+  bool before = false;  // the side's plane is in front of the camera there
   bool within = false;
   std::array<bool, 4> beyond = {};  // +x, +y, -x, -y
 };
 
 RoomRenderer::CornerPlace RoomRenderer::cornerOn(const RoomSide& side, const PlacedSide& placed,
                                                  std::size_t pixel) const {
-  constexpr float kSlack_px = 1.5f;  // lens distortion, and what moves between the instants
+  constexpr float kSlack_px = 1.5f;  // lens distortion, and motion between the instants
   const float clear_px = kStepReach * blur_px_ + kSlack_px;
   const Eigen::Array2f half_m = side.half_m.cast<float>().array();
   const Eigen::Matrix3f& h = placed.side_from_ray;
@@ -181,7 +181,7 @@ RoomRenderer::CornerPlace RoomRenderer::cornerOn(const RoomSide& side, const Pla
 RoomRenderer::Extent RoomRenderer::extentOf(std::size_t box, std::size_t side, const Tile& tile,
                                             const Instants& instants) const {
   bool all = true, faces = false, behind = true;
-  std::array<bool, 4> beyond = {true, true, true, true};  // this edge, all corners
+  std::array<bool, 4> beyond = {true, true, true, true};  // by edge: true if all corners are beyond it
   for (const Instant* instant : instants) {
     const PlacedSide& placed = instant->boxes[box][side];
     faces = faces || placed.faces;
@@ -200,7 +200,7 @@ RoomRenderer::Extent RoomRenderer::extentOf(std::size_t box, std::size_t side, c
   return faces && !missed ? Extent::Part : Extent::Nothing;
 }
 
-// Boxes that miss the tile after all, and those behind a side that fills it.
+// Removes boxes that do not cover the tile, and those behind a side that fills it.
 void RoomRenderer::dropHidden(const Tile& tile, const Instants& instants, TileView& view) const {
   view.only_side = -1;
   std::size_t kept = 0;
@@ -223,7 +223,7 @@ void RoomRenderer::dropHidden(const Tile& tile, const Instants& instants, TileVi
 
 void RoomRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
   view.travel_px = 0.0f;
-  view.wall = -2;  // not known yet
+  view.wall = -2;  // not yet determined
   findBoxes(tile, instants, view);
   dropHidden(tile, instants, view);
   float nearest_1_m = 0.0f;
@@ -248,7 +248,7 @@ void RoomRenderer::look(const Tile& tile, const Instants& instants, TileView& vi
     }
 }
 
-// By how many texels a pixel of the tile's middle sees the side, across its slant.
+// Number of texels of the side per pixel at the tile's middle, across its slant.
 RoomRenderer::Sharpness RoomRenderer::sharpnessOn(const PlacedSide& side, const Tile& tile) const {
   const auto pixel =
       static_cast<std::size_t>((tile.y_px + tile.height_px / 2) * width_px_ + tile.x_px + tile.width_px / 2);
@@ -280,8 +280,8 @@ float RoomRenderer::onWall(const Instant& instant, int wall, const Eigen::Vector
   return picture(room_.walls[k], place.hnormalized(), sharpness);
 }
 
-// On an edge of two walls both are equally far; its distance in pixels follows from the difference of their
-// 1/z.
+// At an edge between two walls both have the same distance; the pixel's distance from the edge follows from
+// the difference of their 1/z.
 float RoomRenderer::onWalls(const Instant& instant, std::size_t pixel,
                             const std::array<Sharpness, 6>& sharpness) const {
   const Eigen::Vector2f& ray = rays_[pixel];
@@ -320,7 +320,7 @@ float RoomRenderer::coverOf(const RoomSide& side, const PlacedSide& placed, std:
   if (!(at.z() > 0.0f)) return 0.0f;
   place_m = at.hnormalized();
   const Eigen::Vector2f inside_m = side.half_m.cast<float>() - place_m.cwiseAbs();
-  constexpr float kFar_m = 0.2f;  // more than any blur
+  constexpr float kFar_m = 0.2f;  // larger than any blur
   if (inside_m.minCoeff() < -kFar_m) return 0.0f;
   const Eigen::Matrix2f per_px =
       (h.topLeftCorner<2, 2>() - place_m * h.block<1, 2>(2, 0)) / at.z() * ray_per_px_[pixel];
@@ -328,7 +328,7 @@ float RoomRenderer::coverOf(const RoomSide& side, const PlacedSide& placed, std:
   return std::isfinite(inside_px) ? blurredStep(inside_px / blur_px_) : 0.0f;
 }
 
-// Sides of one box share its outline: where two of them meet their parts add up to all.
+// Sides of a box share edges: there, their shares add up to 1.
 float RoomRenderer::lightOfBox(const Instant& instant, int box, std::size_t pixel,
                                const std::array<Sharpness, 6>& sharpness, float& covered) const {
   const auto b = static_cast<std::size_t>(box);

@@ -1,5 +1,5 @@
-// Log intensity of a furnished room, as the blurred image has it: SceneRenderer's tiles with another scene. Along a ray
-// there is the picture on the nearest side; where sides meet, as much of each as the pixel sees of it.
+// Log intensity of a furnished room in the blurred image: SceneRenderer's tiles with another scene. Each ray
+// sees the picture on the nearest side; at edges, sides are weighted by their share of the pixel.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
@@ -19,16 +19,16 @@ class RoomRenderer {
  public:
   RoomRenderer(const Scenario& scenario, std::size_t camera);
 
-  // From rays (x/z, y/z) to metres on a side, of which the third coordinate is 1/z.
+  // From rays (x/z, y/z) to metres on a side; the third coordinate is 1/z.
   struct PlacedSide {
     Eigen::Matrix3f side_from_ray;
-    bool faces = false;  // it is seen from its front
+    bool faces = false;  // its front is visible
   };
   struct Instant {
     RigidTransform camera_from_world, world_from_camera;
     std::array<PlacedSide, 6> walls;
     std::vector<std::array<PlacedSide, 6>> boxes;
-    std::vector<Eigen::Vector3d> box_middles_m;  // in the camera
+    std::vector<Eigen::Vector3d> box_middles_m;  // in the camera frame
   };
   Instant at(const RigidTransform& world_from_camera) const;
 
@@ -36,9 +36,9 @@ class RoomRenderer {
   using Instants = std::array<const Instant*, 3>;
   struct TileView {
     int wall = -1;           // the only one there; -1: several
-    std::vector<int> boxes;  // that may be seen there, the nearest first
-    int only_side = -1;      // of the first box, where it hides all else
-    float travel_px = 0.0f;  // how far the image moves there, at most
+    std::vector<int> boxes;  // possibly visible boxes, the nearest first
+    int only_side = -1;      // of the first box, if it hides everything else
+    float travel_px = 0.0f;  // largest image motion there
   };
   void look(const Tile& tile, const Instants& instants, TileView& view) const;
   // Row by row.
@@ -49,7 +49,7 @@ class RoomRenderer {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     double half_angle_rad = 0.0;
   };
-  // A tile's picture on one side: the two blurs between which it is.
+  // A tile's picture on one side: interpolated between two blurs.
   struct Sharpness {
     std::size_t level = 0;
     float part = 0.0f;
@@ -83,7 +83,7 @@ class RoomRenderer {
   float blur_px_, texels_per_m_, focal_px_;
   std::vector<Eigen::Vector2f> rays_;        // per pixel; NaN without one
   std::vector<Eigen::Matrix2f> ray_per_px_;  // d(ray)/d(pixel)
-  std::vector<ClutterTexture> pictures_;     // each twice as blurred as the one before
+  std::vector<ClutterTexture> pictures_;     // each with twice the blur of the previous one
   double sharpest_texels_;
 };
 

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr double kPicture_m = 2.5;  // sides take their part of the picture from anywhere within this
+constexpr double kPicture_m = 2.5;  // range of random offsets of a side's picture
 
 Eigen::Vector3d boardMiddle_m(const Board& board) {
   const Eigen::Vector2d half = 0.5 * board.extent_m();
@@ -108,15 +108,16 @@ void validateRoom(const Scenario& scenario, const std::string& file) {
     const double target_m = axis < 2 ? motion.target_amplitude_m[axis] : 0.0;
     const double reach_m = root * (motion.walk_amplitude_m[axis] + target_m) + arm_m;
     if (reach_m + std::abs(scenario.room.middle_m[axis]) >= 0.5 * scenario.room.size_m[axis])
-      refuse("room.size_m", "the camera might go through a wall",
-             "Make the room larger, or the motion's amplitudes and distance_m smaller");
+      refuse("room.size_m", "the camera might pass through a wall",
+             "Increase size_m, or decrease the motion's amplitudes and distance_m");
   }
   for (const SimulatedCamera& camera : scenario.cameras)
     if (camera.frames)
-      refuse("cameras", fmt::format("{} has frames, and rooms are seen by event cameras only", camera.name),
-             "Leave out room, or the camera's frames");
+      refuse("cameras",
+             fmt::format("{} has frames, but rooms are rendered for event cameras only", camera.name),
+             "Remove room, or the camera's frames");
   if (scenario.scene.blink_hz > 0.0)
-    refuse("scene.blink_hz", "there is no board in a room that could blink", "Set it to 0");
+    refuse("scene.blink_hz", "a room does not have a board that blinks", "Set it to 0");
 }
 
 }  // namespace evical

@@ -1,5 +1,5 @@
-// A simulated room's furniture: flat sides with a place in the world, of walls that are seen from inside and boxes that are
-// seen from outside. docs/maths.md, 12.
+// Furniture of a simulated room: flat sides in the world, of walls that are seen from inside and boxes that
+// are seen from outside. docs/maths.md, 12.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -32,16 +32,17 @@ struct RoomBox {
 
 struct RoomScene {
   std::array<RoomSide, 6> walls;
-  std::vector<RoomBox> boxes;  // that do not touch each other
+  std::vector<RoomBox> boxes;  // do not touch each other
 };
 
 // Scene from the scenario's seed. Boxes without a free place are omitted.
 RoomScene furnishedRoom(const Scenario& scenario);
 
-// The scenario's key.
+// Name of the key in scenarios.
 void readRoom(const YamlNode& map, RoomModel& room);
 
-// Throws CalibrationError (BadInput) where cameras would go through walls or boxes, or see what rooms do not have.
+// Throws CalibrationError (BadInput) if cameras would pass through walls or boxes, or if the scenario has
+// something that rooms do not support.
 void validateRoom(const Scenario& scenario, const std::string& file);
 
 }  // namespace evical

@@ -59,14 +59,14 @@ void validateBoards(const Scenario& scenario, const std::string& file) {
   std::set<std::string> names = {SimulatedBoard().name};
   for (const SimulatedBoard& further : scenario.further_boards) {
     if (!names.insert(further.name).second)
-      throw badInput(file + ": further_boards", fmt::format("two boards are called {}", further.name),
-                     "Give each a name of its own");
+      throw badInput(file + ": further_boards", fmt::format("two boards have the name {}", further.name),
+                     "Give each board a unique name");
     validateBoard(further.board, fmt::format("{}: further_boards {}: ", file, further.name));
   }
   for (const SimulatedCamera& camera : scenario.cameras)
     if (!names.contains(camera.board))
       throw badInput(fmt::format("{}: board of {}", file, camera.name),
-                     fmt::format("there is no board called '{}'", camera.board),
+                     fmt::format("there is no board with the name '{}'", camera.board),
                      "Name one of further_boards");
 }
 

@@ -1,5 +1,5 @@
-// The boards of a scenario: how they are read, and what each camera sees of them. A camera sees one board, with clutter
-// behind it, and nothing of the others.
+// The boards of a scenario: parsing, and each camera's view of them. A camera sees one board, with clutter
+// behind it, and no other board.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -18,7 +18,7 @@ void validateBoards(const Scenario& scenario, const std::string& file);
 
 const Board& boardOf(const Scenario& scenario, std::size_t camera);
 
-// Nothing where the camera sees the board whose frame is the world.
+// Empty if the camera sees the board whose frame is the world.
 const SimulatedBoard* furtherBoardOf(const Scenario& scenario, std::size_t camera);
 
 // The scene as if this camera's board were the only one, its frame the world: transform poses by

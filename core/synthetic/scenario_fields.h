@@ -1,5 +1,4 @@
-// Readers of scenarios' keys: all of these keep the value if the key is absent, so a scenario changes its
-// base.
+// Readers of scenario keys. They keep the value if the key is absent, so a scenario modifies its base.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -51,13 +50,13 @@ inline void get(const YamlNode& map, const char* key, Eigen::Matrix<double, Size
   }
 }
 
-// Beginning of every kind of scenario: its base, read by `read` (path, depth), its name, its seed.
+// Common beginning of all kinds of scenario: its base, read by `read` (path, depth), its name, its seed.
 template <class AnyScenario, class Read>
 void readBeginning(const YamlNode& root, const std::filesystem::path& path, int depth, const Read& read,
                    AnyScenario& scenario) {
   if (const auto base = root.find("base")) {
     constexpr int kDeepest = 8;
-    if (depth > kDeepest) throw base->error("scenarios rest on each other without an end");
+    if (depth > kDeepest) throw base->error("the chain of bases has no end");
     scenario = read(path.parent_path() / base->text(), depth + 1);
   }
   scenario.name = path.stem().string();

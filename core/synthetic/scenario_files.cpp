@@ -15,7 +15,7 @@ namespace evical {
 namespace {
 
 constexpr int kSensorIndent = 6;
-constexpr double kLeastDensity = 1e-7;  // a session wants some noise, even of a noiseless IMU
+constexpr double kLeastDensity = 1e-7;  // a session needs a positive noise density, even for a noiseless IMU
 
 std::string vectorText(const Eigen::VectorXd& v) {
   std::string text = "[";
@@ -28,7 +28,7 @@ std::string transformText(const char* key, const RigidTransform& transform) {
                      vectorText(transform.rotation.coeffs()), vectorText(transform.translation_m));
 }
 
-// Where the reference IMU's clock runs fast, a camera's offset grows.
+// If the reference IMU's clock runs fast, a camera's offset grows.
 std::string driftTruth(const Scenario& scenario, const SimulatedCamera& camera) {
   const double drift_ppm = scenario.imus.empty() ? 0.0 : scenario.imus.front().faults.clock_drift_ppm;
   if (drift_ppm == 0.0) return {};
@@ -50,7 +50,7 @@ std::string cameraTruth(const Scenario& scenario, const SimulatedCamera& camera)
          intrinsicsYaml(camera.intrinsics, kSensorIndent);
 }
 
-// Against what the session says of it (BoardState), whose curvatures are of what it says too.
+// Relative to the session's board (BoardState), including the curvatures.
 std::string sheetTruth(const Scenario& scenario, const std::string& indent) {
   const double longer = scenario.board_stretch, said = 1.0 + scenario.session_errors.spacing;
   const BoardSurface surface(scenario);
@@ -78,12 +78,13 @@ std::string boardTruth(const Scenario& scenario) {
   return text;
 }
 
-// Pose, clock and delay against another camera's.
+// Pose, clock and delay relative to another camera.
 SimulatedCamera relativeTo(const SimulatedCamera& reference, SimulatedCamera camera) {
   camera.imu_from_camera = inverse(reference.imu_from_camera) * camera.imu_from_camera;
   camera.time_offset_s -= reference.time_offset_s;
   camera.pixel.latency_s -= reference.delay_s();
-  if (camera.frames) camera.time_offset_s += reference.delay_s();  // they have no delay to take it from
+  if (camera.frames)
+    camera.time_offset_s += reference.delay_s();  // frames do not have a delay to subtract it from
   return camera;
 }
 

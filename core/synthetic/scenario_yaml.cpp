@@ -56,8 +56,8 @@ void readHandOverBoard(const YamlNode& map, HandOverBoard& hand) {
   get(map, "shadow", hand.shadow, 0.0, 0.99, "");
   get(map, "shadow_edge_m", hand.shadow_edge_m, 1e-4, 0.1, "m");
   if (hand.every_s > 0.0 && hand.stay_s + kHandComesAndGoes_s > hand.every_s)
-    throw map.error("the hand would come again before it is gone",
-                    fmt::format("Make every_s at least stay_s and {} s", kHandComesAndGoes_s));
+    throw map.error("the hand would return before it has left",
+                    fmt::format("Set every_s to at least stay_s + {} s", kHandComesAndGoes_s));
 }
 
 void readPeople(const YamlNode& map, PeopleModel& people) {
@@ -67,7 +67,7 @@ void readPeople(const YamlNode& map, PeopleModel& people) {
   get(map, "distance_m", people.distance_m, 0.0, 100.0, "m");
   constexpr double kLeast_s = 0.2;
   if (people.every_s > 0.0 && people.every_s < kLeast_s)
-    throw map["every_s"].error("is a crowd", fmt::format("Give 0, or {} s or more", kLeast_s));
+    throw map["every_s"].error("is too short an interval", fmt::format("Give 0, or {} s or more", kLeast_s));
 }
 
 void readScene(const YamlNode& map, SceneModel& scene) {
@@ -89,11 +89,11 @@ void readScene(const YamlNode& map, SceneModel& scene) {
   if (const auto node = map.find("hand")) readHandOverBoard(*node, scene.hand);
   if (const auto node = map.find("people")) readPeople(*node, scene.people);
   if (scene.lamp_m.z() > -2.0 * scene.hand.height_m || scene.lamp_m.z() > -kNearestLamp_m)
-    throw map.error("lamp_m is not in front of the board, or the hand is too near to it",
-                    "Its z is negative: the lamp's height over the board, at least twice the hand's");
+    throw map.error("lamp_m is not in front of the board, or too close to the hand",
+                    "Set its z to a negative value, at least twice the hand's height_m in size");
   if (scene.people.every_s > 0.0 && scene.people.distance_m > scene.clutter_distance_m)
-    throw map.error("people would walk behind what lies behind the board",
-                    "Make clutter_distance_m at least people.distance_m");
+    throw map.error("people would walk behind the background",
+                    "Set clutter_distance_m to at least people.distance_m");
   if (scene.dark_reflectance >= scene.bright_reflectance)
     throw map.error("dark_reflectance must be less than bright_reflectance");
 }
@@ -112,8 +112,7 @@ void readHand(const YamlNode& map, HandModel& hand) {
   hand.jerk_rad = jerk_deg * kRadPerDeg;
   constexpr double kRamps_s = 0.5;
   if (hand.stop_every_s > 0.0 && hand.stop_s + kRamps_s > hand.stop_every_s)
-    throw map.error("stops would follow each other without an end",
-                    "Make stop_every_s at least stop_s and half a second");
+    throw map.error("stops would overlap", "Set stop_every_s to at least stop_s + 0.5 s");
 }
 
 void readMotion(const YamlNode& map, MotionModel& motion) {
@@ -149,8 +148,8 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
     throw map.error("highest_frequency_hz must not be less than lowest_frequency_hz");
   // The sum of n sinusoids of variance a^2 / 2n reaches a sqrt(n).
   if (motion.distance_amplitude_m * std::sqrt(motion.sinusoids) >= motion.distance_m)
-    throw map.error("the camera would go through the board",
-                    "Make distance_amplitude_m less than distance_m / sqrt(sinusoids)");
+    throw map.error("the camera would pass through the board",
+                    "Set distance_amplitude_m to less than distance_m / sqrt(sinusoids)");
 }
 
 void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
@@ -274,7 +273,7 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
 }
 
 // `one` is a map that changes the first sensor, `all` a list in which each map changes the base's sensor of
-// that place or adds one.
+// that index or adds one.
 template <class Sensor, class Read>
 void readSensors(const YamlNode& root, const char* one, const char* all, bool may_be_none,
                  std::vector<Sensor>& sensors, Read read) {
@@ -291,7 +290,7 @@ void readSensors(const YamlNode& root, const char* one, const char* all, bool ma
   std::set<std::string> names, streams;
   for (const Sensor& sensor : sensors) {
     if (!names.insert(sensor.name).second)
-      throw root.error(fmt::format("two of its {} are called {}", all, sensor.name));
+      throw root.error(fmt::format("two of its {} have the name {}", all, sensor.name));
     if (!streams.insert(sensor.stream).second)
       throw root.error(fmt::format("two of its {} have the stream {}", all, sensor.stream));
   }
@@ -301,13 +300,14 @@ void readGravity(const YamlNode& root, Eigen::Vector3d& gravity) {
   double norm = gravity.norm();
   get(root, "gravity_m_s2", gravity);
   if (gravity.norm() < 1e-6)
-    throw root["gravity_m_s2"].error("must not be zero", "It points down in the board's frame");
+    throw root["gravity_m_s2"].error("must not be zero",
+                                     "Give a vector that points down in the board's frame");
   if (root.has("gravity_m_s2")) norm = gravity.norm();
   get(root, "gravity_norm_m_s2", norm, 0.1, 100.0, "m/s^2");
   gravity *= norm / gravity.norm();
 }
 
-// The session's knowledge of the recording, and its errors.
+// The session's parameters of the recording, and their errors.
 void readSession(const YamlNode& map, Scenario& scenario) {
   map.allowOnly(
       {"intrinsics", "spacing_error", "focal_length_error", "principal_point_error_px", "imu_noise_factor"});
@@ -328,7 +328,7 @@ void shareSensors(const std::string& file, std::vector<SimulatedCamera>& cameras
     });
     if (sensor == cameras.end())
       throw badInput(fmt::format("{}: same_sensor_as of {}", file, camera.name),
-                     fmt::format("'{}' is no camera with a sensor of its own", camera.same_sensor_as),
+                     fmt::format("'{}' is not a camera with its own sensor", camera.same_sensor_as),
                      "Name one of the other cameras");
     camera.intrinsics = sensor->intrinsics;
     camera.imu_from_camera = sensor->imu_from_camera;
@@ -344,12 +344,12 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
     validate(camera.intrinsics, fmt::format("{}: intrinsics of {}", file, camera.name));
     if (camera.frames && camera.stream.find('/') != std::string::npos)
       throw badInput(fmt::format("{}: stream of {}", file, camera.name),
-                     fmt::format("'{}' is no name for a folder of frames", camera.stream),
-                     "Give it one without slashes");
+                     fmt::format("'{}' is not a valid name for a folder of frames", camera.stream),
+                     "Give a name without slashes");
     if (!camera.frames && !boardOf(scenario, k).hasCircles() && scenario.scene.blink_hz <= 0.0)
       throw badInput(fmt::format("{}: board.type", file),
-                     fmt::format("{} is an event camera, and the board has no circles", camera.name),
-                     "Give the camera frames, or the board circles, or let it blink: scene.blink_hz");
+                     fmt::format("{} is an event camera, but the board has no circles", camera.name),
+                     "Set frames for the camera, use a board of circles, or set scene.blink_hz");
   }
 }
 

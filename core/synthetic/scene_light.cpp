@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-constexpr int kSide = 9;        // of the grid of places that make a pixel at an edge
+constexpr int kSide = 9;        // of the grid of samples of a pixel at an edge
 constexpr float kReach = 2.3f;  // of that grid, in sigmas of the blur
 constexpr std::array<std::array<float, 2>, 12> kAround = {{{1, 0},
                                                            {-1, 0},
@@ -25,7 +25,7 @@ constexpr std::array<std::array<float, 2>, 12> kAround = {{{1, 0},
                                                            {0, 0.5f},
                                                            {0, -0.5f}}};
 
-// The sheet ends so far from the outer circles' centres, or from the ink of other boards.
+// The sheet ends at this distance from the outer circles' centres, or from the ink of other boards.
 float marginOf(const Scenario& scenario) {
   const Board& board = scenario.board;
   return static_cast<float>(scenario.scene.margin_m - (board.hasCircles() ? board.printBeyond_m() : 0.0));

@@ -1,5 +1,5 @@
-// Light of a pixel of a blurred image of any board and its background, at one instant. It is the same scene
-// as SceneRenderer's, whose tiles support circles only.
+// Light of a pixel in a blurred image of any board and its background, at one instant. The scene is
+// SceneRenderer's, whose tiles support circles only.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
@@ -17,7 +17,7 @@ namespace evical {
 
 class SceneLight {
  public:
-  // `optics_blur_px`: the point spread's sigma; the pixel's area comes on top.
+  // `optics_blur_px`: the point spread's sigma; plus the pixel's area.
   SceneLight(const Scenario& scenario, std::size_t camera, double optics_blur_px);
 
   // From rays to metres on the planes.
@@ -33,7 +33,7 @@ class SceneLight {
   Light of(std::size_t pixel, const Planes& planes) const;
 
  private:
-  // Ray to plane, and how that moves with the pixel.
+  // Ray to plane, and its derivative by the pixel.
   struct Place {
     Eigen::Vector2f at_m = Eigen::Vector2f::Zero();
     Eigen::Matrix2f per_px = Eigen::Matrix2f::Zero();

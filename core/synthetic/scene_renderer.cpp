@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kEdgeSteps = 512;  // of the tabulated error function
 
-// Texels of the clutter a pixel, at the motion's mean distance.
+// Texels of the clutter per pixel, at the motion's mean distance.
 double texelsPerPixel(const Scenario& scenario) {
   constexpr double kTexelsOfDetail = 2.0;
   return kTexelsOfDetail / scenario.scene.clutter_detail_px;
 }
 
 ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camera) {
-  // In a room this picture is not seen, and an even one costs nothing.
+  // In a room this picture is not visible; a uniform one saves time.
   const double contrast = scenario.room.isThere() ? 0.0 : scenario.scene.clutter_contrast;
   return {scenario.seed, contrast, scenario.scene.clutter_object_share,
           scenario.cameras[camera].pixel.effectiveBlur_px() * texelsPerPixel(scenario)};
@@ -175,8 +175,9 @@ void SceneRenderer::lookAtPlanes(const Tile& tile, const Instants& instants, Til
       }
     }
   }
-  constexpr float kSlack = 1.1f;  // pixels within a tile differ a little in size
-  // Corners represent their tile up to a pixel, and three instants all times between them up to half the way.
+  constexpr float kSlack = 1.1f;  // allows for different pixel sizes within a tile
+  // Corners represent their tile to within a pixel, and three instants all times between them to within half
+  // the motion.
   const float reach = (kEdgeReach * blur_px_ + 1.0f + 0.5f * view.travel_px) * metres_per_px;
   view.reach_m = visible ? kSlack * kEdgeReach * blur_px_ * metres_per_px : std::numeric_limits<float>::max();
   if (!visible) low = board_low_m_, high = board_high_m_;
@@ -218,9 +219,9 @@ float SceneRenderer::sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f
   return std::isfinite(inside_px) ? edge(inside_px) : 0.0f;
 }
 
-// Share of a pixel in the ink of the circle whose centre is `away` from it. A disk blurred by sigma looks
-// smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's convolution with a curved
-// edge.
+// Share of a pixel in the ink of the circle whose centre is `away` from it. Blur by sigma reduces the
+// apparent radius of a disk by sigma^2 / (2 radius): the second order of the Gaussian's convolution with a
+// curved edge.
 float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const {
   const auto radius = static_cast<float>(board_.radius_m);
   const float distance = away_m.norm();
@@ -231,7 +232,7 @@ float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& 
   return edge((radius - distance) / metres_per_px - shrunk_px);
 }
 
-// From where a pixel sees the plane to where it sees the sheet.
+// From a pixel's place on the plane to its place on the sheet.
 void SceneRenderer::bend(const Instant& instant, Eigen::Vector2f& point_m,
                          Eigen::Matrix2f& board_per_px) const {
   const BoardSurface::Hit hit = surface_.hit(point_m, instant.camera_m);
@@ -239,7 +240,7 @@ void SceneRenderer::bend(const Instant& instant, Eigen::Vector2f& point_m,
   board_per_px = (hit.stretch * board_per_px).eval();
 }
 
-// Half of all the time is spent here: a flat board pays nothing for bent ones, nor a plain scene for visits.
+// Half of all computing time: flat boards skip the code for bent ones, and plain scenes the code for visits.
 template <bool kBent>
 [[gnu::always_inline]] inline SceneRenderer::BoardPart SceneRenderer::partOf(const Instant& instant,
                                                                              std::size_t pixel,
@@ -285,7 +286,7 @@ SceneRenderer::BoardPart SceneRenderer::boardPart(const Instant& instant, std::s
   return surface_.isBent() ? partOf<true>(instant, pixel, view) : partOf<false>(instant, pixel, view);
 }
 
-// The board's part of a pixel and, where the sheet ends, the clutter's.
+// The board's part of a pixel and, beyond the sheet, the clutter's.
 template <bool kBent>
 float SceneRenderer::onBoard(const Instant& instant, std::size_t pixel, const TileView& view) const {
   const auto [on_board, ink, point] = partOf<kBent>(instant, pixel, view);

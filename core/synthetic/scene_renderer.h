@@ -1,5 +1,5 @@
-// Log intensity of the board and the clutter behind it, as the blurred image has it. The image is rendered in
-// tiles: for some milliseconds most of them show one thing only, or nothing that changes.
+// Log intensity of the board and the clutter behind it in the blurred image. The image is rendered in
+// tiles: for some milliseconds most of them show only one object, or nothing that changes.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
@@ -21,8 +21,8 @@ class SceneRenderer {
 
   SceneRenderer(const Scenario& scenario, std::size_t camera);
 
-  // The planes' homographies for one instant: from undistorted rays (x/z, y/z) to metres on the planes; and who
-  // is there, the hand last.
+  // The planes' homographies for one instant: from undistorted rays (x/z, y/z) to metres on the planes; and
+  // the visible figures, the hand last.
   struct PlacedFigure {
     Figure figure;
     Eigen::Matrix3f plane_from_ray;
@@ -46,10 +46,10 @@ class SceneRenderer {
   enum class Content { Paper, Circles, Clutter, Mixed };
   struct TileView {
     Content content = Content::Mixed;
-    bool constant = false;   // one shade all over
-    float travel_px = 0.0f;  // how far the image moves there, at most
-    float reach_m = 0.0f;    // further than this from an edge on the board nothing of it is seen
-    std::vector<Eigen::Vector2f> circles_m;  // centres of those that it may show
+    bool constant = false;                   // uniform shade
+    float travel_px = 0.0f;                  // largest image motion there
+    float reach_m = 0.0f;                    // largest distance at which an edge on the board has an effect
+    std::vector<Eigen::Vector2f> circles_m;  // centres of possibly visible circles
     // Passing objects: figures in a set of bits, the hand's shadow, the lamp in the varnish.
     unsigned figures = 0;
     bool shadow = false, gloss = false;
@@ -114,7 +114,7 @@ class SceneRenderer {
   BoardSurface surface_;
   double row_spacing_m_;  // of the real board
   SceneModel scene_;
-  bool is_visited_;  // now and then: by figures, or by a lamp that the varnish mirrors
+  bool is_visited_;  // at times: by figures, or by a lamp's reflection in the varnish
   Eigen::Vector3f lamp_m_;
   float shadow_sigma_m_;  // of its visible edge
   int width_px_, height_px_;

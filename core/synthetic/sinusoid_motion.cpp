@@ -13,9 +13,9 @@
 namespace evical {
 namespace {
 
-constexpr double kWalkSpread = 3.0;  // of its frequencies, about one in its period
+constexpr double kWalkSpread = 3.0;  // spread of its frequencies, about one per period
 
-// The same numbers from the same seed with any standard library.
+// Reproducible numbers for the same seed with any standard library.
 double uniform(std::mt19937_64& generator) {
   return static_cast<double>(generator() >> 11) * 0x1.0p-53;
 }
@@ -76,7 +76,7 @@ SinusoidMotion::SinusoidMotion(const Scenario& scenario)
       sinusoids_[q].push_back({amplitudes[q] * share, kTwoPi * frequency, kTwoPi * uniform(generator)});
     }
   }
-  // The speed is that of the waving alone, without stops and what else hands add.
+  // The speed is that of the sinusoids alone, without stops and other hand-held motion.
   scenario_.motion.hand = {};
   const double speed = m.image_speed_px_s > 0.0 ? imageSpeedRms_px_s() : 0.0;
   for (auto& quantity : sinusoids_) {
@@ -116,7 +116,7 @@ struct Swing {
   double amplitude_rad, frequency_rad_s;
 };
 
-// Rotation about the state's axis, to and fro about a mean angle.
+// Rotation about the state's axis, back and forth about a mean angle.
 MotionState turned(MotionState state, const Eigen::Vector3d& axis, double mean_rad, Swing swing,
                    double time_s) {
   const double phase = swing.frequency_rad_s * time_s;
@@ -210,7 +210,7 @@ double SinusoidMotion::imageSpeedRms_px_s() const {
       const Eigen::Vector3d point = camera_from_world * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
       Eigen::Matrix<double, 2, 3> jacobian;
       const std::optional<Eigen::Vector2d> pixel = project(camera.intrinsics, point, &jacobian);
-      // Far outside the image the distortion's polynomial means nothing, nor do speeds there.
+      // Far outside the image the distortion's polynomial is meaningless, and so are speeds there.
       if (!pixel || !isInside(camera.intrinsics.resolution_px, *pixel)) continue;
       squares += (jacobian * (-velocity - state.angular_velocity_in_body_rad_s.cross(point))).squaredNorm();
       ++count;

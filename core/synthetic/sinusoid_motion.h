@@ -1,4 +1,5 @@
-// The simulated motion, analytic to its second derivative; sums of sinusoids and what hands add, never a spline.
+// The simulated motion, analytic to its second derivative: sums of sinusoids and hand-held motion, without
+// splines.
 #pragma once
 
 #include "core/synthetic/hand_motion.h"
@@ -50,7 +51,7 @@ class SinusoidMotion {
 
   Scenario scenario_;
   Eigen::Vector3d board_middle_m_;
-  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_, unstopped_;  // delayed by stops, and not
+  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_, unstopped_;  // with and without stops
   std::array<std::vector<Jerk>, kQuantities> jerks_;
   RigidTransform camera_from_imu_;  // first camera
 };

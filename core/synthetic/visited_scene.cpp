@@ -1,4 +1,4 @@
-// The renderer where a hand or its shadow, people or a glossy spot are in a tile.
+// The renderer for tiles with a hand or its shadow, people or a glossy spot.
 #include "core/synthetic/scene_renderer.h"
 
 #include <Eigen/LU>
@@ -11,11 +11,11 @@
 namespace evical {
 namespace {
 
-constexpr float kSlack_m = 0.03f;        // figures move between the instants that a tile is looked at
+constexpr float kSlack_m = 0.03f;        // motion of figures between the instants of a tile
 constexpr float kGlossReach = 4.5f;      // in sigmas of the spot
 constexpr float kMeanOfTexture = -1.2f;  // log reflectance
 
-// Box about the places where a tile's corners are.
+// Bounding box of the places of a tile's corners.
 template <int Size>
 struct Box {
   using Vector = Eigen::Matrix<float, Size, 1>;
@@ -32,7 +32,7 @@ struct Box {
 };
 
 unsigned slotOf(const Figure& figure) {
-  constexpr unsigned kSlots = 31;  // the first is the hand's; two of one slot cost time only
+  constexpr unsigned kSlots = 31;  // the first is the hand's; figures that share a slot only cost time
   return figure.isInFront() ? 1u : 2u << (static_cast<unsigned>(figure.visit) % (kSlots - 1));
 }
 
@@ -131,7 +131,7 @@ void SceneRenderer::lookForVisits(const Tile& tile, const Instants& instants, Ti
                nearest.norm() < kGlossReach * static_cast<float>(scene_.gloss.spread_rad);
   if (!view.isVisited()) return;
   view.constant = false;
-  // The shadow moves over a board that moves.
+  // The shadow moves on a moving board.
   if (std::isfinite(travel_px))
     view.travel_px = view.shadow ? view.travel_px + travel_px : std::max(view.travel_px, travel_px);
 }
@@ -146,13 +146,13 @@ Eigen::Vector3f SceneRenderer::onSheet(const Eigen::Vector2f& point_m) const {
           surface_.isBent() ? static_cast<float>(surface_.behind_m(point_m.cast<double>())) : 0.0f};
 }
 
-// Point of the hand's plane that the light from the lamp to a point of the board passes.
+// Point in the hand's plane on the light path from the lamp to a point of the board.
 Eigen::Vector2f SceneRenderer::castOnto(const Eigen::Vector2f& point_m) const {
   const auto part = static_cast<float>(scene_.hand.height_m) / -lamp_m_.z();
   return point_m + part * (lamp_m_.head<2>() - point_m);
 }
 
-// Between the directions into which the sheet mirrors what is seen at a point, and to the lamp.
+// Angle between the reflected viewing direction at a point of the sheet and the direction to the lamp.
 Eigen::Vector3f SceneRenderer::offTheLamp(const Instant& instant, const Eigen::Vector3f& point_m) const {
   Eigen::Vector3f normal(0.0f, 0.0f, -1.0f);
   if (surface_.isBent()) normal.head<2>() = surface_.slope(point_m.head<2>().cast<double>()).cast<float>();
@@ -161,7 +161,7 @@ Eigen::Vector3f SceneRenderer::offTheLamp(const Instant& instant, const Eigen::V
   return view - 2.0f * view.dot(normal) * normal - (lamp_m_ - point_m).normalized();
 }
 
-// The sheet's light: less of the lamp's where the hand is in between, and the lamp itself.
+// The sheet's light: less of the lamp's in the hand's shadow, and the reflection of the lamp.
 float SceneRenderer::litSheet(const Instant& instant, const BoardPart& board, const TileView& view) const {
   float light = paper_ + (ink_ - paper_) * board.ink;
   if (view.shadow && !instant.figures.empty() && instant.figures.back().figure.isInFront()) {

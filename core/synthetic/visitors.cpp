@@ -32,7 +32,7 @@ Eigen::Vector2f anyPlaceInTexture(Random& random) {
   return (kSide_m * Eigen::Vector2d(x, y)).cast<float>();
 }
 
-// From 0 to 1 and back to 0 over the visit, without jerks.
+// Smooth pulse from 0 to 1 and back to 0 over the visit.
 double presence(double since_s, double stay_s) {
   constexpr double kComes_s = 0.5 * kHandComesAndGoes_s;
   const double left_s = stay_s + kHandComesAndGoes_s - since_s;
@@ -75,8 +75,8 @@ std::optional<Figure> handAt(const Scenario& scenario, double time_s) {
   const HandOverBoard& hand = scenario.scene.hand;
   if (hand.every_s <= 0.0) return std::nullopt;
   constexpr std::uint64_t kStream = 0x160u;
-  constexpr double kReach_m = 1.2;      // whence it comes: from beyond the image
-  constexpr double kPartOfBoard = 0.6;  // about the middle, at which it points
+  constexpr double kReach_m = 1.2;      // start distance, outside the image
+  constexpr double kPartOfBoard = 0.6;  // around the middle, to which it points
   const double turn = std::floor(time_s / hand.every_s);
   Random random(scenario.seed, kStream, static_cast<std::uint64_t>(static_cast<std::int64_t>(turn)));
   const double length_s = hand.stay_s + kHandComesAndGoes_s;
@@ -107,8 +107,8 @@ std::vector<Figure> peopleAt(const Scenario& scenario, double time_s) {
   const PeopleModel& people = scenario.scene.people;
   if (people.every_s <= 0.0) return {};
   constexpr std::uint64_t kStream = 0x170u;
-  constexpr double kStride_m = 1.3;  // of two steps
-  // Twice what the camera sees to either side: they come from beyond the image, and go there.
+  constexpr double kStride_m = 1.3;  // length of two steps
+  // Twice the camera's view to either side: people start and end outside the image.
   const double half_way_m = 2.0 * (scenario.motion.distance_m + people.distance_m) + 0.6;
   const double half_time_s = half_way_m / people.speed_m_s;
   std::vector<Figure> figures;

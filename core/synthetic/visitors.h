@@ -1,5 +1,5 @@
-// Who comes and goes in a simulated scene: a hand in front of the board, people behind it. Flat figures in planes that are
-// parallel to the board, of limbs with round ends; where they are follows from the scenario's seed and the time.
+// Moving figures in a simulated scene: a hand in front of the board, people behind it. Flat figures in planes
+// parallel to the board, of limbs with round ends; their places follow from the scenario's seed and the time.
 #pragma once
 
 #include "core/synthetic/scenario.h"
@@ -14,9 +14,9 @@
 
 namespace evical {
 
-constexpr double kHandComesAndGoes_s = 1.6;  // both ways together
+constexpr double kHandComesAndGoes_s = 1.6;  // in total
 
-// All that is within the radius of a line.
+// All points within the radius of a line.
 struct Limb {
   Eigen::Vector2f from_m, to_m;
   float radius_m;
@@ -39,14 +39,14 @@ struct Figure {
   std::array<Limb, kMostLimbs> limbs;
   int limb_count = 0;
   Eigen::Vector2f low_m, high_m;                        // box about all limbs, in its own coordinates
-  float log_tone = 0.0f, contrast = 1.0f;               // of its texture
-  Eigen::Vector2f texture_m = Eigen::Vector2f::Zero();  // where in the picture that is
+  float log_tone = 0.0f, contrast = 1.0f;               // of the texture
+  Eigen::Vector2f texture_m = Eigen::Vector2f::Zero();  // offset in the texture's picture
 
   bool isInFront() const { return behind_board_m < 0.0f; }
   Eigen::Vector2f own_m(const Eigen::Vector2f& on_plane_m) const {
     return own_from_plane * (on_plane_m - place_m);
   }
-  // Distance from its outline inwards; negative outside.
+  // Distance inwards from its outline; negative outside.
   float inside_m(const Eigen::Vector2f& own) const {
     float inside = limbs[0].inside_m(own);
     for (int k = 1; k < limb_count; ++k)

@@ -1,21 +1,21 @@
-# Read by cpack before all else: what it needs must be there, and files get the time of the changelog's last entry, so that two builds
-# give the same bytes. SOURCE_DATE_EPOCH gives another time.
+# Read by cpack first: checks that its tools are installed, and sets the files' time to that of the changelog's last entry, so that
+# two builds give the same bytes. SOURCE_DATE_EPOCH sets another time.
 cmake_policy(VERSION 3.25)
 foreach(tool dpkg-shlibdeps=dpkg-dev dpkg-parsechangelog=dpkg-dev file=file readelf=binutils gzip=gzip touch=coreutils sh=dash)
   string(REPLACE "=" ";" tool "${tool}")
   list(POP_FRONT tool program)
-  # Where a shell would look, as what follows calls it by name; CMake by itself also looks beside its own program and in /usr.
+  # Only the PATH is searched, since the tool is called by name later. By default CMake also searches its own folder and /usr.
   find_program(EVICAL_TOOL "${program}" PATHS ENV PATH NO_DEFAULT_PATH NO_CACHE)
   if(NOT EVICAL_TOOL)
-    message(FATAL_ERROR "${program} is missing, and packages cannot be made without: apt-get install ${tool}")
+    message(FATAL_ERROR "${program} is missing, and packages cannot be built without it: apt-get install ${tool}")
   endif()
   unset(EVICAL_TOOL)
 endforeach()
 
-# It goes into folders and into the package's own files, and a package that only root can read is of no use.
+# The umask applies to folders and to the package's own files, and a package that only root can read is useless.
 execute_process(COMMAND sh -c umask OUTPUT_VARIABLE umask OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 if(NOT umask MATCHES "^0*22$")
-  message(FATAL_ERROR "The umask is ${umask}, and files of a package are for all to read: umask 022")
+  message(FATAL_ERROR "The umask is ${umask}, but all users must be able to read the files: umask 022")
 endif()
 
 set(changelog "${CPACK_EVICAL_SOURCE}/packaging/debian/changelog")
@@ -26,7 +26,7 @@ function(read_changelog field result)
 endfunction()
 read_changelog(Version version)
 if(NOT version STREQUAL "${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
-  message(FATAL_ERROR "${changelog} ends with ${version}, and this is ${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}: "
+  message(FATAL_ERROR "${changelog} ends with ${version}, but this is ${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}: "
                       "add an entry for it")
 endif()
 if("$ENV{SOURCE_DATE_EPOCH}" STREQUAL "")

@@ -1,5 +1,5 @@
-# Run by cpack on the folders that become packages: licences of what was really linked, compression as Debian asks for, and one time for
-# all files.
+# Run by cpack on the folders that become packages: licences of the linked libraries, compression according to Debian's policy, and
+# one time for all files.
 cmake_policy(VERSION 3.25)
 
 function(run)
@@ -7,7 +7,7 @@ function(run)
   set(run_output "${output}" PARENT_SCOPE)
 endfunction()
 
-# linked_by(RESULT FILES...): names of the libraries that these programs and modules ask for, without versions.
+# linked_by(RESULT FILES...): names of the libraries that these programs and modules need, without versions.
 function(linked_by result)
   set(libraries "")
   foreach(file IN LISTS ARGN)
@@ -16,7 +16,7 @@ function(linked_by result)
       continue()
     endif()
     run(readelf -d "${file}")
-    # Without brackets, between which CMake sees no list.
+    # Brackets are removed: between them CMake does not split a list.
     string(REGEX REPLACE "[][]" "|" output "${run_output}")
     string(REGEX MATCHALL "Shared library: \\|[^|\n]+\\.so" needed "${output}")
     list(TRANSFORM needed REPLACE "Shared library: .(.+)\\.so$" "\\1")
@@ -27,7 +27,7 @@ function(linked_by result)
   set(${result} "${libraries}" PARENT_SCOPE)
 endfunction()
 
-# Lines for `copyright`: each library, and the licence that packaging/debian/linked_licences.txt gives it.
+# Lines for `copyright`: each library with its licence from packaging/debian/linked_licences.txt.
 function(licences_of libraries result)
   file(STRINGS "${CPACK_EVICAL_SOURCE}/packaging/debian/linked_licences.txt" rows REGEX "^[^#]")
   set(lines "")
@@ -42,7 +42,7 @@ function(licences_of libraries result)
       endif()
     endforeach()
     if(found STREQUAL "")
-      message(FATAL_ERROR "${library} is linked, and packaging/debian/linked_licences.txt does not say under which licence it is: "
+      message(FATAL_ERROR "${library} is linked, but packaging/debian/linked_licences.txt does not list its licence: "
                           "add a line (see /usr/share/doc/PACKAGE/copyright)")
     endif()
     string(APPEND lines "  ${library}: ${found}\n")

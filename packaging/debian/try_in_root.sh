@@ -1,6 +1,6 @@
 #!/bin/sh
-# Run by packaging/test-packages.sh inside of a bare Debian 12: installs each package, uses it as a person who is not root would, removes
-# and purges it, and looks at what is left.
+# Run by packaging/test-packages.sh inside a bare Debian 12: installs each package, uses it as an ordinary user, removes and purges
+# it, and checks that no files are left.
 set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 cd /srv/in
@@ -12,14 +12,14 @@ fail() {
 as_user() { # COMMAND: in the user's folder
   setpriv --reuid=1000 --regid=1000 --clear-groups env -i HOME=/srv/user PATH=/usr/bin:/bin LC_ALL=C.UTF-8 sh -euc "cd /srv/user; $1"
 }
-everything() { # all files but those that package managers keep for themselves
+everything() { # all files except those of the package managers
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /srv -o -path /tmp -o -path /run -o -path /var/cache -o -path /var/log \
     -o -path /var/lib/apt -o -path /var/lib/dpkg \) -prune -o -print | sort
 }
 deb() { # NAME: its file
   ls packages/"$1"_*.deb
 }
-# What it depends on first, so that its own files can be told from theirs.
+# Dependencies are installed first, so that the package's own files can be identified.
 install_package() {
   file=$PWD/$(deb "$1")
   apt-get satisfy -y -qq --no-install-recommends "$(dpkg-deb -f "$file" Depends)" >/dev/null
@@ -30,7 +30,7 @@ install_package() {
 }
 purge_package() {
   apt-get remove -y -qq "$1" >/dev/null
-  dpkg --purge "$1" 2>/dev/null # apt knows no package that left no configuration
+  dpkg --purge "$1" 2>/dev/null # apt cannot purge a removed package without configuration files
   everything >after.txt
   cmp -s before.txt after.txt || { diff before.txt after.txt; fail "$1 leaves files behind, or takes others' away"; }
   echo "$1: installed, used, removed, purged, nothing left."
@@ -52,7 +52,7 @@ purge_package evical
 
 install_package evical-gui
 as_user 'QT_QPA_PLATFORM=offscreen evical-gui --screenshot result -o result.png demo/result'
-[ -s /srv/user/result.png ] || fail "evical-gui made no picture"
+[ -s /srv/user/result.png ] || fail "evical-gui wrote no picture"
 purge_package evical-gui
 
 apt-get install -y -qq --no-install-recommends cmake g++ make >/dev/null

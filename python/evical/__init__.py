@@ -1,8 +1,8 @@
 """Evical: calibrates event cameras and IMUs.
 
 Times of events and samples are ns of the recording's clock; times of trajectories are seconds since Result.start_ns. Poses are 4 x 4
-matrices named target_from_source; translations are in metres. What goes wrong raises evical.Error in the command line's words; log
-lines go to the logger "evical" of Python's logging.
+matrices named target_from_source; translations are in metres. Errors are raised as evical.Error, with the text of the command line.
+Log lines go to the logger "evical" of Python's logging.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ Progress = Callable[[str, float], object]
 
 
 def open(path: Path, streams: Union[None, str, Iterable[str]] = None) -> Recording:
-    """Opens a recording of any format for one pass of packets.
+    """Opens a recording of any supported format, for one pass over its packets.
 
     Args:
         path: a file or folder.
-        streams: names of streams, or "events", "imu", "frames", "points"; None: all of these types.
+        streams: names of streams, or "events", "imu", "frames", "points"; None: all streams of these types.
 
     Raises:
-        InputError: nothing that can be read is there.
+        InputError: the recording is missing or cannot be read, or has no such stream.
 
     >>> with evical.open("recording.bag", streams="events") as recording:
     ...     for packet in recording:
@@ -50,26 +50,26 @@ def open(path: Path, streams: Union[None, str, Iterable[str]] = None) -> Recordi
 
 
 def calibrate(session: Union[Session, Path], output: Optional[Path] = None, progress: Optional[Progress] = None) -> Result:
-    """Calibrates a session's cameras and IMUs; Python's other threads run meanwhile.
+    """Calibrates a session's cameras and IMUs. Other Python threads can run meanwhile.
 
     Args:
-        session: a Session, which may be changed while this runs, or its file.
-        output: the folder for what `evical calibrate -o` writes; None: nothing is written.
-        progress: called with a stage's name and the fraction of it that is done, 0..1. What it raises ends the calibration.
+        session: a Session or a session file. The Session is copied, so it may be changed during the call.
+        output: the folder for the files of `evical calibrate -o`; None: nothing is written.
+        progress: called with a stage's name and the fraction of it that is done, 0..1. An exception in it ends the calibration.
 
     Raises:
         InputError: the session or its recording cannot be used.
-        CalibrationFailed: the recording does not tell what is asked.
-        KeyboardInterrupt: after Ctrl-C; the calibration has ended then.
+        CalibrationFailed: the recording does not determine the requested quantities.
+        KeyboardInterrupt: Ctrl-C was pressed; the calibration has stopped.
     """
     return _calibrate(_session(session), None if output is None else os.fspath(output), progress)
 
 
 def intrinsics(session: Union[Session, Path], camera: Optional[str] = None, progress: Optional[Progress] = None) -> IntrinsicsResult:
-    """Calibrates the lens of one of a session's cameras alone; its IMUs are left aside. Raises as `calibrate` does.
+    """Calibrates the lens of one camera of a session, without its IMUs. Raises the same errors as `calibrate`.
 
     Args:
-        camera: its name; None where the session has one camera only.
+        camera: its name; None if the session has only one camera.
     """
     return _intrinsics(_session(session), camera, progress)
 
@@ -88,7 +88,7 @@ def _session(session: Union[Session, Path]) -> Session:
     return session if isinstance(session, Session) else Session.load(os.fspath(session))
 
 
-# HDF5 files are read by a separate interpreter, because this one may have threads and must not be forked. It gets this one's path
+# A separate interpreter reads HDF5 files, because this one may have threads and must not be forked. It gets this one's path
 # and nothing else (-I): a file in the current folder must not replace a module. A frozen program has no interpreter.
 if sys.executable and not getattr(sys, "frozen", False):
     _here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

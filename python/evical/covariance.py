@@ -13,7 +13,7 @@ __all__ = ["Covariance"]
 
 
 class Covariance:
-    """Of all that was estimated together.
+    """Joint covariance of all estimated quantities.
 
     Attributes:
         names: N names of rows with their units: "left.rotation.x [rad]", "left.time_offset [s]", ...
@@ -29,11 +29,11 @@ class Covariance:
             self._index[name.split(" [")[0]] = i
 
     def index(self, name: str) -> int:
-        """The row of a name, which may go without its unit. Raises InputError that lists what is alike."""
+        """The row of a name; the unit may be omitted. Raises InputError that lists similar names."""
         if name not in self._index:
             alike = [each for each in self.names if name.split(".")[0] == each.split(".")[0]] or self.names
-            raise InputError(f"covariance: '{name}' was not estimated. There are: {', '.join(alike)}",
-                             "covariance", f"'{name}' was not estimated", f"There are: {', '.join(alike)}")
+            raise InputError(f"covariance: '{name}' was not estimated. Use one of: {', '.join(alike)}",
+                             "covariance", f"'{name}' was not estimated", f"Use one of: {', '.join(alike)}")
         return self._index[name]
 
     @property
@@ -43,7 +43,7 @@ class Covariance:
 
     @property
     def correlation(self) -> npt.NDArray[np.float64]:
-        """(N, N), -1 to 1; 0 with what is held."""
+        """(N, N), -1 to 1; 0 for fixed quantities."""
         std = self.std
         scale = np.outer(std, std)
         correlation: npt.NDArray[np.float64] = np.zeros_like(self.matrix)
@@ -56,7 +56,7 @@ class Covariance:
         return self.matrix[np.ix_(rows, rows)]
 
     def __getitem__(self, name: Union[str, "tuple[str, str]"]) -> float:
-        """covariance[a]: its variance; covariance[a, b]: the covariance of two."""
+        """covariance[a]: the variance of a; covariance[a, b]: the covariance of a and b."""
         first, second = name if isinstance(name, tuple) else (name, name)
         return float(self.matrix[self.index(first), self.index(second)])
 

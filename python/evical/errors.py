@@ -1,4 +1,4 @@
-"""What Evical raises: the command line's words, and their parts as attributes."""
+"""Exceptions of Evical, with the text of the command line and its parts as attributes."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ __all__ = ["Error", "InputError", "ClosedError", "CalibrationFailed"]
 
 
 class Error(Exception):
-    """What went wrong, where, and what to do; str(error) is what the command line prints.
+    """What happened, where, and what to do; str(error) is the message of the command line.
 
     Attributes:
         place: a file, a key, a stream or a time; may be empty.
-        problem: what is wrong there.
+        problem: the fault found there.
         advice: what to do; may be empty.
-        repair: (key, value) for Session.set, where that mends a cause that is certain; else None.
+        repair: (key, value) for Session.set if that certainly fixes the cause; else None.
     """
 
     def __init__(self, message: str, place: str = "", problem: str = "", advice: str = "",
@@ -31,8 +31,8 @@ class InputError(Error):
 
 
 class ClosedError(InputError, ValueError):
-    """A recording is used after it was closed."""
+    """A recording was used after it was closed."""
 
 
 class CalibrationFailed(Error):
-    """A stage could not do its work with this recording (exit code 1)."""
+    """A calibration stage failed with this recording (exit code 1)."""

@@ -1,8 +1,10 @@
-// Accuracy against the truth of simulated recordings, as a table: `evical_benchmarks accuracy [--seeds N] [--duration S]
-// [--quantities] [--within SIGMAS [--or-doubtful] [--board] | --verdicts] [--windows SHARE] SCENARIO...`. Recordings are simulated in memory and go through the
-// same front end, initialisation and batch as `evical calibrate`. Fails where a target is missed; with --within, where an
-// error of rotation, translation or time offset is larger than so many of its sigmas (and called ok); with --verdicts, where a wrong
-// result is called ok, or the errors over sigmas of 20 seeds or more leave 0.7 to 1.4.
+// Accuracy against the truth of simulated recordings, as a table: `evical_benchmarks accuracy [--seeds N]
+// [--duration S] [--quantities] [--within SIGMAS [--or-doubtful] [--board] | --verdicts] [--windows SHARE]
+// SCENARIO...`. Recordings are simulated in memory and processed by the same front end, initialisation and
+// batch as in `evical calibrate`. Fails if a target is missed; with --within, if an error of rotation,
+// translation or time offset exceeds that many of its sigmas (and the result is called ok); with --verdicts,
+// if a wrong result is called ok, or the ratio of errors to sigmas over 20 seeds or more is outside 0.7 to
+// 1.4.
 #include "core/numerics/angles.h"
 #include "core/report/truth_comparison.h"
 #include "tests/benchmarks/benchmark_program.h"
@@ -78,7 +80,8 @@ void printQuantities(const Outcome& outcome) {
              outcome.reason);
 }
 
-// In sigmas, of what is needed, and of the board's shape if that matters; very large where there is none.
+// Error in sigmas of each required quantity, and of the board's shape if that matters; very large if there is
+// no result.
 double worstSigmas(const Outcome& outcome, bool with_board) {
   if (!outcome.comparison) return std::numeric_limits<double>::max();
   double worst = 0.0;
@@ -90,7 +93,7 @@ double worstSigmas(const Outcome& outcome, bool with_board) {
   return worst;
 }
 
-// Beyond 4 sigmas and what matters, yet called ok.
+// Errors beyond 4 sigmas and the required accuracy in a result that is called ok.
 bool isWrongOk(const Outcome& outcome) {
   if (!outcome.comparison || outcome.verdict != "ok") return false;
   const auto isWrong = [](const QuantityDifference& quantity) {
@@ -106,8 +109,8 @@ bool isWrongOk(const Outcome& outcome) {
   return std::any_of(all.begin(), all.end(), isWrong);
 }
 
-// Honest sigmas: errors over sigmas have RMS 1, whatever the seed. False where they are not, of so many seeds
-// that chance does not explain it.
+// Calibrated sigmas: errors over sigmas have an RMS of 1 over seeds. False only if there are enough seeds to
+// exclude chance.
 bool printNormalised(const std::vector<Outcome>& outcomes) {
   double rotation2 = 0.0, translation2 = 0.0, offset2 = 0.0, all2 = 0.0;
   int rotations = 0, translations = 0, offsets = 0, all = 0;
@@ -142,7 +145,7 @@ bool printNormalised(const std::vector<Outcome>& outcomes) {
           isHonest(rms(offset2, offsets)) && isHonest(rms(all2, all)));
 }
 
-// Speed, blur and thresholds change when events come, and must not change the time offset that is found.
+// Speed, blur and thresholds change the times of events. They must not change the estimated time offset.
 struct OffsetSpread {
   double smallest_ms = 0.0, largest_ms = 0.0;
   std::string scenarios;
@@ -176,13 +179,13 @@ struct Arguments {
     scenarios.addTo(app);
     app.flag("--quantities", all_quantities,
              "Also every quantity's error and sigma, and the weakest direction");
-    app.option("--within", within, "Fail where an error is beyond so many sigmas, instead of by targets");
-    app.flag("--or-doubtful", or_doubtful,
-             "With --within: results that are not called ok may be further off");
-    app.flag("--board", board, "With --within: the board's size and shape too");
-    app.option("--windows", windows, "Fail where the board is found in a smaller share of what shows it");
+    app.option("--within", within, "Instead of targets: fail if an error exceeds this many sigmas");
+    app.flag("--or-doubtful", or_doubtful, "With --within: results that are not called ok may exceed it");
+    app.flag("--board", board, "With --within: also for the board's size and shape");
+    app.option("--windows", windows,
+               "Fail if the board is found in a smaller share of the windows that show it");
     app.flag("--verdicts", verdicts,
-             "Fail where a wrong result is ok, or sigmas of 20 seeds are not honest, instead of by targets");
+             "Instead of targets: fail if a wrong result is ok, or sigmas of 20 seeds are not realistic");
   }
   bool isGood(const Outcome& outcome, bool met) const {
     if (isWrongOk(outcome)) fmt::print("WRONG, but called ok\n");

@@ -1,4 +1,4 @@
-// What the benchmarks have in common.
+// Common parts of the benchmarks.
 #pragma once
 
 #include "app/command_line.h"
@@ -14,7 +14,7 @@
 
 namespace evical {
 
-// Scenarios on the command line, each with some seeds and perhaps another duration.
+// Scenarios on the command line, each with a number of seeds and optionally another duration.
 struct ScenarioArguments {
   std::vector<std::string> files;
   int seeds = 1;
@@ -23,9 +23,10 @@ struct ScenarioArguments {
 
   void addTo(Command& app) {
     app.option("SCENARIO", files, "Scenario files").required();
-    app.option("--seeds", seeds, "Each scenario with this many seeds").between(1, 1000);
-    app.option("--skip", skipped, "So many seeds, which another run has done").between(0, 1000);
-    app.option("--duration", duration_s, "Seconds, instead of the scenario's").between(2.0, 3600.0);
+    app.option("--seeds", seeds, "Number of seeds per scenario").between(1, 1000);
+    app.option("--skip", skipped, "Number of first seeds to skip").between(0, 1000);
+    app.option("--duration", duration_s, "Duration of recordings, s; by default the scenario's")
+        .between(2.0, 3600.0);
   }
   Scenario read(const std::string& file, int k) const {
     Scenario scenario = readScenario(file);
@@ -37,10 +38,12 @@ struct ScenarioArguments {
 
 namespace benchmarks {
 
-// Work of fixed size, of the kinds that the stages do, which says how fast the machine computes (speed_reference.cpp).
+// A fixed amount of work of the same kinds as in the stages, to measure the machine's speed
+// (speed_reference.cpp).
 double speedReference();
 
-// One in each source. argv[0] is the benchmark's name; the result is the exit code, 1 where a target is missed.
+// One function per source. argv[0] is the benchmark's name; the result is the exit code, 1 if a target is
+// missed.
 namespace accuracy {
 int run(int argc, char** argv);
 }

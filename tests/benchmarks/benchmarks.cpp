@@ -1,5 +1,5 @@
-// Accuracy and speed as tables, one benchmark a source: `evical_benchmarks NAME [OPTIONS]`. Run by packaging/benchmarks.sh, and a few
-// of them shortened by ctest.
+// Accuracy and speed as tables, one benchmark per source: `evical_benchmarks NAME [OPTIONS]`. Run by
+// packaging/benchmarks.sh, and a few of them in short form by ctest.
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
@@ -20,21 +20,21 @@ struct Benchmark {
 
 constexpr std::array<Benchmark, 15> kBenchmarks = {{
     {"accuracy", accuracy::run, "Accuracy on simulated recordings against their truth"},
-    {"board_starts", board_starts::run, "Whether the board is laid rightly wherever a recording begins"},
+    {"board_starts", board_starts::run, "Identification of the board from any start time"},
     {"centre_errors", centre_errors::run,
      "Errors of circle centres along the motion, on simulated recordings"},
     {"check", check::run, "evical check on simulated pairs of recordings"},
-    {"costs", costs::run, "What whole calibrations cost against their duration"},
+    {"costs", costs::run, "Cost of whole calibrations against the recording's duration"},
     {"formats", formats::run, "Decoding speed per format"},
     {"frame_cameras", frame_cameras::run,
-     "What frame cameras, further boards and lenses reach, against their targets"},
+     "Accuracy of frame cameras, further boards and lenses, against targets"},
     {"intrinsics", intrinsics::run, "Intrinsics of simulated recordings against their truth"},
     {"maintain", maintain::run, "Accuracy of `evical maintain`"},
     {"no_board", no_board::run, "Old calibrations checked without a board"},
     {"protocol", protocol::run, "The papers' protocol in simulation"},
     {"speed", speed::run, "Costs of the hot paths, in CPU time"},
     {"speed_guard", speed_guard::run, "Guards against stages that become slower"},
-    {"stress", stress::run, "What a calibration says where one thing is not as the session has it"},
+    {"stress", stress::run, "Verdicts if one quantity deviates from the session"},
     {"unknown_intrinsics", unknown_intrinsics::run,
      "Calibrations with and without intrinsics, against the truth of simulated recordings"},
 }};

@@ -1,7 +1,7 @@
-// Whether the board is laid rightly wherever a recording begins: `evical_benchmarks board_starts [--moments N] [--length S]
-// [--hidden S] [--duration S] [--seeds N] SCENARIO...`. A recording is simulated once; the front end begins at random
-// moments of it, with all of the board to be seen and with a third of it silent at first, along its columns or along
-// its rows. Fails where circles are named wrongly in more than 2 % of the windows found.
+// Identification of the board from any start time: `evical_benchmarks board_starts [--moments N] [--length S]
+// [--hidden S] [--duration S] [--seeds N] SCENARIO...`. A recording is simulated once. The front end starts
+// at random times of it, with the whole board visible, and with a third of it silent at first, along its
+// columns or its rows. Fails if circles are misidentified in more than 2 % of the windows with a board.
 #include "core/frontend/board_tracker.h"
 #include "core/frontend/front_end_options.h"
 #include "core/geometry/camera_model.h"
@@ -39,9 +39,9 @@ struct Start {
 };
 
 struct Counts {
-  int starts = 0, lost = 0, wrong_at_the_end = 0;  // lost: nothing found at all
+  int starts = 0, lost = 0, wrong_at_the_end = 0;  // nothing detected at all
   int windows = 0, wrong = 0;
-  double longest_s = 0.0;  // for which names were wrong after all had come into view
+  double longest_s = 0.0;  // time with misidentified circles after the whole board has become visible
 
   void operator+=(const Counts& other) {
     starts += other.starts;
@@ -54,7 +54,7 @@ struct Counts {
   double share() const { return windows == 0 ? 0.0 : static_cast<double>(wrong) / windows; }
 };
 
-// Says of pixels whether they show the part of the board that is hidden.
+// True if a pixel shows the hidden part of the board.
 class Cover {
  public:
   Cover(const Scenario& scenario, const SinusoidMotion& motion, Hidden hidden)
@@ -103,7 +103,7 @@ class Cover {
   std::vector<Eigen::Vector2d> rays_;
 };
 
-// More than half of its circles lie nearer to another circle's true place than to their own.
+// True if more than half of its circles are nearer to another circle's true position than to their own.
 bool isWrong(const BoardView& view, const std::vector<TrueCircle>& truths) {
   std::size_t wrong = 0;
   for (const CircleObservation& circle : view.circles) {
@@ -152,18 +152,20 @@ Counts run(const Scenario& scenario, const SinusoidMotion& motion, const std::ve
 }  // namespace
 
 int run(int argc, char** argv) {
-  CommandLine app("Whether the board is laid rightly wherever a recording begins");
+  CommandLine app("Identification of the board from any start time");
   ScenarioArguments scenarios;
   int moments = 40;
   Start start;
   scenarios.addTo(app);
-  app.option("--moments", moments, "Starts of each kind").between(1, 10000);
+  app.option("--moments", moments, "Number of start times of each kind").between(1, 10000);
   app.option("--length", start.length_s, "Seconds from each start").between(0.2, 100.0);
-  app.option("--hidden", start.hidden_s, "Seconds for which a third is silent").between(0.0, 100.0);
+  app.option("--hidden", start.hidden_s, "Seconds during which a third of the image is silent")
+      .between(0.0, 100.0);
   if (!app.parse(argc, argv)) return 0;
   fmt::print(
-      "| scenario | seed | hidden at first | starts | without a view | windows found | named wrongly, % | "
-      "starts wrong to the end | wrong after all is in view, s |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| scenario | seed | hidden at first | starts | without a view | windows found | misidentified, % | "
+      "starts wrong to the end | wrong after the whole board is visible, s "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
   bool good = true;
   for (const std::string& file : scenarios.files) {
     for (int k = 0; k < scenarios.seeds; ++k) {

@@ -1,11 +1,10 @@
 // Measured circle centres against the truth of simulated recordings, along the motion: `evical_benchmarks centre_errors
 // [--seeds N] [--duration S] [--speeds] [--variant OPTION=VALUE,...]... SCENARIO...`. A recording is simulated
 // once, in memory; the front end runs over it with each variant of its options.
-//
-// A centre that is late by a delay d, ahead by an edge lead l, wrong by an acceleration's q, and of a motion
-// that is seen g too large, is off by -d v + l e + q a + g (centre - its mean), with e of docs/maths.md, 9.1.
-// Delay and lead the batch estimates; q and g it takes for motion that was not there. Amplitudes of sinusoids
-// are q w^2 off: q and g are two names for one fault, so each is fitted without the other.
+// Error model of a centre: -d v + l e + q a + g (centre - its mean), for a delay d, an edge lead l, an
+// acceleration error q, and a motion amplitude that is measured g too large; docs/maths.md, 9.1 defines e.
+// The batch estimates delay and lead, but takes q and g for motion. An acceleration error of a sinusoid
+// scales its amplitude by q w^2, so that q and g describe the same fault: each is fitted without the other.
 #include "core/base/option_table.h"
 #include "core/base/stopwatch.h"
 #include "core/frontend/board_tracker.h"
@@ -43,7 +42,7 @@ const TrueCircle* find(const std::vector<TrueCircle>& circles, int circle) {
 }
 
 std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations) {
-  constexpr double kStep_s = 1e-3;  // of the difference that tells accelerations
+  constexpr double kStep_s = 1e-3;  // of the finite difference for accelerations
   const SinusoidMotion motion(scenario);
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
   std::vector<CentreError> errors;
@@ -81,10 +80,10 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
   return errors;
 }
 
-// Delay, lead, and one number more, by least squares; the few wild errors hardly count.
+// Delay, lead, and one further parameter, by robust least squares; the few gross errors have little weight.
 struct ErrorFit {
   double delay_s = 0.0, lead_px = 0.0, third = 0.0;
-  double chi = 0.0;  // RMS of whitened errors that remain, with an ordinary weight
+  double chi = 0.0;  // RMS of the remaining whitened errors, with unit weight
 };
 
 template <class Third>
@@ -122,7 +121,7 @@ double rmsOf(const std::vector<CentreError>& errors, const ErrorFit& fit) {
   return errors.empty() ? 0.0 : std::sqrt(squares / (2.0 * static_cast<double>(errors.size())));
 }
 
-// What q makes of centres in the recording, as it moves: of the RMS error beside it this is all that q can be.
+// Error of centres due to q in this recording: an upper bound of q's part in the RMS error next to it.
 double accelerationPart_px(const std::vector<CentreError>& errors, double q_s2) {
   double squares = 0.0;
   for (const CentreError& error : errors) squares += error.acceleration_px_s2.squaredNorm();
@@ -130,12 +129,11 @@ double accelerationPart_px(const std::vector<CentreError>& errors, double q_s2) 
                         : std::abs(q_s2) * std::sqrt(squares / (2.0 * static_cast<double>(errors.size())));
 }
 
-// How far centres lie behind along their motion, by speed, apart where the image slows down and where it
-// speeds up.
+// Lag of centres along their motion, by speed, separately for decelerating and accelerating image motion.
 void printSpeeds(const std::vector<CentreError>& errors) {
   constexpr std::array kLimits_px_s = {0.0, 10.0, 20.0, 35.0, 60.0, 120.0, 1e9};
   fmt::print(
-      "\n| px/s | circles | behind while slowing down, px | behind while speeding up, px "
+      "\n| px/s | circles | lag while decelerating, px | lag while accelerating, px "
       "|\n|---|---|---|---|\n");
   for (std::size_t k = 0; k + 1 < kLimits_px_s.size(); ++k) {
     std::array<double, 2> sums = {0.0, 0.0};
@@ -155,7 +153,7 @@ void printSpeeds(const std::vector<CentreError>& errors) {
   fmt::print("\n");
 }
 
-// Of the groups that measurements depend on.
+// A row per group that measurements depend on.
 void setOption(const std::string& group, const std::string& name, const std::string& value,
                FrontEndOptions& options) {
   if (group == "bursts") return BurstOptions::table().set(options.bursts, group, name, value);
@@ -171,7 +169,8 @@ FrontEndOptions optionsOf(const std::string& variant) {
     const std::string setting = variant.substr(begin, end - begin);
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || equals < dot)
-      throw badInput("--variant " + variant, "is no setting", "Write group.option=value,group.option=value");
+      throw badInput("--variant " + variant, "is not a setting",
+                     "Write group.option=value,group.option=value");
     setOption(setting.substr(0, dot), setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1),
               options);
     begin = end + 1;
@@ -220,7 +219,7 @@ int run(int argc, char** argv) {
   bool speeds = false;
   scenarios.addTo(app);
   app.option("--variant", variants, "Options of a further run: group.option=value,...").repeated();
-  app.flag("--speeds", speeds, "Also how far centres lie behind, by speed");
+  app.flag("--speeds", speeds, "Also the lag of centres by speed");
   if (!app.parse(argc, argv)) return 0;
   variants.insert(variants.begin(), std::string());
   printHeader();

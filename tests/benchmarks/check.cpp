@@ -1,7 +1,8 @@
-// `evical check` on pairs of simulated recordings of one rig, as a table: unchanged, with one thing changed, and too poor to
-// tell. `evical_benchmarks check [--pairs N] [--before S] [--after S] [--events] SCENARIO`. Of five pairs three are unchanged, one
-// is changed, one poor; each five share their first recording. Without --events circles are as a good front end sees them.
-// Fails where more than 3 % of all are false alarms, or a change is missed that would have been noticed.
+// `evical check` on pairs of simulated recordings of one rig, as a table: unchanged, with one change, and too
+// poor for a verdict. `evical_benchmarks check [--pairs N] [--before S] [--after S] [--events] SCENARIO`. Of
+// five pairs three are unchanged, one is changed, one is poor; each five share their first recording. Without
+// --events, circles are those of an ideal front end. Fails if more than 3 % of all are false alarms, or if a
+// change of detectable size is missed.
 #include "core/base/error.h"
 #include "core/frontend/board_tracker.h"
 #include "core/geometry/so3.h"
@@ -55,7 +56,7 @@ Change apply(int k, double factor, SimulatedCamera& camera) {
   if (kind == 1) pose.translation_m += 1e-3 * change.size * directionOf(k);
   if (kind == 2) camera.time_offset_s += 1e-3 * change.size;
   if (kind == 3) {
-    // Of a longer focal length, which moves the image by its share of the distance from the middle.
+    // Displacement by a longer focal length: proportional to the distance from the image centre.
     const Eigen::Vector2d size(camera.intrinsics.resolution_px.width_px,
                                camera.intrinsics.resolution_px.height_px);
     const double mean_px = size.norm() / std::sqrt(12.0);
@@ -64,7 +65,7 @@ Change apply(int k, double factor, SimulatedCamera& camera) {
   return change;
 }
 
-// As the old result's lens sees it.
+// Projection by the old result's lens.
 DetectionResult passOf(const Scenario& scenario, const CameraIntrinsics& lens, bool from_events) {
   DetectionResult pass = test::perfectPass(scenario, kNoise_px, kWindow_s);
   if (from_events) {
@@ -85,11 +86,11 @@ void makePoor(int kind, Scenario& scenario) {
     scenario.motion.distance_amplitude_m *= 0.05;
     scenario.motion.angle_amplitude_rad *= 0.05;
     scenario.motion.target_amplitude_m *= 0.05;
-    scenario.motion.image_speed_px_s *= 0.05;  // else it trembles, which tells much
+    scenario.motion.image_speed_px_s *= 0.05;  // otherwise hand tremor is informative
   }
 }
 
-// The half of the board, and that for a part of the time only.
+// Half of the board, and only for a part of the time.
 void hideHalf(const Board& board, DetectionResult& pass) {
   for (BoardView& view : pass.cameras.front().views)
     std::erase_if(view.circles,
@@ -106,7 +107,7 @@ struct Row {
 
 struct Tally {
   int unchanged = 0, good = 0, false_alarms = 0, cannot_tell = 0;
-  int changed = 0, found = 0, missed = 0, open = 0;  // missed: that would have been noticed
+  int changed = 0, found = 0, missed = 0, open = 0;  // missed: changes of detectable size
   int poor = 0, poor_open = 0, poor_good = 0, poor_alarms = 0;
 
   void add(const Row& row) {
@@ -172,11 +173,11 @@ struct Arguments {
 
   void addTo(Command& app) {
     app.option("SCENARIO", scenario, "Scenario file").required();
-    app.option("--pairs", pairs, "So many pairs");
-    app.option("--first", first, "The first of them");
+    app.option("--pairs", pairs, "Number of pairs");
+    app.option("--first", first, "Index of the first pair");
     app.option("--before", before_s, "Seconds of the first recording of a pair");
-    app.option("--after", after_s, "Seconds of the second one");
-    app.option("--factor", factor, "Changes are so many times 0.05 deg, 1 mm, 0.1 ms, 0.2 px");
+    app.option("--after", after_s, "Seconds of the second recording of a pair");
+    app.option("--factor", factor, "Size of changes, in units of 0.05 deg, 1 mm, 0.1 ms, 0.2 px");
     app.flag("--events", events, "Simulate events, too, instead of circles only");
     app.option("--set", settings, "group.option=value");
   }

@@ -1,7 +1,7 @@
-// What whole calibrations cost against duration, events, cameras and IMUs, as a table: `evical_benchmarks costs [--recording FOLDER]
-// [--scratch FOLDER] [SCENARIO...] [--durations S...]`. A scenario is simulated once into a file, for the longest
-// duration, and calibrated over its first seconds, in a process of its own each time. Of several durations the growth's
-// exponent is told.
+// Cost of whole calibrations against duration, events, cameras and IMUs, as a table: `evical_benchmarks costs
+// [--recording FOLDER] [--scratch FOLDER] [SCENARIO...] [--durations S...]`. A scenario is simulated once
+// into a file, for the longest duration, and its first seconds are calibrated in a separate process each
+// time. With several durations, the growth exponent is printed.
 #include "core/base/stopwatch.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/simulate/simulation.h"
@@ -32,7 +32,7 @@ struct Cost {
   std::string verdict;
 };
 
-// What the other process tells of itself.
+// Figures that the other process prints.
 struct Told {
   std::uint64_t events = 0;
   CalibrationStatus status = CalibrationStatus::Failed;
@@ -45,7 +45,7 @@ Told told(const Session& session) {
   return result;
 }
 
-// In a process of its own, for memory is counted by process.
+// Runs in a separate process, since memory is counted per process.
 Cost costOf(const Session& session) {
   int ends[2];
   if (::pipe(ends) != 0) throw badInput("pipe", "no process can be watched");
@@ -79,7 +79,7 @@ Cost costOf(const Session& session) {
   return cost;
 }
 
-// Slope of logarithms.
+// Slope in log-log scale.
 double exponent(const std::vector<double>& durations_s, const std::vector<Cost>& costs) {
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   const auto n = static_cast<double>(costs.size());
@@ -103,7 +103,8 @@ void table(const std::string& name, Session session, const std::vector<double>& 
   }
   if (costs.size() > 1)
     fmt::print(
-        "\n{}: processor time grows with the duration to the power {:.2f}, memory by {:.1f} MB a second\n\n",
+        "\n{}: processor time grows with the duration to the power {:.2f}, memory by {:.1f} MB per "
+        "second\n\n",
         name, exponent(durations_s, costs),
         (costs.back().memory_mb - costs.front().memory_mb) / (durations_s.back() - durations_s.front()));
 }
@@ -111,15 +112,15 @@ void table(const std::string& name, Session session, const std::vector<double>& 
 }  // namespace
 
 int run(int argc, char** argv) {
-  CommandLine app("What whole calibrations cost against their duration");
+  CommandLine app("Cost of whole calibrations against the recording's duration");
   std::vector<std::string> files;
   std::vector<double> durations_s;
   std::string recording, scratch;
   app.option("SCENARIO", files, "Scenario files");
-  app.option("--durations", durations_s, "Seconds of the recording, each; else the scenario's own")
+  app.option("--durations", durations_s, "Durations of the recording, s; by default the scenario's")
       .between(2.0, 3600.0);
-  app.option("--recording", recording, "Folder with a session of a recording, in a scenario's place");
-  app.option("--scratch", scratch, "Where recordings are made; a folder that is removed again otherwise");
+  app.option("--recording", recording, "Folder with a session and its recording, instead of a scenario");
+  app.option("--scratch", scratch, "Folder for recordings; by default a temporary one");
   if (!app.parse(argc, argv)) return 0;
   std::sort(durations_s.begin(), durations_s.end());
   QTemporaryDir folder;

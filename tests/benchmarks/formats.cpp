@@ -1,6 +1,6 @@
-// Decoding speed per format on a simulated recording, as a table: `evical_benchmarks formats [--duration S] [--least M]
-// SCENARIO`. CPU time of the process, files in the page's cache. Fails where a packed format is slower than
-// `--least` million events/s, or where not every event comes back.
+// Decoding speed per format on a simulated recording, as a table: `evical_benchmarks formats [--duration S]
+// [--least M] SCENARIO`. CPU time of the process, with files in the page cache. Fails if a packed format is
+// slower than `--least` million events/s, or if an event is lost.
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"
@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kBatch = 50'000;
 
-// From 1 s on, whole us: what the formats of cameras hold.
+// Times from 1 s on, in whole us, as cameras' formats store them.
 std::vector<Event> simulatedEvents(const Scenario& scenario) {
   std::vector<Event> events;
   simulateEvents(scenario, 0,
@@ -69,7 +69,7 @@ class Rows {
                      }});
   }
 
-  // What Evical writes, and the compressions that `evical convert` has no name for.
+  // Formats that Evical writes, and the compressions that `evical convert` has no name for.
   void addWritten() {
     for (const RecordingFormat& format : recordingFormats()) {
       const std::string name = format.name;
@@ -114,7 +114,8 @@ class Rows {
         [this](EventSpan events) { return test::encodeEventStream(events, size_px_.height_px, false); });
   }
 
-  // What numpy.save, numpy.savez and numpy.savez_compressed write; without zip64 each array has 4 GB at most.
+  // The formats of numpy.save, numpy.savez and numpy.savez_compressed; without zip64 each array has 4 GB at
+  // most.
   void addArrays() {
     addEncoded("NumPy, structured", "", [this](EventSpan events) {
       std::string bytes;
@@ -125,7 +126,7 @@ class Rows {
     });
     addEncoded("NumPy archive", "", [this](EventSpan events) { return archiveOf(events, false); });
     addEncoded("NumPy archive, deflated", "", [this](EventSpan events) { return archiveOf(events, true); });
-    list_.back().packed = false;  // zlib's speed
+    list_.back().packed = false;  // limited by zlib
   }
 
   static std::string timeBytes(const Event& event) { return test::numberBytes(event.time_ns / 1000); }
@@ -169,7 +170,7 @@ std::uintmax_t sizeOf(const std::filesystem::path& path) {
   return size;
 }
 
-// True if it is fast enough and whole.
+// True if it is fast enough and complete.
 bool measure(const Row& row, const std::filesystem::path& path, std::size_t written, double least) {
   row.write(path);
   const double begin = test::processCpu_s();
@@ -196,14 +197,15 @@ int run(int argc, char** argv) {
   std::filesystem::path scenario_file, folder = std::filesystem::temp_directory_path();
   double duration_s = 17.0, least = 20.0;
   app.option("SCENARIO", scenario_file, "Scenario file").required();
-  app.option("--duration", duration_s, "s of recording; 17 s of davis346 are 20 million events");
-  app.option("--least", least, "Million events/s that packed formats must reach");
-  app.option("--folder", folder, "For the files, which are removed again");
+  app.option("--duration", duration_s,
+             "Duration of the recording, s; 17 s of davis346 are 20 million events");
+  app.option("--least", least, "Required speed of packed formats, million events/s");
+  app.option("--folder", folder, "Folder for the files, which are removed at the end");
   if (!app.parse(argc, argv)) return 0;
   Scenario scenario = readScenario(scenario_file);
   scenario.duration_s = duration_s;
   const std::vector<Event> events = simulatedEvents(scenario);
-  fmt::print("{} events\n\n| format | million events/s a core | bytes an event | |\n|---|---|---|---|\n",
+  fmt::print("{} events\n\n| format | million events/s per core | bytes per event | |\n|---|---|---|---|\n",
              events.size());
   bool good = true;
   const std::filesystem::path path = folder / fmt::format("evical_formats_{}", getpid());

@@ -1,6 +1,6 @@
-// What frame cameras, further boards and lenses reach, as one table: `evical_benchmarks frame_cameras [--only NAME...] [--seconds S]`. Simulated
-// recordings against their truth; real ones, in the folder that EVICAL_DATA names, against what is published of them. Fails where a
-// target is missed.
+// Accuracy of frame cameras, further boards and lenses, as one table: `evical_benchmarks frame_cameras
+// [--only NAME...] [--seconds S]`. Simulated recordings are compared with their truth; real ones, in the
+// folder EVICAL_DATA, with published values. Fails if a target is missed.
 #include "core/base/stopwatch.h"
 #include "core/frames/gray_image.h"
 #include "core/geometry/projection_difference.h"
@@ -65,7 +65,7 @@ Scenario scenarioOf(const std::string& name, std::optional<double> duration_s) {
   return scenario;
 }
 
-// Of one camera against another, or the reference IMU.
+// Pose of one camera relative to another, or to the reference IMU.
 struct RelativeError {
   double rotation_deg, translation_mm, time_offset_ms;
 };
@@ -97,7 +97,7 @@ void addError(Table& table, const std::string& recording, const std::string& of,
   table.atMost(recording, of + ": time offset", error.time_offset_ms, target.time_offset_ms, "ms");
 }
 
-// Two honest estimates of one thing differ by less.
+// Bound of the difference between two consistent estimates of one quantity.
 constexpr double kAgree_sigmas = 3.0;
 
 double worstSigmas(const CalibrationResult& result) {
@@ -140,7 +140,7 @@ void davisWithFrames(Table& table, std::optional<double> seconds) {
                s.translation_std_m.norm() / alone.translation_std_m.norm(), kScatter, "times");
 }
 
-// The outcome of an event camera beside a frame camera, against the truth of both; nothing where it failed.
+// The outcome of an event camera with a frame camera, against the truth of both; empty if it failed.
 std::optional<Outcome> eventsToFrames(Table& table, const std::string& name, const Scenario& scenario) {
   Outcome outcome = runScenario(scenario);
   if (!outcome.result) {
@@ -163,7 +163,7 @@ void hybridStereo(Table& table, std::optional<double> seconds) {
   table.add(name, "verdict", outcome.verdict, "ok", outcome.verdict == "ok");
 }
 
-// One bag of plain pixels and IMU samples, as cameras' drivers record them.
+// One bag of raw pixels and IMU samples, as camera drivers record them.
 void bringIntoOneBag(Session& session, const std::filesystem::path& bag) {
   const auto pictures = openRecording(session.cameras[0].recording), imu = openRecording(session.recording);
   std::vector<StreamInfo> streams = pictures->streams();
@@ -229,8 +229,8 @@ void rollingShutter(Table& table, std::optional<double> seconds) {
       0.3, "us");
   const std::string said = global.result ? global.result->reason : global.verdict;
   table.add(name, "taken for global", global.verdict + ", " + said.substr(0, said.find(':', 20)),
-            "doubtful, its shutter rolls",
-            global.verdict == "doubtful" && said.find("its shutter rolls") != std::string::npos);
+            "doubtful, the shutter is rolling",
+            global.verdict == "doubtful" && said.find("the shutter is rolling") != std::string::npos);
 }
 
 void wideFrame(Table& table, std::optional<double> seconds) {
@@ -309,7 +309,7 @@ void checkerboardPictures(Table& table, const std::string& name, const QDir& fol
 void realOnes(Table& table, const std::function<bool(const char*)>& asked) {
   const QString real = test::realRecordings();
   if (real.isEmpty()) {
-    fmt::print(stderr, "EVICAL_DATA is not set: without what is real\n");
+    fmt::print(stderr, "EVICAL_DATA is not set: real recordings are omitted\n");
     return;
   }
   if (asked("euroc_imu_april")) eurocImuApril(table, real);
@@ -323,17 +323,18 @@ void realOnes(Table& table, const std::function<bool(const char*)>& asked) {
   if (opencv.exists("left01.jpg"))
     checkerboardPictures(table, "opencv-doc (real)", opencv, "left??.jpg", 534.0, 0.3);
   else
-    fmt::print(stderr, "The package opencv-doc is not installed: without its pictures\n");
+    fmt::print(stderr, "The package opencv-doc is not installed: its images are omitted\n");
 }
 
 }  // namespace
 
 int run(int argc, char** argv) {
-  CommandLine app("What frame cameras, further boards and lenses reach, against their targets");
+  CommandLine app("Accuracy of frame cameras, further boards and lenses, against targets");
   std::vector<std::string> only;
   std::optional<double> seconds;
   app.option("--only", only, "Recordings by name, instead of all");
-  app.option("--seconds", seconds, "Of simulated recordings, instead of their own").between(2.0, 3600.0);
+  app.option("--seconds", seconds, "Duration of simulated recordings, instead of their own")
+      .between(2.0, 3600.0);
   if (!app.parse(argc, argv)) return 0;
   const auto asked = [&](const char* name) {
     return only.empty() || std::find(only.begin(), only.end(), name) != only.end();

@@ -1,6 +1,6 @@
 // Intrinsics against the truth of simulated recordings, as a table: `evical_benchmarks intrinsics [--seeds N]
-// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and goes through
-// everything that `evical intrinsics` does.
+// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and processed as by
+// `evical intrinsics`.
 #include "core/geometry/camera_model.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/sphere_lens.h"
@@ -41,14 +41,14 @@ IntrinsicsVector parametersOf(const CameraIntrinsics& camera) {
 
 struct Outcome {
   bool met = false;
-  std::vector<double> normalised;  // of the parameters that were estimated
+  std::vector<double> normalised;  // of the estimated parameters
 };
 
-// What is the same in all seeds is no noise: mean and RMS of each parameter's errors over sigmas.
+// Systematic errors, which are the same in all seeds: mean and RMS of each parameter's errors over sigmas.
 void printSums(const std::string& file, const std::vector<Outcome>& outcomes) {
   if (outcomes.size() < 2) return;
   std::size_t parameters =
-      kIntrinsicsCount;  // another model may have been found in some, with others of them
+      kIntrinsicsCount;  // some seeds may have selected another model, with other parameters
   for (const Outcome& outcome : outcomes) parameters = std::min(parameters, outcome.normalised.size());
   double all2 = 0.0;
   std::string by_parameter;
@@ -108,7 +108,7 @@ int run(int argc, char** argv) {
   ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_intrinsics_accuracy";
   scenarios.addTo(app);
-  app.option("--folder", folder, "For the recordings, which are removed again");
+  app.option("--folder", folder, "Folder for the recordings, which are removed at the end");
   if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "| scenario | seed | focal length, % (sigma) | principal point, px (sigma) | projection RMS, px "

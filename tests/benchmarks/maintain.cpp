@@ -1,5 +1,5 @@
-// What `evical maintain` reaches on simulated logs, as a table; fails where a target is missed. --runs of the logs in
-// which nothing happens, --hour for memory and time.
+// Accuracy of `evical maintain` on simulated logs, as a table; fails if a target is missed. --runs: number of
+// logs without a change; --hour: memory and time.
 #include "core/maintenance/stop_calibration.h"
 #include "core/pipeline/maintain/maintain_imus.h"
 #include "core/pipeline/simulate/drive_simulation.h"
@@ -30,7 +30,7 @@ struct Bench {
     return drive;
   }
 
-  // As people run it: by way of files.
+  // Through files, as users run it.
   Maintenance run(const DriveScenario& drive) const {
     const std::filesystem::path folder = scratch / "log";
     std::filesystem::remove_all(folder);
@@ -48,7 +48,7 @@ struct Bench {
   }
 };
 
-// Errors of the accelerometer's numbers that come from this source.
+// Errors of the accelerometer's parameters from this source.
 struct Errors {
   double bias = 0.0, scale = 0.0, squares = 0.0, count = 0.0;
 
@@ -98,7 +98,8 @@ void step(Bench& bench, const std::string& name, const std::string& quantity, in
     latest = std::max(latest, found.steps.front().noticed_s - at_s);
     furthest = std::max(furthest, std::abs(found.steps.front().at_s - at_s));
   }
-  bench.row(name + ": named alone and rightly", fmt::format("{} of {}", named, seeds), "all", named == seeds);
+  bench.row(name + ": correct quantity, and only that", fmt::format("{} of {}", named, seeds), "all",
+            named == seeds);
   bench.row(name + ": noticed after, worst", fmt::format("{:.1f} s", latest), "10 s", latest <= 10.0);
   bench.row(name + ": time, worst", fmt::format("{:.1f} s", furthest), "2 s", furthest <= 2.0);
 }
@@ -111,7 +112,7 @@ void nothing(Bench& bench, const std::string& name, int runs) {
     rate = found.false_alarms;
     alarms += found.verdict == Verdict::Changed ? 1 : 0;
   }
-  // At the stated rate more than this many happen once in a hundred such tables.
+  // At the stated rate, one in a hundred such tables has more than this many.
   const int most = static_cast<int>(std::floor(rate * runs + 2.33 * std::sqrt(rate * runs) + 0.5));
   bench.row(name + ": logs with an alarm", fmt::format("{} of {}", alarms, runs),
             fmt::format("{} ({} % a log)", most, 100.0 * rate), alarms <= most);
@@ -124,7 +125,7 @@ double residentPeak_mb() {
   return 0.0;
 }
 
-// Of a process that has not simulated.
+// Memory and time are measured in a separate process, without the simulation.
 int maintainOnly(const std::filesystem::path& folder) {
   const MaintainInput input = readMaintainInput({folder / "recording.bag"}, folder / "calibration");
   const std::clock_t begin = std::clock();
@@ -148,10 +149,10 @@ int run(int argc, char** argv) {
   bool hour = false;
   std::string only;
   app.option("SCENARIOS", bench.scenarios, "config/scenarios/maintain").required();
-  app.option("--runs", runs, "Logs in which nothing happens");
-  app.option("--seeds", seeds, "Logs of each other kind");
-  app.flag("--hour", hour, "Memory and time of an hour's log, too");
-  app.option("--maintain-only", only, "Of a folder that was simulated");
+  app.option("--runs", runs, "Number of logs without a change");
+  app.option("--seeds", seeds, "Number of logs of each other kind");
+  app.flag("--hour", hour, "Also memory and time of a log of one hour");
+  app.option("--maintain-only", only, "Only evaluate a folder that was simulated");
   if (!app.parse(argc, argv)) return 0;
   if (!only.empty()) return maintainOnly(only);
   bench.scratch = std::filesystem::temp_directory_path() / fmt::format("evical_maintain_{}", ::getpid());

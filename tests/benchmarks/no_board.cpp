@@ -1,5 +1,5 @@
-// An old calibration, the truth, checked by rooms without a board: errors of rotation and time offset, their sigmas and the
-// verdicts, over seeds. Fails where a target is missed.
+// Checks of an old, true calibration in rooms without a board: errors of rotation and time offset, their
+// sigmas and the verdicts, over seeds. Fails if a target is missed.
 #include "core/base/in_parallel.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
@@ -22,7 +22,7 @@
 namespace evical::benchmarks::no_board {
 namespace {
 
-// Of one kind of number, over all runs.
+// Statistics of one kind of quantity over all runs.
 struct Spread {
   double squares = 0.0, weighed = 0.0, worst = 0.0, largest = 0.0, sigmas = 0.0;
   int count = 0;
@@ -42,7 +42,7 @@ struct Spread {
 
 struct Seen {
   BoardlessPass pass;
-  double own_s = 0.0;  // processor time that is not the simulation's
+  double own_s = 0.0;  // processor time without the simulation
 };
 
 Seen see(const Scenario& scenario, const CalibrationOptions& options) {
@@ -57,7 +57,7 @@ Seen see(const Scenario& scenario, const CalibrationOptions& options) {
   return seen;
 }
 
-// Rotations: about the IMU's axes, as sigmas are.
+// Rotations about the IMU's axes, like their sigmas.
 void addErrors(const Finding& quantity, Spread& turns, Spread& delays) {
   const std::vector<ComparedNumber>& numbers = quantity.numbers;
   if (quantity.quantity != "rotation") {
@@ -81,7 +81,7 @@ struct Outcome {
   double own_s = 0.0, duration_s = 0.0;
 };
 
-// In one thread, so that what it takes is this thread's time.
+// In one thread, so that the thread's time is the total.
 Outcome checked(const Scenario& scenario) {
   CheckInput input = checkInputOf(test::truthOf(scenario), test::sessionFor(scenario));
   input.session.options.optimisation.edit().threads = 1;
@@ -141,7 +141,7 @@ class Table {
     fmt::print(
         "error and sigma: RMS over numbers and seeds; ratio: of error over sigma; worst: the largest of "
         "those;\n"
-        "time: one core's beside the recording's\n\n{}",
+        "time: of one core, over the recording's duration\n\n{}",
         targets_);
   }
 
@@ -161,15 +161,15 @@ class Table {
     target(name, "rotation, RMS [deg]", errors.turns.rms(), 0.2);
     target(name, "time offset, RMS [ms]", errors.delays.rms(), 0.5);
     target(name, "called changed", changed, 0.0);
-    target(name, "rotation where told, worst [sigma]", errors.told_turns.worst, 4.0);
-    if (name == "room") target(name, "one core's time beside the recording's", time, 2.0);
+    target(name, "rotation with a verdict, worst [sigma]", errors.told_turns.worst, 4.0);
+    if (name == "room") target(name, "one core's time over the recording's", time, 2.0);
     if (seeds < kEnough) return;
     target(name, "rotation, errors over sigmas", errors.turns.ratio(), 1.4, 0.7);
     target(name, "time offset, errors over sigmas", errors.delays.ratio(), 1.4, 0.7);
   }
   void judgeNearWalls(const std::string& name, const Spread& told_turns) {
-    target(name, "rotation where told, worst [deg]", told_turns.largest, 0.4);
-    target(name, "rotation where told, worst [sigma]", told_turns.worst, 4.0);
+    target(name, "rotation with a verdict, worst [deg]", told_turns.largest, 0.4);
+    target(name, "rotation with a verdict, worst [sigma]", told_turns.worst, 4.0);
   }
 
   std::string rows_, targets_;
@@ -183,7 +183,7 @@ int run(int argc, char** argv) {
   ScenarioArguments arguments;
   int jobs = 2;
   arguments.addTo(app);
-  app.option("--jobs", jobs, "So many seeds at a time").between(1, 64);
+  app.option("--jobs", jobs, "Number of seeds at a time").between(1, 64);
   if (!app.parse(argc, argv)) return 0;
   Table table;
   for (const std::string& file : arguments.files) table.run(file, arguments, jobs);

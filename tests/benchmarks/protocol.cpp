@@ -1,8 +1,8 @@
-// The protocol of eKalibr's papers in simulation: several recordings before each board, each calibrated alone, and how far
-// the results scatter. `evical_benchmarks protocol [--recordings N] [--duration S] [--only PART] [--folder DIR] config/protocol`. Rigs go
-// through everything that `evical repeat` does, lenses of cameras alone (scenarios without given intrinsics) through that of
-// `evical intrinsics`. Recordings are simulated one by one, and removed again. Fails where one can not be calibrated, or
-// results do not agree.
+// The protocol of eKalibr's papers in simulation: several recordings of each board, each calibrated alone,
+// and the scatter of the results. `evical_benchmarks protocol [--recordings N] [--duration S] [--only PART]
+// [--folder DIR] config/protocol`. Rigs are processed as by `evical repeat`, lenses of single cameras
+// (scenarios without given intrinsics) as by `evical intrinsics`. Recordings are simulated one by one and
+// then removed. Fails if one cannot be calibrated, or if results disagree.
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/data/intrinsics_result.h"
@@ -33,10 +33,11 @@ struct Arguments {
 
   void addTo(Command& app) {
     app.option("SCENARIOS", scenarios, "Folder of scenarios, one for each board and rig").required().folder();
-    app.option("--recordings", recordings, "So many of each").between(2, 100);
-    app.option("--duration", duration_s, "Seconds, instead of the scenarios'").between(3.0, 3600.0);
-    app.option("--only", only, "Scenarios with this in their names");
-    app.option("--folder", folder, "For recordings, of which there is one at a time");
+    app.option("--recordings", recordings, "Number of recordings of each kind").between(2, 100);
+    app.option("--duration", duration_s, "Duration of recordings, s; by default the scenarios'")
+        .between(3.0, 3600.0);
+    app.option("--only", only, "Only scenarios whose names contain this text");
+    app.option("--folder", folder, "Folder for recordings, of which one exists at a time");
   }
   Scenario read(const std::filesystem::path& file, int k) const {
     Scenario scenario = readScenario(file);
@@ -46,7 +47,7 @@ struct Arguments {
   }
 };
 
-// A recording as people have it, as long as it is needed.
+// A typical user's recording of the required length.
 class SimulatedRecording {
  public:
   SimulatedRecording(const Scenario& scenario, const std::filesystem::path& folder) : folder_(folder) {
@@ -70,7 +71,7 @@ struct Protocol {
   double calibrating_s = 0.0;
 };
 
-// Over the axes, or over focal lengths.
+// Mean over the axes, or over focal lengths.
 double rmsOf(const std::vector<double>& values) {
   double squares = 0.0;
   for (const double each : values) squares += each * each;
@@ -146,7 +147,7 @@ Protocol runRig(const std::filesystem::path& file, const Arguments& arguments) {
   return protocol;
 }
 
-// Of one intrinsic number over recordings.
+// Scatter of one intrinsic parameter over recordings.
 struct Scatter {
   double deviation = 0.0, sigma = 0.0;
 };
@@ -201,7 +202,7 @@ std::vector<std::filesystem::path> scenariosOf(const Arguments& arguments) {
   std::sort(files.begin(), files.end());
   if (files.empty())
     throw badInput(arguments.scenarios, "has no scenario of that name",
-                   "Leave --only out, or name a part of one");
+                   "Omit --only, or give a part of a scenario's name");
   return files;
 }
 
@@ -235,7 +236,8 @@ int run(int argc, char** argv) {
         "calibrating, s "
         "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::filesystem::path& file : lenses) add(runLens(file, arguments));
-  fmt::print("\n{:.0f} s in all, {:.0f} s of them calibrating\n", stopwatch.elapsed_s(), all.calibrating_s);
+  fmt::print("\n{:.0f} s in total, {:.0f} s of them for calibrations\n", stopwatch.elapsed_s(),
+             all.calibrating_s);
   return all.good ? 0 : 1;
 }
 

@@ -22,7 +22,7 @@
 namespace evical {
 namespace {
 
-// The front end over the events as they are simulated; its own time is measured apart.
+// Runs the front end on the simulated events; its time is measured separately.
 BoardObservations fromEvents(const Scenario& scenario, const Session& session, std::size_t k,
                              const CameraIntrinsics& camera, double& busy_s) {
   BoardTracker tracker(session.boardOf(k), camera.resolution_px, camera, *session.options.front_end,
@@ -38,7 +38,7 @@ BoardObservations fromEvents(const Scenario& scenario, const Session& session, s
   return found;
 }
 
-// The same of frames.
+// The same for frames.
 BoardObservations fromFrames(const Scenario& scenario, const Session& session, std::size_t k,
                              const CameraIntrinsics& camera, double& busy_s) {
   const RunContext context;

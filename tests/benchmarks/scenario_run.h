@@ -1,4 +1,4 @@
-// A simulated recording through everything that `evical calibrate` does, in memory, against its truth.
+// A simulated recording calibrated in memory as by `evical calibrate`, against its truth.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -22,12 +22,13 @@ struct Outcome {
   std::optional<CalibrationResult> result;
 };
 
-// `change`: of the session that fits the scenario, before it is calibrated.
+// `change` modifies the session that matches the scenario, before the calibration.
 Outcome runScenario(const Scenario& scenario, const std::function<void(Session&)>& change = {});
 
 CalibrationState trueState(const Scenario& scenario);
 
-// Of the way from the principal point to the image's furthest corner: where a lens of 190 degrees ends.
+// Fraction of the distance from the principal point to the furthest image corner at which a lens of 190
+// degrees ends.
 double shareOfImageCircle(const CameraIntrinsics& camera);
 
 }  // namespace evical

@@ -1,6 +1,6 @@
 // Costs of the hot paths on a simulated recording, as a table: `evical_benchmarks speed [--duration S]
-// SCENARIO`. CPU time of one thread, so that other work on the machine hardly counts; compare
-// ratios between builds, not machines. What whole runs cost: costs.cpp.
+// SCENARIO`. CPU time of one thread, so that other work on the machine has little effect; compare ratios
+// between builds, not machines. costs.cpp has the costs of whole runs.
 #include "core/frontend/board_search.h"
 #include "core/frontend/board_tracker.h"
 #include "core/initialisation/initialise.h"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kBatch = 50'000;
 
-// Events to bursts, and bursts to windows, apart.
+// Events to bursts, and bursts to windows, measured separately.
 BoardObservations detect(const Scenario& scenario, const std::vector<Event>& events) {
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
   const FrontEndOptions options;
@@ -42,10 +42,11 @@ BoardObservations detect(const Scenario& scenario, const std::vector<Event>& eve
   BoardObservations observations = tracker.finish();
   const auto n = static_cast<double>(events.size()),
              windows = static_cast<double>(observations.windows.size());
-  fmt::print("| events to bursts | {:.1f} ns an event ({:.1f} Mev/s) | {} events, {} bursts |\n",
+  fmt::print("| events to bursts | {:.1f} ns per event ({:.1f} Mev/s) | {} events, {} bursts |\n",
              1e9 * extracting_s / n, 1e-6 * n / extracting_s, events.size(), burst_count);
-  fmt::print("| bursts to board | {:.2f} ms a window, {:.1f} ns an event | {} windows, searches included |\n",
-             1e3 * tracking_s / windows, 1e9 * tracking_s / n, observations.windows.size());
+  fmt::print(
+      "| bursts to board | {:.2f} ms per window, {:.1f} ns per event | {} windows, searches included |\n",
+      1e3 * tracking_s / windows, 1e9 * tracking_s / n, observations.windows.size());
   return observations;
 }
 
@@ -94,7 +95,7 @@ void optimise(const Scenario& scenario, BoardObservations observations) {
   const BatchSolution solution = optimiseBatch(input, initial.state, OptimisationOptions{}, RunContext{});
   const double spent_s = test::processCpu_s() - begin;
   fmt::print(
-      "| batch | {:.0f} ms an iteration, {:.2f} s in all | {} iterations, {} circles, {} IMU samples |\n",
+      "| batch | {:.0f} ms per iteration, {:.2f} s in total | {} iterations, {} circles, {} IMU samples |\n",
       1e3 * spent_s / static_cast<double>(solution.iterations.size()), spent_s, solution.iterations.size(),
       solution.cameras.front().circles_used, input.imus.front().samples.size());
 }
@@ -106,7 +107,7 @@ int run(int argc, char** argv) {
   std::string file;
   double duration_s = 10.0;
   app.option("SCENARIO", file, "Scenario file").required();
-  app.option("--duration", duration_s, "Seconds").between(2.0, 60.0);
+  app.option("--duration", duration_s, "Duration of the recording, s").between(2.0, 60.0);
   if (!app.parse(argc, argv)) return 0;
   Scenario scenario = readScenario(file);
   scenario.duration_s = duration_s;

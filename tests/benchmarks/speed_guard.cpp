@@ -1,8 +1,9 @@
-// Guards against stages that become slower: `evical_benchmarks speed_guard BASELINE [--renew]`. Each stage's CPU time is divided by
-// that of a fixed piece of work (speed_reference.cpp) in the same run, so that machines compare. The least of several rounds
-// counts. The benchmark fails if a ratio is above the baseline's by more than its stage may grow. Against the baseline of another
-// processor model a stage fails if it takes twice as long. `--renew` writes the ratios of this run as the new baseline, `--table
-// FILE` what is printed.
+// Guards against stages that become slower: `evical_benchmarks speed_guard BASELINE [--renew]`. Each stage's
+// CPU time is divided by that of a fixed amount of work (speed_reference.cpp) in the same run, so that
+// machines are comparable. The minimum over several rounds counts. The benchmark fails if a ratio exceeds the
+// baseline's by more than the stage's tolerance. Against the baseline of another processor model a stage
+// fails if it takes twice as long. `--renew` writes the ratios of this run as the new baseline, `--table
+// FILE` writes the printed table.
 #include "core/base/atomic_file.h"
 #include "core/base/time.h"
 #include "core/base/yaml_node.h"
@@ -43,12 +44,12 @@ namespace {
 
 constexpr double kEvents_s = 2.0;       // of recording with events
 constexpr double kBatch_s = 8.0;        // of recording for all that comes after detection
-constexpr std::size_t kReferences = 5;  // a round: the least of many is the machine's speed
-constexpr double kMayGrow = 0.3;        // where the baseline does not say
+constexpr std::size_t kReferences = 5;  // per round: the minimum of many is the machine's speed
+constexpr double kMayGrow = 0.3;        // if the baseline does not state it
 constexpr double kMayDiffer = 1.0;      // from another processor's
 constexpr std::size_t kBatch = 50'000;
 
-// As Linux tells it of the first one: name and numbers of the model, caches; empty where nothing is told.
+// First processor according to Linux: name and numbers of the model, caches; empty if unknown.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   std::string text;
@@ -58,13 +59,13 @@ std::string processor() {
   return text;
 }
 
-// What a tracker gets with each batch of events.
+// Input of a tracker for each batch of events.
 struct BurstBatch {
   std::vector<EdgeCrossing> bursts;
   std::int64_t first_event_ns, complete_until_ns;
 };
 
-// The stages, in the order in which each finds what those before it have left.
+// The stages, in order: each uses the results of those before it.
 class Stages {
  public:
   explicit Stages(const Scenario& scenario)
@@ -75,7 +76,7 @@ class Stages {
     recording_ = simulate(scenario_, folder_.path().toStdString(), context_).recording;
     test::SimulatedPass simulated = test::simulatePass(kBatch_s, scenario);
     session_ = simulated.session;
-    // One thread: waiting for another is no work.
+    // One thread: waiting for another does not count as work.
     session_.options.optimisation.edit().threads = 1;
     start_ = initialiseCalibration(session_, std::move(simulated.pass), context_);
   }
@@ -162,7 +163,7 @@ struct Stage {
   void (Stages::*work)();
   double least_s = std::numeric_limits<double>::infinity();
   double baseline = 0.0, may_grow = kMayGrow;
-  std::optional<double> allowed = {};  // instead, here
+  std::optional<double> allowed = {};  // for this stage, instead of the default
 
   double ratio(double reference_s) const { return least_s / reference_s; }
   double mayGrow() const { return allowed.value_or(may_grow); }
@@ -206,7 +207,7 @@ class Guard {
 
   std::string table() const {
     std::string text =
-        fmt::format("CPU time over that of the reference work ({:.1f} ms), the least of {} rounds\n\n",
+        fmt::format("CPU time over that of the reference work ({:.1f} ms), minimum of {} rounds\n\n",
                     1e3 * reference_s_, rounds_);
     text += "| stage | ms | ratio | baseline | change |\n|---|---|---|---|---|\n";
     for (const Stage& stage : stages_)
@@ -215,18 +216,18 @@ class Guard {
                       stage.ratio(reference_s_), stage.baseline,
                       stage.baseline > 0.0 ? 100.0 * (stage.ratio(reference_s_) / stage.baseline - 1.0) : 0.0,
                       stage.grown(reference_s_)
-                          ? fmt::format(", more than the {:.0f} % that it may grow", 100.0 * stage.mayGrow())
+                          ? fmt::format(", more than the tolerance of {:.0f} %", 100.0 * stage.mayGrow())
                           : "");
     return text;
   }
 
   std::string baseline() const {
     std::string text =
-        "# CPU time of each stage over that of tests/benchmarks/speed_reference.cpp: what evical_benchmarks "
-        "speed_guard "
-        "holds runs against.\n# A stage may grow by 0.3, or by its may_grow if its own scatter on a busy "
-        "machine is wider. "
-        "To renew, on a\n# quiet machine: build/ci/tests/benchmarks/evical_benchmarks speed_guard "
+        "# CPU time of each stage over that of tests/benchmarks/speed_reference.cpp, the baseline of "
+        "evical_benchmarks speed_guard.\n"
+        "# A stage may grow by 0.3, or by its may_grow if its own scatter on a busy machine is wider. To "
+        "renew, on a\n"
+        "# quiet machine: build/ci/tests/benchmarks/evical_benchmarks speed_guard "
         "tests/benchmarks/speed_baseline.yaml --renew\n"
         "processor: " +
         yamlText(processor()) + "\nratios:\n";
@@ -267,11 +268,12 @@ int run(int argc, char** argv) {
   int rounds = 3, most_rounds = 9;
   bool renew = false;
   app.option("BASELINE", baseline, "File of ratios").required();
-  app.flag("--renew", renew, "Writes the file anew");
-  app.option("--table", table, "A file for what is printed");
-  app.option("--scenario", scenario, "What to simulate");
-  app.option("--rounds", rounds, "At least").between(1, 100);
-  app.option("--most-rounds", most_rounds, "Where a stage seems slower: others may be in its way")
+  app.flag("--renew", renew, "Write the ratios of this run as the new baseline");
+  app.option("--table", table, "File for the printed table");
+  app.option("--scenario", scenario, "Scenario to simulate");
+  app.option("--rounds", rounds, "Minimum number of rounds").between(1, 100);
+  app.option("--most-rounds", most_rounds,
+             "Maximum number of rounds if a stage seems slower, since other programs may disturb it")
       .between(1, 100);
   if (!app.parse(argc, argv)) return 0;
   Guard guard(scenario);

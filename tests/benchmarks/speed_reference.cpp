@@ -1,5 +1,6 @@
-// The work that the speed guard scales by: fits of planes to the times of neighbouring pixels, as the front end does, and solutions of
-// dense equations, as the optimiser does. It uses nothing of the project, so that it costs the same when a stage becomes slower.
+// Reference work of the speed guard: plane fits to the times of neighbouring pixels, like in the front end,
+// and solutions of dense equations, like in the optimiser. It uses no code of the project, so that its cost
+// does not change when a stage becomes slower.
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <cmath>
@@ -36,7 +37,7 @@ double planeFits(int events) {
   return slopes;
 }
 
-// Cholesky's factors of a matrix with a strong diagonal, in place; the last one.
+// In-place Cholesky factors of a diagonally dominant matrix; returns the last one.
 double factorised(std::vector<double>& matrix, std::size_t size) {
   for (std::size_t row = 0; row < size; ++row) {
     for (std::size_t column = 0; column <= row; ++column) {

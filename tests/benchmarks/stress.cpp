@@ -1,6 +1,7 @@
-// What a calibration says where one thing is not as the session has it, as a table: `evical_benchmarks stress [--only NAME...]
-// [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs once a recording; what is perturbed is
-// what comes after it, but for rows that say otherwise (tests/support/perturbations.cpp).
+// Verdicts of calibrations in which one quantity deviates from the session, as a table: `evical_benchmarks
+// stress [--only NAME...] [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs
+// once per recording; perturbations apply to the later stages, unless their row states otherwise
+// (tests/support/perturbations.cpp).
 #include "core/numerics/angles.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
@@ -28,19 +29,19 @@ using test::Perturbation;
 using test::PerturbedStage;
 using test::Recorded;
 
-// Beyond both, a result that is called ok is a wrong one.
+// A result that is called ok is wrong if its error exceeds both.
 constexpr double kWrongSigmas = 4.0;
 constexpr double kWrongRotation_deg = 0.1, kWrongTranslation_mm = 3.0, kWrongTimeOffset_ms = 1.0;
 
-// Of the worst camera, in units for people; `sigmas`: of its worst number.
+// Errors of the worst camera, in the report's units; `sigmas`: of its worst quantity.
 struct PartError {
   double size = 0.0, sigma = 0.0, sigmas = 0.0;
 
   bool isWrong(double bound) const { return size > bound && sigmas > kWrongSigmas; }
 };
 
-// Of the worst sensor: spreads of residuals over what was given for them, share of circles that were thrown
-// out, and how many sigmas the recording's halves differ by.
+// Figures of the worst sensor: spread of residuals over the given noise, share of rejected circles, and the
+// difference between the recording's halves in sigmas.
 struct Misfit {
   double circles = 0.0, gyroscope = 0.0, accelerometer = 0.0, outliers = 0.0, halves_sigmas = 0.0;
 };
@@ -60,7 +61,7 @@ struct Outcome {
 };
 
 PartError partError(const TruthComparison& comparison, const std::string& part) {
-  std::map<std::string, std::array<double, 2>> squares;  // by camera: of error and sigma
+  std::map<std::string, std::array<double, 2>> squares;  // squares of error and sigma by camera
   PartError error;
   for (const QuantityDifference& quantity : comparison.quantities) {
     const std::size_t at = quantity.name.find(part);
@@ -121,7 +122,7 @@ Outcome calibrated(const Recorded& recorded) {
 }
 
 struct Source {
-  bool perfect = false;  // circles as a perfect front end sees them: in seconds
+  bool perfect = false;  // circles of an ideal front end: takes seconds
 
   DetectionResult pass(const Scenario& scenario, const Session& session) const {
     constexpr double kSigma_px = 0.05, kWindow_s = 0.02;
@@ -144,14 +145,15 @@ const char* wordOf(CalibrationStatus status) {
                                                  : "failed";
 }
 
-// Which quantity the motion leaves too uncertain, where that is the first reason; else nothing.
+// The quantity that the motion leaves too uncertain, if that is the first reason; else empty.
 std::string_view tooUncertain(const Outcome& outcome) {
   const std::string_view reason = test::firstReason(outcome.reason);
   const std::size_t at = reason.find(" has a sigma of ");
   return at == std::string_view::npos ? std::string_view() : reason.substr(0, at);
 }
 
-// Right within its sigmas, and doubtful only because this recording moves too little, spoilt or not: it has no other cause.
+// Correct within its sigmas, and doubtful only because this recording moves too little, with or without the
+// perturbation.
 bool isDoubtfulAsUnspoilt(const Outcome& outcome, const Outcome& unspoilt) {
   return !outcome.isWrong() && outcome.status == CalibrationStatus::Doubtful &&
          !tooUncertain(outcome).empty() && tooUncertain(outcome) == tooUncertain(unspoilt);
@@ -159,8 +161,8 @@ bool isDoubtfulAsUnspoilt(const Outcome& outcome, const Outcome& unspoilt) {
 
 struct Summary {
   int cases = 0, wrong = 0, wrong_ok = 0;
-  int named = 0, nameable = 0;  // of those not called ok that have a cause
-  int as_unspoilt = 0;          // of those not called ok, and not counted there
+  int named = 0, nameable = 0;  // results that are not called ok and have a cause
+  int as_unspoilt = 0;          // results that are not called ok for another reason than the perturbation
   int ok_unspoilt = 0, unspoilt = 0;
 
   void add(const Perturbation& perturbation, const Outcome& outcome, const Outcome& twin) {
@@ -237,9 +239,9 @@ struct Arguments {
   void addTo(Command& app) {
     scenarios.addTo(app);
     app.option("--only", only, "Perturbations by name, instead of all");
-    app.option("--size", size, "One size, instead of those of the table");
+    app.option("--size", size, "One size of the perturbation, instead of those of the table");
     app.flag("--notes", notes, "Also the notes of each result");
-    app.flag("--perfect", source.perfect, "Circles of a perfect front end, without events");
+    app.flag("--perfect", source.perfect, "Circles of an ideal front end, without events");
   }
   std::vector<Perturbation> rows() const {
     std::vector<Perturbation> all(test::perturbations().begin(), test::perturbations().end());
@@ -247,7 +249,7 @@ struct Arguments {
       all.clear();
       for (const std::string& name : only) all.push_back(test::perturbation(name));
     }
-    // A perfect front end sees the true board, whatever the session says.
+    // An ideal front end sees the true board, not the session's.
     if (source.perfect)
       std::erase_if(all, [](const Perturbation& each) { return each.stage == PerturbedStage::FrontEnd; });
     for (Perturbation& each : all)
@@ -259,7 +261,7 @@ struct Arguments {
 }  // namespace
 
 int run(int argc, char** argv) {
-  CommandLine app("What a calibration says where one thing is not as the session has it");
+  CommandLine app("Verdicts if one quantity deviates from the session");
   Arguments arguments;
   arguments.addTo(app);
   if (!app.parse(argc, argv)) return 0;

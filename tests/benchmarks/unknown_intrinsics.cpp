@@ -1,7 +1,7 @@
-// What it costs not to know a camera's intrinsics, as a table: `evical_benchmarks unknown_intrinsics [--seeds N]
-// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated
-// three times, as `evical calibrate` does: with the true intrinsics; with those found first, held;
-// and solved with everything else.
+// Loss of accuracy without known intrinsics, as a table: `evical_benchmarks unknown_intrinsics [--seeds N]
+// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated three
+// times, as by `evical calibrate`: with the true intrinsics; with intrinsics that are found first and then
+// fixed; and with intrinsics that are estimated jointly with everything else.
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/optimisation_options.h"
@@ -28,12 +28,12 @@ namespace evical::benchmarks::unknown_intrinsics {
 namespace {
 
 enum Way { kTrue, kFound, kJoint, kWays };
-constexpr std::array<const char*, kWays> kWayNames = {"true", "found, held", "found, joint"};
+constexpr std::array<const char*, kWays> kWayNames = {"true", "found, fixed", "found, joint"};
 constexpr double kTarget = 1.5;  // times the errors with true intrinsics
 const std::vector<std::string> kParts = {".rotation.",     ".translation.",     ".time_offset",
                                          ".focal_length.", ".principal_point.", ".distortion."};
 
-// Sums over seeds, by part of the names above.
+// Sums over seeds, by group of the names above.
 struct Sums {
   std::map<std::string, double> error2, normalised2;
   std::map<std::string, int> counts;
@@ -73,7 +73,7 @@ void printRow(const Scenario& scenario, Way way, const CalibrationRun& run,
   std::fflush(stdout);
 }
 
-// The front end's work is the same for both ways without intrinsics, and is done once.
+// The front end's work is the same for both ways without intrinsics, so it is done once.
 std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, const Scenario& scenario) {
   std::array<CalibrationRun, kWays> runs;
   Session given = unknown;
@@ -115,11 +115,11 @@ int run(int argc, char** argv) {
   ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_unknown_intrinsics";
   scenarios.addTo(app);
-  app.option("--folder", folder, "For the recordings, which are removed again");
+  app.option("--folder", folder, "Folder for the recordings, which are removed at the end");
   if (!app.parse(argc, argv)) return 0;
   fmt::print(
       "| scenario | seed | intrinsics | rotation, deg (sigma) | translation, mm (sigma) | time offset, ms "
-      "(sigma) | projection off by, px RMS | optimise, s | verdict "
+      "(sigma) | projection error, px RMS | optimise, s | verdict "
       "|\n|---|---|---|---|---|---|---|---|---|\n");
   bool all_met = true;
   for (const std::string& file : scenarios.files) {

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# What a calibration costs in the window, with Detection in view at 1920x1080, beside the command line: processor time,
-# peak memory, and their ratio. Wants Xvfb, a window manager and xdotool. Exit code 1 beyond 300 MB or 1.3 times.
-#   window_cost.sh FOLDER_OF_PROGRAMS SESSION
+# Cost of a calibration in the window, with Detection in view at 1920x1080, compared with the command line:
+# processor time, peak memory, and their ratio. Needs Xvfb, a window manager and xdotool. Exit code 1 beyond
+# 300 MB or 1.3 times.
+# window_cost.sh FOLDER_OF_PROGRAMS SESSION
 set -euo pipefail
 . "$(dirname "$0")/../support/xvfb.sh"
 programs=$1 session=$(realpath "$2")
@@ -14,11 +15,12 @@ finish() {
 }
 trap finish EXIT
 
-# Seconds of processor that a process has had, with all its threads.
+# Processor time of a process with all its threads, in seconds.
 cpu_s() { awk -v hz="$(getconf CLK_TCK)" '{sub(/.*\) /, ""); print ($12 + $13) / hz}' "/proc/$1/stat"; }
 peak_mb() { awk '/VmHWM/ {printf "%.0f", $2 / 1024}' "/proc/$1/status"; }
 
-# The session's own folder stays as it is, for runs are kept beside a session: its files are there by their names.
+# Links to the session's files in a copy of its folder: runs are saved next to a session, and the original
+# must not change.
 ln -s "$(dirname "$session")"/* "$scratch"
 rm -rf "$scratch"/*.runs "$scratch/$(basename "$session")"
 cp "$session" "$scratch/session.yaml"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The table of what is reached without a board: rooms that check an old calibration, logs of IMUs over time. Some three
-# hours on one core; fails where a target is missed. BUILD is a build folder; SEEDS, 20 if not given, of each kind.
+# Table of the accuracy without a board: checks of an old calibration in rooms, logs of IMUs over time. Takes
+# three hours on one core; fails if a target is missed. BUILD is a build folder; SEEDS is the number of seeds
+# of each kind, 20 by default.
 set -uo pipefail
 benchmarks=${1:?the build folder}/tests/benchmarks/evical_benchmarks seeds=${2:-20}
 scenarios=$(cd "$(dirname "$0")/../../config/scenarios" && pwd)

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# A batch over a cluster: Slurm with two nodes on this machine, 20 short recordings, of which one is too short and one is
-# cut. A node dies while it works. Nothing is lost, nothing that has ended runs again, and the table is that of one machine.
-#   check_slurm.sh EVICAL SIMULATED SCRATCH
-# Exit code 77: there is no Slurm, nobody who may start it, or a machine that it does not start on.
+# A batch on a cluster: Slurm with two nodes on this machine, 20 short recordings, of which one is too short
+# and one is truncated. A node fails during its work. Nothing may be lost, no finished job may run again, and
+# the table must equal that of a single machine.
+# check_slurm.sh EVICAL SIMULATED SCRATCH
+# Exit code 77: Slurm is missing, cannot be started by this user, or does not start on this machine.
 set -euo pipefail
 evical=$1 simulated=$2 scratch=$3
 export LC_ALL=C.UTF-8
@@ -30,7 +31,7 @@ rm -rf "$scratch"
 mkdir -p "$scratch"/{log,state,spool,data}
 export SLURM_CONF=$scratch/slurm.conf
 
-# Three ports that are free now.
+# Three free ports.
 read -r control_port first_port second_port < <(python3 -c '
 import socket
 sockets = [socket.socket() for _ in range(3)]
@@ -67,8 +68,8 @@ NodeName=n2 NodeHostname=localhost NodeAddr=127.0.0.1 Port=$second_port CPUs=1
 PartitionName=all Nodes=n1,n2 Default=YES State=UP MaxTime=INFINITE
 CONF
 
-# Processes of a node: its slurmd, the keepers of its jobs' steps, then the jobs themselves.
-# In milliseconds: a job takes a second, and must not end meanwhile.
+# Processes of a node: its slurmd, the keepers of its job steps, then the jobs themselves. All must stop
+# within milliseconds, since a job takes only a second and must not end meanwhile.
 kill_node() { # NAME
   local name=$1 process jobs=() keepers=()
   mapfile -t jobs < <({ grep -lzxF "SLURMD_NODENAME=$name" /proc/[0-9]*/environ |
@@ -109,9 +110,9 @@ within() { # SECONDS COMMAND...: waits until it succeeds
   done
 }
 both_idle() { [ "$(sinfo --noheader --Node --format=%T | grep -c '^idle$')" = 2 ]; }
-within 30 both_idle || skip "the nodes do not come up: $(sinfo 2>&1)"
+within 30 both_idle || skip "the nodes do not start: $(sinfo 2>&1)"
 
-# 20 jobs: 18 of a whole recording, one that is too short, one that was cut while it was copied.
+# 20 jobs: 18 of a complete recording, one that is too short, one that was truncated.
 recording=$simulated/short_bag/recording.bag
 head -c $(($(stat -c %s "$recording") * 7 / 10)) "$recording" >"$scratch/data/cut.bag"
 {
@@ -131,38 +132,38 @@ cluster="$scratch/my cluster, 50 %a" machine=$scratch/machine
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --slurm | tee "$scratch/log/submitted" || fail "it was not submitted"
 grep -q "Submitted 20 jobs" "$scratch/log/submitted" || fail "not all were submitted"
 
-# The second node goes down while it works, after it has done something.
+# The second node goes down during its work, after it has finished a job.
 some_done() { [ "$(find "$cluster/jobs" -name 'r*.yaml' ! -name '*.session.yaml' | wc -l)" -ge 3 ]; }
-# A job has begun its work there, and not ended it.
+# Waits for a job that is running there.
 busy_on() {
   local task
   task=$(squeue --noheader --states=R --format='%N %K' | sed -n "s/^$1 //p")
   [ -n "$task" ] && tail -n 1 "$cluster/jobs/slurm-$task.txt" | grep -q ': started$'
 }
-within 240 some_done || fail "nothing is done: $(squeue 2>&1)"
-"$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect --quiet >"$scratch/log/early" && fail "a part was called the whole"
-grep -q "is in Slurm's queue: " "$scratch/log/early" || fail "nobody says what waits: $(cat "$scratch/log/early")"
-within 60 busy_on n2 || fail "the second node has no work: $(squeue 2>&1)"
+within 240 some_done || fail "no job has ended: $(squeue 2>&1)"
+"$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect --quiet >"$scratch/log/early" && fail "a partial collection was not reported"
+grep -q "is in Slurm's queue: " "$scratch/log/early" || fail "waiting jobs are not reported: $(cat "$scratch/log/early")"
+within 60 busy_on n2 || fail "the second node has no job: $(squeue 2>&1)"
 kill_node n2
 
 queue_empty() { [ -z "$(squeue --noheader)" ]; }
-within 600 queue_empty || fail "the queue does not end: $(squeue 2>&1; sinfo 2>&1)"
+within 600 queue_empty || fail "the queue does not become empty: $(squeue 2>&1; sinfo 2>&1)"
 sinfo --noheader --Node --format='%N %T' | grep -q '^n2 down' || fail "n2 was not lost: $(sinfo --Node 2>&1)"
 
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect >"$scratch/log/collected" || true
 "$evical" batch "$scratch/jobs.yaml" -o "$machine" >"$scratch/log/machine" || true
 
-# All but how long it took and how much memory.
+# Everything except time and memory.
 table() { python3 -c '
 import csv, sys
 for row in csv.reader(open(sys.argv[1])): print(row[:-2])' "$1/batch.csv"; }
-diff <(table "$cluster") <(table "$machine") || fail "the cluster's table is another than the machine's"
+diff <(table "$cluster") <(table "$machine") || fail "the cluster's table differs from the machine's"
 [ "$(table "$cluster" | grep -cE "'(ok|doubtful)'")" -ge 18 ] || fail "results are missing: $(cat "$scratch/log/collected")"
-grep -q "too_short: .*too short" "$scratch/log/collected" || fail "the failure is not told"
+grep -q "too_short: .*too short" "$scratch/log/collected" || fail "the failure is not reported"
 
-# Each was begun once, but for what the node took with it.
+# Each was started once, except those that the node lost.
 begun=$(cat "$cluster"/jobs/slurm-*.txt | grep -c ': started$')
 twice=$(cat "$cluster"/jobs/slurm-*.txt | grep ': started$' | sort | uniq -d | wc -l)
-[ "$begun" = 21 ] && [ "$twice" = 1 ] || fail "begun $begun times, $twice jobs twice"
-"$evical" batch "$scratch/jobs.yaml" -o "$cluster" --slurm | grep -q "nothing was submitted" || fail "what has ended was submitted again"
+[ "$begun" = 21 ] && [ "$twice" = 1 ] || fail "$begun starts, $twice jobs started twice"
+"$evical" batch "$scratch/jobs.yaml" -o "$cluster" --slurm | grep -q "nothing was submitted" || fail "finished jobs were submitted again"
 echo "check_slurm: 20 jobs over two nodes, one lost: the same table as on one machine"

@@ -1,5 +1,6 @@
-// Recordings that parse but lie go the whole way from file to verdict: bytes are lies (tests/support/lying_recording.h).
-// Ends in a result or in words, within the fuzzer's bounds of time and memory.
+// Valid recordings with false contents through the whole pipeline: bytes select disturbances
+// (tests/support/lying_recording.h). Must end in a result or an error message, within the fuzzer's limits of
+// time and memory.
 #include "core/base/error.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/fuzz/input_file.h"
@@ -15,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const evical::CameraState& camera : run.result.state.cameras)
       if (!camera.reference_from_camera.translation_m.allFinite()) std::abort();
   } catch (const evical::CalibrationError&) {
-    // what lies are answered with
+    // Disturbed recordings cause this error.
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-// The tables of detections: the same bytes as either, whose columns are found by their names.
+// Tables of detections: the same bytes as either table, whose columns are identified by their names.
 #include "core/base/error.h"
 #include "core/report/detections_csv.h"
 #include "tests/fuzz/input_file.h"

@@ -1,4 +1,4 @@
-"""Small HDF5 files in the layouts of data sets, for fuzzing to begin with: hdf5_seeds.py FOLDER"""
+"""Small HDF5 files in the layouts of data sets, as seeds for fuzzing: hdf5_seeds.py FOLDER"""
 import sys
 
 import h5py

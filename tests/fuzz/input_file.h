@@ -1,4 +1,4 @@
-// The bytes of a fuzzer as a file, for readers that want a path. In memory, and the same file each time.
+// The fuzzer's bytes as a file, for readers that need a path. In memory, and the same file each time.
 #pragma once
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// What stands packed or nested in recordings, without the file around it, which bytes at random seldom get
-// past: event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages, headers of pictures.
+// Packed or nested contents of recordings, without the enclosing file, which random bytes seldom pass:
+// event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages, headers of images.
 #include "core/format/picture_header.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/hdf5/ecf_decoder.h"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace evical;
 
-// Two packets of one topic, so that what a decoder keeps is met too.
+// Two packets of one topic, to test a decoder's state, too.
 void eventPacket(std::string_view bytes) {
   static constexpr std::array<std::string_view, 6> kEncodings = {"evt3",    "mono",        "trigger",
                                                                  "libcaer", "libcaer_cmp", "x"};
@@ -64,7 +64,7 @@ void aedatPacket(std::string_view bytes) {
 
 }  // namespace
 
-// The first byte says what the others are.
+// The first byte selects the kind of the others.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return -1;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);

@@ -1,6 +1,6 @@
-// The readers of recordings, a program a family (EVICAL_FUZZ_FAMILY): the bytes become a file, which is
-// opened by its content, read to its end and inspected, and must be what readers promise. Bytes that begin as
-// no file of the family are passed over.
+// Readers of recordings, one program per family (EVICAL_FUZZ_FAMILY): the bytes become a file, which is
+// opened by its content, read to its end and inspected, and must satisfy the readers' guarantees. Bytes that
+// do not begin like a file of the family are skipped.
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/recording/hdf5/hdf5_reader.h"
@@ -23,8 +23,8 @@ using namespace std::string_view_literals;
 
 struct Family {
   std::string_view name;
-  std::string_view begin;  // of its files; empty for those that may begin with anything
-  const char* file;        // some are told by their names
+  std::string_view begin;  // magic bytes of its files; empty if they may begin with anything
+  const char* file;        // some are identified by their names
 };
 constexpr Family kFamilies[] = {
     {"bag", "#ROSBAG V2.0\n"sv, "input.bag"},
@@ -49,7 +49,7 @@ const Family& family() {
   return chosen;
 }
 
-// What readers promise.
+// Guarantees of readers.
 void checkPacket(const evical::RecordingReader& reader, const evical::Packet& packet) {
   const auto before = [](const evical::Event& a, const evical::Event& b) { return a.time_ns < b.time_ns; };
   const bool ordered = std::is_sorted(packet.events.begin(), packet.events.end(), before);
@@ -68,7 +68,7 @@ void checkPacket(const evical::RecordingReader& reader, const evical::Packet& pa
   }
 }
 
-// The bytes are the list of the pictures and, of one of them, also the content.
+// The bytes are the list of images and also the content of one of them.
 std::unique_ptr<evical::RecordingReader> openPictures(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.parent_path();
   std::filesystem::create_directory(folder / "data");
@@ -77,7 +77,7 @@ std::unique_ptr<evical::RecordingReader> openPictures(const std::filesystem::pat
   return evical::openRecording(folder);
 }
 
-// HDF5 in this process: what ends there is what is looked for.
+// HDF5 in this process: crashes in it are the purpose of the test.
 std::unique_ptr<evical::RecordingReader> opened(const std::filesystem::path& path) {
   if (family().name == "hdf5") return std::make_unique<evical::Hdf5Reader>(path);
   if (family().name == "pictures") return openPictures(path);
@@ -91,7 +91,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!std::string_view(reinterpret_cast<const char*>(data), size).starts_with(family().begin)) return -1;
   try {
     const auto reader = opened(input.write(data, size));
-    // Counting pixels takes ten times as long as reading a small file: only some inputs, told by their size.
+    // Counting pixels takes ten times as long as reading a small file: only some inputs do it, selected by
+    // their size.
     if (size % 8 == 0) {
       evical::inspectionJson(evical::inspectRecording(*reader), true);
       return 0;
@@ -103,7 +104,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     evical::Packet packet;
     while (reader->read(packet)) checkPacket(*reader, packet);
   } catch (const evical::CalibrationError&) {
-    // what bad files are answered with
+    // Bad files cause this error.
   }
   return 0;
 }

@@ -1,5 +1,5 @@
-// run.data: as a file, and the datasets of a small run changed as the input says, for its parts' check sums let no damage
-// through. libhdf5 gets none of it.
+// run.data: as a file, and with the datasets of a small run changed by the input, since the parts' checksums
+// reject damage. libhdf5 itself gets none of it.
 #include "core/pipeline/runs/run_data.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ void damage(const Change& change, std::optional<Hdf5Dataset>& dataset) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string whole = runData(smallRun());
   static const Hdf5Source datasets = runDatasets(whole);
-  static std::map<std::string, std::optional<Hdf5Dataset>> known;  // reading them each time takes long
+  static std::map<std::string, std::optional<Hdf5Dataset>> known;  // reading them each time is slow
   parseRunData({reinterpret_cast<const char*>(data), size});
   std::size_t asked = 0;
   const Hdf5Source changed = [&](const std::string& path) {

@@ -1,4 +1,4 @@
-// Small good files for fuzzing to begin with: `evical_fuzz_seeds FOLDER` makes a folder a target.
+// Small valid files as seeds for fuzzing: `evical_fuzz_seeds FOLDER` creates one folder per target.
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
@@ -70,7 +70,7 @@ void writeAll(RecordingWriter& writer) {
   writer.finish();
 }
 
-// Every format that Evical writes; of folders the files.
+// Every format that Evical writes; for folders, their files.
 void saveWritten(const fs::path& folder) {
   const std::vector<StreamInfo> streams = {{"events", StreamType::Events, "", kSize_px},
                                            {"imu", StreamType::Imu, "", {}}};
@@ -88,7 +88,7 @@ void saveWritten(const fs::path& folder) {
   writeAll(*createCsv(folder / "text", streams));
 }
 
-// DV writes these too; what is not packed is within the fuzzer's reach.
+// DV writes these, too; the fuzzer can modify data that are not compressed.
 void savePlainAedat4(const fs::path& path) {
   const std::vector<aedat::StreamDescription> streams = {{0, "events", "EVTS", "a", kSize_px},
                                                          {1, "imu", "IMUS", "a", {}}};

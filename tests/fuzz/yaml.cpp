@@ -1,5 +1,5 @@
-// Readers of text files, all with the same bytes: sessions, intrinsics, other programs' lenses, results, scenarios with their
-// boards.
+// Readers of text files, all with the same bytes: sessions, intrinsics, other programs' lenses, results,
+// scenarios with their boards.
 #include "core/base/error.h"
 #include "core/foreign/lens_files.h"
 #include "core/format/intrinsics_yaml.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-// Bad files are answered with a CalibrationError and nothing else.
+// Bad files must cause a CalibrationError and nothing else.
 template <class Read>
 void mayFail(Read read) {
   try {

@@ -1,4 +1,4 @@
-# Each command and option that --help tells of is in the manual pages, as man shows them, and in what bash completes:
+# Each command and option of --help must be in the manual pages, as shown by man, and in bash's completions:
 #   check_manual.py EVICAL FOLDER [EVICAL-GUI]
 import os
 import re

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The packages that this build gives: twice the same bytes, what is in them, no complaints of lintian and AppStream, and a command line that
-# calibrates from where it was unpacked to. The bare machine is packaging/test-packages.sh.
-#   check_packages.sh BUILD SCRATCH RECORDING GUI PYTHON
+# The packages of this build: reproducible bytes, contents, no complaints of lintian and AppStream, and a
+# command line that calibrates from the unpacked package. packaging/test-packages.sh tests them on a bare
+# machine.
+# check_packages.sh BUILD SCRATCH RECORDING GUI PYTHON
 set -euo pipefail
 build=$1 scratch=$2 recording=$3 gui=$4 python=$5
 export LC_ALL=C.UTF-8
@@ -10,7 +11,7 @@ fail() {
   echo "FAILED: $*" >&2
   exit 1
 }
-# Packed by gzip, which takes a tenth of the time of the packages' xz.
+# Compressed with gzip, which takes a tenth of the time of the packages' xz.
 pack() { # FOLDER
   rm -rf "${1:?}"
   mkdir -p "$1"
@@ -28,10 +29,11 @@ names="evical libevical-dev"
 [ "$python" = OFF ] || names+=" python3-evical"
 for name in $names; do
   package=$(echo "$scratch/first/${name}"_*.deb)
-  cmp "$package" "$scratch/second/$(basename "$package")" || fail "two times cpack gave two different $name"
+  cmp "$package" "$scratch/second/$(basename "$package")" || fail "two runs of cpack gave different packages $name"
   dpkg-deb -x "$package" "$scratch/root"
 done
-# AppStream 1.0 warns that there is no homepage, which is so. Newer lintian repeats its warnings, which are looked at below.
+# AppStream 1.0 warns correctly that there is no homepage. Newer lintian repeats its warnings, which are
+# checked below.
 without=() tag=appstream-metadata-validation-failed
 ! lintian-explain-tags "$tag" >/dev/null 2>&1 || without=(--suppress-tags "$tag")
 lintian --allow-root "${without[@]}" --fail-on error,warning "$scratch"/first/*.deb || fail "lintian"
@@ -44,7 +46,8 @@ for file in $contents; do
   [ -s "$scratch/root/usr/$file" ] || fail "no /usr/$file in any package"
 done
 [ -n "$(find "$scratch/root" -name EvicalConfig.cmake)" ] || fail "libevical-dev has no EvicalConfig.cmake"
-# Evical depends on Ceres, or, where Ceres is static (Debian 12), on CHOLMOD, whose licence is then in the copyright file.
+# Evical depends on Ceres or, if Ceres is static (Debian 12), on CHOLMOD, whose licence is then in the
+# copyright file.
 depends=$(dpkg-deb -f "$scratch"/first/evical_*.deb Depends)
 if grep -q "libcholmod[0-9]" <<<"$depends"; then
   grep -q "libcholmod: .*GPL-2+" "$scratch/root/usr/share/doc/evical/copyright" || fail "copyright does not mention CHOLMOD's GPL parts"
@@ -59,8 +62,8 @@ if [ "$gui" != OFF ]; then
       [ "$(grep '^[WE]:' <<<"$said" | grep -cv url-homepage-missing)" = 0 ]; } || fail "appstreamcli: $said"
   desktop-file-validate "$scratch/root/usr/share/applications/evical.desktop" || fail "desktop-file-validate"
   version=$(dpkg-deb -f "$scratch"/first/evical_*.deb Version)
-  grep -q "<release version=\"${version%-*}\"" "$scratch"/root/usr/share/metainfo/*.xml || fail "AppStream data know no version ${version%-*}"
-  # Every type that the desktop entry opens is one that we declare, and the other way round.
+  grep -q "<release version=\"${version%-*}\"" "$scratch"/root/usr/share/metainfo/*.xml || fail "AppStream data lack version ${version%-*}"
+  # Every type that the desktop entry opens is declared by us, and vice versa.
   declared=$(grep -o 'mime-type type="[^"]*' "$scratch/root/usr/share/mime/packages/evical.xml" | cut -d'"' -f2 | sort)
   opened=$(sed -n 's/^MimeType=//p' "$scratch/root/usr/share/applications/evical.desktop" | tr ';' '\n' | sed '/^$/d' | sort)
   provided=$(sed -n 's:.*<mediatype>\(.*\)</mediatype>.*:\1:p' "$scratch"/root/usr/share/metainfo/*.xml | sort)
@@ -76,13 +79,13 @@ assert evical.__file__.startswith(sys.argv[1]), evical.__file__
 print(evical.Result.load(sys.argv[2]).cameras)' "$scratch/root" "$scratch/result" || fail "the Python module of the package"
 fi
 
-# Where a tool is missing, it says what to install. All tools but one:
+# If a tool is missing, the message must name the package to install. All tools except one:
 mkdir "$scratch/tools"
 ln -s "$(command -v cpack)" "$(command -v sh)" "$(command -v cmake)" "$(command -v file)" "$(command -v readelf)" "$(command -v gzip)" \
   "$(command -v touch)" "$scratch/tools"
-! said=$(PATH="$scratch/tools" cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack went on without dpkg-dev"
-[[ $said == *"dpkg-shlibdeps is missing"* && $said == *dpkg-dev* ]] || fail "no word of dpkg-dev: $said"
-[ -z "$(find "$scratch/none" -name '*.deb' 2>/dev/null)" ] || fail "a package came without dpkg-dev"
-! said=$(umask 077 && cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack went on with umask 077"
-[[ $said == *"umask 022"* ]] || fail "no word of the umask: $said"
+! said=$(PATH="$scratch/tools" cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack continued without dpkg-dev"
+[[ $said == *"dpkg-shlibdeps is missing"* && $said == *dpkg-dev* ]] || fail "dpkg-dev is not mentioned: $said"
+[ -z "$(find "$scratch/none" -name '*.deb' 2>/dev/null)" ] || fail "a package was built without dpkg-dev"
+! said=$(umask 077 && cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack continued with umask 077"
+[[ $said == *"umask 022"* ]] || fail "the umask is not mentioned: $said"
 echo "Packages: $names"

@@ -1,4 +1,5 @@
-# Installs a build into a folder of its own, builds examples/ with find_package(Evical) from there, and runs the examples.
+# Installs a build into a separate folder, builds examples/ with find_package(Evical) from there, and runs the
+# examples.
 cmake_minimum_required(VERSION 3.25)
 set(prefix "${SCRATCH}/prefix")
 set(examples "${SCRATCH}/examples")
@@ -20,10 +21,10 @@ endfunction()
 file(REMOVE_RECURSE "${prefix}")
 run(ignored "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
 
-# A package that names the folder it was built in serves nobody else.
+# A package that refers to its build folder does not work elsewhere.
 file(GLOB_RECURSE package_files "${prefix}/*/Evical*.cmake")
 if(NOT package_files)
-  message(FATAL_ERROR "${prefix} holds no EvicalConfig.cmake")
+  message(FATAL_ERROR "${prefix} contains no EvicalConfig.cmake")
 endif()
 foreach(file IN LISTS package_files)
   file(STRINGS "${file}" lines REGEX "Dir|DIR|[/]")
@@ -59,7 +60,7 @@ expect("${output}" "board in [1-9][0-9]+ of [0-9]+ windows" detect_board)
 run(output "${examples}/calibrate" "${RECORDING}/session.yaml")
 expect("${output}" "translation .* sigma .*time offset .* ms" calibrate)
 
-# Headers by the package's name alone, and the target spelt as the package is.
+# Headers by the package's name alone, and the target spelt like the package.
 set(prefixed "${SCRATCH}/prefixed")
 file(WRITE "${prefixed}/main.cpp" "#include <evical/base/error.h>
 #include <evical/pipeline/session/session.h>

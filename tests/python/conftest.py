@@ -1,4 +1,4 @@
-"""What the tests share: simulated recordings, and one calibration of them."""
+"""Common fixtures: simulated recordings, and one calibration of them."""
 
 import os
 import pathlib
@@ -37,7 +37,7 @@ def session():
 
 @pytest.fixture(scope="session")
 def calibrated(tmp_path_factory):
-    """The result of the short recording, and the folder that it was written into."""
+    """The result of the short recording, and its folder."""
     folder = tmp_path_factory.mktemp("calibrated") / "result"
     session = evical.Session.load(SIMULATED / "short_bag" / "session.yaml")
     session.set("report.split_half_check", False)
@@ -46,5 +46,5 @@ def calibrated(tmp_path_factory):
 
 @pytest.fixture
 def result_folder(calibrated, tmp_path):
-    """A copy that may be spoiled."""
+    """A copy that a test may damage."""
     return pathlib.Path(shutil.copytree(calibrated[1], tmp_path / "result"))

@@ -1,4 +1,4 @@
-"""The command line, to compare with."""
+"""The command line, for comparisons."""
 
 import os
 import subprocess

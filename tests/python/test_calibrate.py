@@ -18,7 +18,7 @@ from program import program_output
 
 
 def test_the_result_is_the_command_lines(session, tmp_path):
-    """Digit by digit, but for how long it took."""
+    """Equal in every digit, except for computing times."""
     session.save(tmp_path / "session.yaml")
     program_output("calibrate", tmp_path / "session.yaml", "-o", tmp_path / "told", "--quiet")
     evical.calibrate(session, output=tmp_path / "result")
@@ -54,7 +54,7 @@ def test_progress_is_told_in_the_callers_thread(session):
 
 
 def test_other_threads_run_meanwhile(session):
-    """Both are within it at once: each waits for the other in its progress."""
+    """Both run at the same time: each waits for the other in its progress callback."""
     meeting = threading.Barrier(2, timeout=120)
     met = []
 
@@ -109,7 +109,7 @@ def test_ctrl_c_raises_keyboard_interrupt_and_leaves_nothing(session, tmp_path, 
         evical.calibrate(session, output=tmp_path / "result", progress=interrupt)
     print(f"{stage}: interrupted within {time.monotonic() - sent[0]:.3f} s")
     assert not (tmp_path / "result").exists()
-    assert evical.Session.load(session.source).cameras  # all goes on
+    assert evical.Session.load(session.source).cameras  # the calibration continues
 
 
 def test_ctrl_c_keeps_an_earlier_result(session, result_folder):
@@ -124,7 +124,7 @@ def test_ctrl_c_keeps_an_earlier_result(session, result_folder):
 
 
 def test_ctrl_c_ends_a_script_as_any_other(bag):
-    """Sent from outside, with no handler of ours: Python's own traceback, and its exit by the signal."""
+    """Signal from outside, without a handler of the test: Python's own traceback, and exit by the signal."""
     script = ("import evical, sys\n"
               "session = evical.Session.load(sys.argv[1])\n"
               "evical.calibrate(session, progress=lambda s, f: print(s, flush=True))\n")
@@ -217,12 +217,12 @@ def test_a_lens_alone(simulated):
     true = next(iter(truth.values())).intrinsics
     assert found.std.shape == (9,) and found.covariance.shape == (9, 9) and found.views_used > 10
     assert (np.abs(found.intrinsics.focal_length_px - true.focal_length_px) < 6 * found.std[:2]).all()
-    with pytest.raises(evical.InputError, match="is no camera of the session. There are:"):
+    with pytest.raises(evical.InputError, match="is not a camera of the session. Use one of:"):
         evical.intrinsics(session, camera="none")
 
 
 def test_processes_return_results(session):
-    """As docs/python.md says, with the start method spawn."""
+    """The example of docs/python.md, with the start method spawn."""
     spawn = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(max_workers=1, mp_context=spawn) as pool:
         lens = pool.submit(evical.intrinsics, session)

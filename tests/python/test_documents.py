@@ -1,4 +1,4 @@
-"""docs/python.md and docs/notebooks: what they say runs."""
+"""Runs the examples of docs/python.md and docs/notebooks."""
 
 import os
 import re
@@ -59,12 +59,12 @@ def test_a_notebook_runs(source, folder, name, monkeypatch):
 
 
 def kinds(page):
-    """Of each cell's outputs; what is printed may come in one piece or in several."""
+    """Outputs of each cell; printed text may be in one part or in several."""
     return [{output.output_type for output in cell.outputs} for cell in page.cells if cell.cell_type == "code"]
 
 
 def write(page, path):
-    """Anew: EVICAL_WRITE_NOTEBOOKS=1 and this test."""
+    """To write the notebooks again, run this test with EVICAL_WRITE_NOTEBOOKS=1."""
     for cell in page.cells:
         cell.get("metadata", {}).pop("execution", None)
         printed = [output for output in cell.get("outputs", []) if output.output_type == "stream"]
@@ -78,7 +78,7 @@ def write(page, path):
 
 @pytest.mark.parametrize("name", NOTEBOOKS)
 def test_a_notebook_is_stored_as_it_was_run(source, name):
-    """With outputs and pictures, in order, without errors or places of the machine that ran it."""
+    """With outputs and pictures, in order, without errors or paths of the machine that ran it."""
     page = notebook(source, name)
     code = [cell for cell in page.cells if cell.cell_type == "code"]
     assert [cell.execution_count for cell in code] == list(range(1, len(code) + 1))

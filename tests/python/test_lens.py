@@ -20,7 +20,7 @@ def events_at(*pixels):
 
 
 def radtan(points, map):
-    """OpenCV's equations, written down once more."""
+    """OpenCV's equations, implemented independently."""
     x, y = points[..., 0] / points[..., 2], points[..., 1] / points[..., 2]
     k1, k2, p1, p2 = map["distortion"]
     r2 = x * x + y * y

@@ -69,7 +69,7 @@ def test_events_are_the_packets_own_memory_and_outlive_it(bag):
 
 
 def test_memory_does_not_grow_with_the_recording(bag):
-    """A process that reads all of it needs little more than one that reads a packet."""
+    """Reading the whole recording needs little more memory than reading one packet."""
 
     def peak_kb(packets):
         text = ("import evical, itertools, resource, sys\n"
@@ -101,7 +101,7 @@ def test_a_damaged_picture_is_an_error_of_its_own(tmp_path):
     try:
         frames = [frame for packet in read_all(pictures) for frame in packet.frames]
     except evical.InputError:
-        return  # refused as a whole, which is as good
+        return  # refused completely, which is also correct
     for frame in frames:
         with pytest.raises(evical.InputError):
             frame.image

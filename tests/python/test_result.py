@@ -43,7 +43,7 @@ def test_covariances_go_by_name(calibrated):
     np.testing.assert_array_equal(covariance.of(names)[0, 1], covariance["left.rotation.x", "left.time_offset"])
     np.testing.assert_allclose(np.diagonal(covariance.correlation)[covariance.std > 0], 1.0)
     assert len(covariance) == len(covariance.names) == len(covariance.std)
-    with pytest.raises(evical.InputError, match="was not estimated. There are: left.rotation.x"):
+    with pytest.raises(evical.InputError, match="was not estimated. Use one of: left.rotation.x"):
         covariance["left.rotation.w"]
 
 
@@ -64,7 +64,7 @@ def test_a_camera_is_where_its_clock_and_pose_say(calibrated):
     pose = result.trajectory.camera_at("left", 2.0)
     offset_s = left.time_offset_s + 1e-6 * left.clock_drift_ppm * (2.0 - left.clock_drift_at_s)
     np.testing.assert_allclose(pose, result.trajectory.at(2.0 + offset_s) @ left.reference_from_camera, atol=1e-12)
-    with pytest.raises(evical.InputError, match="There are: left"):
+    with pytest.raises(evical.InputError, match="Use one of: left"):
         result.trajectory.camera_at("right", 2.0)
 
 
@@ -96,7 +96,7 @@ def test_nothing_of_a_result_can_be_changed(calibrated):
 
 
 def test_a_result_of_an_older_program_has_what_it_has(result_folder):
-    """run.data of another version, and a result.yaml without what came later."""
+    """run.data of another version, and a result.yaml without later keys."""
     file = result_folder / "run.data"
     data = bytearray(file.read_bytes())
     data[len(data) // 2:] = b""
@@ -114,7 +114,7 @@ def test_a_result_of_an_older_program_has_what_it_has(result_folder):
 def test_without_run_data_there_is_no_trajectory_and_it_says_why(result_folder):
     (result_folder / "run.data").unlink()
     old = evical.Result.load(result_folder)
-    assert old.missing == ["the trajectory: there is no run.data beside result.yaml"]
+    assert old.missing == ["the trajectory: there is no run.data next to result.yaml"]
     assert np.isfinite(old.cameras["left"].reference_from_camera).all() and len(old.covariance) > 10
     with pytest.raises(evical.InputError, match="trajectory: the result has none .*no run.data.*calibrate again"):
         old.trajectory

@@ -41,11 +41,11 @@ def test_a_guess_names_what_the_recording_holds(bag, caplog):
     caplog.set_level(logging.INFO, logger="evical")
     guessed = evical.Session.guess(bag)
     assert list(guessed.cameras) and list(guessed.imus)
-    assert any("board" in record.getMessage() for record in caplog.records)  # what is to be filled in
+    assert any("board" in record.getMessage() for record in caplog.records)  # names of missing entries
 
 
 def test_guesses_of_nothing_are_refused(tmp_path):
-    with pytest.raises(evical.InputError, match="none is given"):
+    with pytest.raises(evical.InputError, match="no path is given"):
         evical.Session.guess()
     with pytest.raises(evical.InputError, match="there is no such file"):
         evical.Session.guess(tmp_path / "none.bag")

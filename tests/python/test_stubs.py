@@ -1,4 +1,4 @@
-"""Type hints: that they are what is there, and that a program with them is checked."""
+"""Type hints: they match the module, and mypy checks a program with them."""
 
 import ast
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Commands that documents show are the program's: each command, option and setting is one that its own help knows, files of the
-repository that they name are there, and boards can be drawn: check_commands.py SOURCE SCRATCH EVICAL [EVICAL-GUI]"""
+"""Commands in documents must match the program: its help has each command, option and setting, files of the repository that
+they name exist, and boards can be drawn: check_commands.py SOURCE SCRATCH EVICAL [EVICAL-GUI]"""
 import os
 import re
 import shlex
@@ -50,7 +50,7 @@ def check(line, where):
         if re.match(r"--?[A-Za-z]", word) and name not in options[command if command in commands else ""]:
             faults.append(f"{where}: evical {command} has no {name}: {line}")
         if word.startswith("config/") and not os.path.exists(f"{root}/{word}"):
-            faults.append(f"{where}: {word} is not there")
+            faults.append(f"{where}: {word} does not exist")
     if command == "board" and re.search(r"-o \S+\.(pdf|svg|html)$", line.split(" # ")[0].strip()):
         boards += 1
         ran = subprocess.run([program, *words[1:]], cwd=scratch, capture_output=True, text=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Links of the repository's own documents lead to files and headings that are there, as GitHub shows them; the guide's page has every
-part of the guide, and pictures are those that packaging/screenshots.sh makes: check_documents.py SOURCE"""
+"""Links in the repository's documents must lead to existing files and headings of GitHub; the guide's page must have every part of
+the guide, and pictures must be those of packaging/screenshots.sh: check_documents.py SOURCE"""
 import os
 import re
 import sys
@@ -16,7 +16,7 @@ def read(path):
 
 
 def anchors(text):
-    """As GitHub makes them: the second of a name has -1."""
+    """GitHub's anchors: the second one of a name ends in -1."""
     found = {}
     for heading in re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL), re.MULTILINE):
         name = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
@@ -39,7 +39,7 @@ for document in documents:
         if os.path.dirname(target) == os.path.normpath(f"{root}/docs/pictures"):
             pictures.add(os.path.basename(target))
         if not os.path.exists(target):
-            faults.append(f"{name}: {link} is not there")
+            faults.append(f"{name}: {link} does not exist")
         elif anchor and anchor not in anchors(read(target)):
             faults.append(f"{name}: {link} has no such heading")
 if count < 50:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Follows every link and anchor of the built site, and looks for Markdown that became no HTML: check_site.py SITE"""
+"""Follows every link and anchor of the built site, and finds Markdown that was not converted to HTML: check_site.py SITE"""
 import os
 import re
 import sys
 from html.parser import HTMLParser
 from urllib.parse import unquote
 
-LOADS = {"script": "src", "img": "src", "link": "href"}  # what a page needs to be shown
+LOADS = {"script": "src", "img": "src", "link": "href"}  # resources that a page loads
 NOT_RENDERED = re.compile(r"\]\(\S+\)|<!-- |^\s*(?:[-*] |\d+\. |\||```|#+ )", re.MULTILINE)
 LARGEST_PICTURE = 200_000
 
@@ -60,7 +60,7 @@ def faults_of(site):
             target, _, anchor = link.partition("#")
             full = os.path.normpath(os.path.join(os.path.dirname(path), unquote(target.split("?")[0]))) if target else path
             if not os.path.isfile(full):
-                faults.append(f"{name}: {link} is not there")
+                faults.append(f"{name}: {link} does not exist")
             elif full in pages and unquote(anchor) not in pages[full].anchors:
                 faults.append(f"{name}: {link} has no such place")
         faults += [f"{name}: Markdown in the text: {text}" for text in page.left_over]

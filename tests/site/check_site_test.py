@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""check_site.py finds what it is there to find: check_site_test.py SCRATCH"""
+"""check_site.py must find each kind of fault: check_site_test.py SCRATCH"""
 import os
 import shutil
 import sys
@@ -10,10 +10,10 @@ from check_site import faults_of
 SOUND = ('<p id="top">A <a href="other.html#there">link</a>, <a href="https://example.org">one outside</a></p>'
          '<pre><code>- [no](link)</code></pre><img src="pictures/a.png" alt="words">')
 SPOILT = {
-    "a page that is not there": (SOUND + '<a href="gone.html">x</a>', "gone.html is not there"),
-    "an anchor that is not there": (SOUND + '<a href="other.html#gone">x</a>', "no such place"),
-    "an anchor of its own page": (SOUND + '<a href="#gone">x</a>', "no such place"),
-    "a picture that is not there": (SOUND + '<img src="gone.png" alt="x">', "gone.png is not there"),
+    "a missing page": (SOUND + '<a href="gone.html">x</a>', "gone.html does not exist"),
+    "a missing anchor": (SOUND + '<a href="other.html#gone">x</a>', "no such place"),
+    "a missing anchor of the same page": (SOUND + '<a href="#gone">x</a>', "no such place"),
+    "a missing picture": (SOUND + '<img src="gone.png" alt="x">', "gone.png does not exist"),
     "a picture without words": (SOUND + '<img src="pictures/a.png">', "has no words"),
     "a script from the network": (SOUND + '<script src="https://example.org/a.js"></script>', "from the network"),
     "a list that became none": (SOUND + "<p>Text\n- item</p>", "Markdown in the text"),
@@ -38,10 +38,10 @@ if faults(SOUND):
 for name, (page, words) in SPOILT.items():
     found = faults(page)
     if not any(words in fault for fault in found):
-        wrong.append(f"{name} is not told: {found}")
+        wrong.append(f"{name} is not reported: {found}")
 shutil.rmtree(scratch)
 os.makedirs(scratch)
 if not faults_of(scratch)[1]:
-    wrong.append("an empty site is not told")
+    wrong.append("an empty site is not reported")
 print("\n".join(wrong) or f"{len(SPOILT) + 1} faults are found")
 sys.exit(bool(wrong))

@@ -33,7 +33,7 @@ scratch, wrong = sys.argv[2], []
 
 
 def outcome(changed, most):
-    """The exit code and the output for the good tree with these files changed."""
+    """Exit code and output for the good tree with these files changed."""
     shutil.rmtree(scratch, ignore_errors=True)
     with open(f"{sys.argv[1]}/docs/style.md", encoding="utf-8") as style:
         tree = {**GOOD, **changed, "docs/style.md": style.read()}

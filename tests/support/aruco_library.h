@@ -1,4 +1,5 @@
-// OpenCV's markers by one name each: OpenCV 4.7 renamed them and hands dictionaries out by value.
+// OpenCV's markers under the same names for all versions: OpenCV 4.7 renamed them and returns dictionaries by
+// value.
 #pragma once
 
 #include <opencv2/aruco.hpp>
@@ -16,7 +17,7 @@ inline cv::Ptr<cv::aruco::Dictionary> dictionary(int set) {
 inline void drawMarker(const cv::aruco::Dictionary& dictionary, int id, int side_px, cv::Mat& picture) {
   cv::aruco::generateImageMarker(dictionary, id, side_px, picture);
 }
-// As OpenCV drew them until 4.6.
+// Drawn like in OpenCV up to 4.6.
 inline void drawCharucoBoard(const cv::Ptr<cv::aruco::Dictionary>& dictionary, const cv::Size& squares,
                              float square_m, float marker_m, const cv::Size& size_px, cv::Mat& picture) {
   cv::aruco::CharucoBoard board(squares, square_m, marker_m, *dictionary);

@@ -1,4 +1,4 @@
-// Whole files, as tests compare them.
+// Whole files, for comparisons in tests.
 #pragma once
 
 #include <QByteArray>

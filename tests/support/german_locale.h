@@ -1,4 +1,4 @@
-// A desktop whose numbers have decimal commas: made with localedef, since test machines have no such locale.
+// A locale with decimal commas, created with localedef, since test machines have no such locale.
 #pragma once
 
 #include <QProcess>
@@ -10,7 +10,7 @@
 
 namespace evical::test {
 
-// While it lives, strtod reads "0,5".
+// During its lifetime, strtod reads "0,5".
 class GermanLocale {
  public:
   GermanLocale() {

@@ -35,7 +35,7 @@ Scenario smallScenario() {
   return scenario;
 }
 
-// The share of the items from the second to the third byte.
+// The items between the fractions of the second and the third byte.
 template <class Item>
 std::span<Item> part(std::vector<Item>& items, std::span<const std::uint8_t> lie) {
   const auto [from, to] = std::minmax(lie[1], lie[2]);
@@ -62,7 +62,7 @@ void remove(std::vector<Item>& items, std::span<Item> gone) {
 
 template <class Item>
 void bringIntoOrder(std::vector<Item>& items) {
-  constexpr std::int64_t kEarliest_ns = 0, kLatest_ns = 4'000'000'000'000'000'000;  // what a bag can hold
+  constexpr std::int64_t kEarliest_ns = 0, kLatest_ns = 4'000'000'000'000'000'000;  // limit of a bag
   for (Item& item : items) item.time_ns = std::clamp(item.time_ns, kEarliest_ns, kLatest_ns);
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.time_ns < b.time_ns; });
@@ -131,7 +131,7 @@ void LyingRecording::write(Content content) const {
       {{session.cameras.front().stream, StreamType::Events, "", session.cameras.front().resolution_px},
        {session.imus.front().stream, StreamType::Imu, "", {}}},
       false);
-  // A message each some thousand events, whatever their times.
+  // A message per some thousand events, for any times.
   constexpr std::size_t kMessage = 4000, kSamples = 40;
   for (std::size_t i = 0; i < content.events.size(); i += kMessage)
     writer->write(0, EventSpan(content.events).subspan(i, std::min(kMessage, content.events.size() - i)));

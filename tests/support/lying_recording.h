@@ -1,5 +1,5 @@
-// Recordings that parse but lie: a good one of a few seconds, its times and values changed as bytes say. For the fuzz
-// target `calibrate`, and for a test that runs over some of its inputs.
+// Valid recordings with false contents: a good one of a few seconds, with times and values changed according
+// to bytes. For the fuzz target `calibrate`, and for a test that runs over some of its inputs.
 #pragma once
 
 #include "core/data/event.h"
@@ -16,11 +16,11 @@ namespace evical::test {
 
 class LyingRecording {
  public:
-  // Simulates the good one; files go to `folder`.
+  // Simulates the good recording; files are written to `folder`.
   explicit LyingRecording(std::filesystem::path folder);
 
-  // Six bytes a lie, four lies at most: what, from where to where, how large, of which sign and axis.
-  // Without any it is the good one.
+  // Six bytes per disturbance, four at most: kind, begin, end, size, sign and axis. Without any it is the
+  // good recording.
   Session tell(std::span<const std::uint8_t> lies) const;
 
  private:

@@ -33,7 +33,7 @@ std::vector<EdgeSlope> edgeSlopes(const MovingCamera& camera, const LensRays& le
   std::normal_distribution<double> normal;
   std::vector<EdgeSlope> slopes;
   constexpr double kLeastSpeed_px_s = 20.0;
-  // A camera that stands still has none.
+  // A camera at rest has none.
   for (int tried = 0; tried < 20 * camera.slopes && static_cast<int>(slopes.size()) < camera.slopes;
        ++tried) {
     const int x = static_cast<int>(346 * part(generator)), y = static_cast<int>(260 * part(generator));

@@ -1,4 +1,4 @@
-// For tests that change the numbers of a result.
+// For tests that change the values of a result.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -7,7 +7,7 @@
 
 namespace evical::test {
 
-// `named`'s numbers, from now on shared with nobody else.
+// The values of `named`, from now on not shared.
 inline CalibrationResult& ownResult(NamedResult& named) {
   const auto copy = std::make_shared<CalibrationResult>(*named.result);
   named.result = copy;

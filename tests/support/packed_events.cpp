@@ -9,7 +9,7 @@ std::uint64_t microseconds(const Event& event) {
   return static_cast<std::uint64_t>(event.time_ns / 1000);
 }
 
-// Events from `first` on that fit into a vector of `width` pixels: same time, row and polarity, x upwards.
+// Events from `first` on that fit into a vector of `width` pixels: same time, row and polarity, increasing x.
 std::size_t endOfVector(EventSpan events, std::size_t first, unsigned width) {
   std::size_t end = first + 1;
   while (end < events.size() && events[end].time_ns / 1000 == events[first].time_ns / 1000 &&

@@ -1,5 +1,4 @@
-// Encoders of formats that cameras write and Evical only reads: tests and benchmarks
-// make their files with them.
+// Encoders of formats that cameras write and Evical only reads, for files of tests and benchmarks.
 #pragma once
 
 #include "core/data/event.h"
@@ -10,7 +9,7 @@
 
 namespace evical::test {
 
-// The data behind the header; times are cut to us, events must be in order of time.
+// The data after the header; times are truncated to us, events must be in order of time.
 std::string encodeEvt2(EventSpan events);
 std::string encodeEvt21(EventSpan events, bool halves_exchanged);
 std::string encodeEvt3(EventSpan events);  // events of one row, time and polarity as vectors

@@ -1,5 +1,5 @@
-// One thing at a time that a session says wrongly, or that a rig does: for the benchmark evical_benchmarks stress, and for
-// tests of verdicts. What the events show is left as it is, so that the front end's work serves for all.
+// Single errors of a session or of a rig, for the benchmark evical_benchmarks stress, and for tests of
+// verdicts. The events are not changed, so that all share the front end's results.
 #pragma once
 
 #include "core/pipeline/pass/recording_pass.h"
@@ -14,7 +14,7 @@
 
 namespace evical::test {
 
-// What is true of a recording, what its session says, and what was measured.
+// The truth of a recording, its session, and the measurements.
 struct Recorded {
   Scenario scenario;
   Session session;
@@ -22,15 +22,15 @@ struct Recorded {
 };
 
 enum class PerturbedStage {
-  Measurements,  // of circles and samples, or what the session says of them
-  FrontEnd,      // the session before the front end sees with it
+  Measurements,  // of circles and samples, or of their description in the session
+  FrontEnd,      // of the session before the front end uses it
 };
 
 struct Perturbation {
   std::string_view name;
   std::string_view unit;
   std::vector<double> sizes;
-  // One of these is part of a reason that names the cause, whatever its letters' case.
+  // A reason that names the cause contains one of these, in any letter case.
   std::vector<std::string_view> causes;
   void (*apply)(Recorded& recorded, double size);
   PerturbedStage stage = PerturbedStage::Measurements;
@@ -39,13 +39,13 @@ struct Perturbation {
 };
 
 std::span<const Perturbation> perturbations();
-// The one of this name; throws CalibrationError (BadInput) where there is none.
+// The perturbation of this name; throws CalibrationError (BadInput) if there is none.
 const Perturbation& perturbation(std::string_view name);
 
-// What a session's time_range_s leaves of it.
+// Restricts it to a session's time_range_s.
 void cutTo(const std::array<double, 2>& range_s, Recorded& recorded);
 
-// As the pipeline tells it: several are joined by semicolons, the first is the one that people act on.
+// In the pipeline's form: several are joined by semicolons, and the first is the one to act on.
 std::string_view firstReason(std::string_view reason);
 
 }  // namespace evical::test

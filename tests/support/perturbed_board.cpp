@@ -6,7 +6,8 @@
 namespace evical::test {
 namespace {
 
-// Moves every circle to where it is seen if the board's points lie `displacement(point)` from where they should.
+// Moves every circle to its image if the board's points deviate from their nominal positions by
+// `displacement(point)`.
 template <class Displacement>
 void deformBoard(Recorded& recorded, Displacement&& displacement) {
   moveCircles(recorded, [&](const RigidTransform& camera_from_world, const Eigen::Vector3d& point_m,
@@ -27,7 +28,8 @@ void stretch(Recorded& recorded, double percent) {
   });
 }
 
-// Its middle stands out by this, as of paper that has come off in the middle: a parabola along the columns.
+// The board's middle is bowed by this, like paper that is detached in the middle: a parabola along the
+// columns.
 void bow(Recorded& recorded, double height_mm) {
   const Board& board = recorded.scenario.board;
   const double length_m = board.point_m(board.rows - 1, 0).y();

@@ -12,7 +12,7 @@
 namespace evical::test {
 namespace {
 
-// What the session says; circles are then those that the front end sees through it.
+// Sets the session's lens; circles are then those that the front end sees through it.
 template <class Change>
 void changeLens(Recorded& recorded, Change&& change) {
   for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
@@ -45,7 +45,7 @@ void distortion(Recorded& recorded, double share) {
   });
 }
 
-// The session takes a lens for one of the other kind, with a focal length that fits in the middle.
+// The session assumes a lens of the other kind, with a focal length that fits in the image centre.
 void otherModel(Recorded& recorded, double) {
   changeLens(recorded, [](CameraIntrinsics& lens) {
     lens.model = lens.model == CameraModel::PinholeRadtan ? CameraModel::PinholeEquidistant
@@ -59,7 +59,7 @@ void shadeSwapped(Recorded& recorded, double) {
   shade = shade == CircleShade::Dark ? CircleShade::Bright : CircleShade::Dark;
 }
 
-// From 60 % of the recording on the camera looks elsewhere; truth is where it looked before.
+// From 60 % of the recording on the camera has another orientation; truth is the first one.
 void cameraMoved(Recorded& recorded, double angle_deg) {
   constexpr double kFrom = 0.6;
   const Eigen::Quaterniond turn(
@@ -85,7 +85,7 @@ void hide(Recorded& recorded, Hidden&& isHidden) {
   }
 }
 
-// A hand that comes every two seconds for one, somewhere else each time, and hides what is near.
+// A hand that appears for one second in every two, each time elsewhere, and hides nearby circles.
 void handOverBoard(Recorded& recorded, double share) {
   const Board& board = recorded.scenario.board;
   const Eigen::Vector2d far_m = board.point_m(board.pointCount() - 1);

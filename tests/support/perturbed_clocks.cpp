@@ -54,7 +54,7 @@ void lostSamples(Recorded& recorded, double percent) {
   std::erase_if(samplesOf(recorded), [&](const ImuSample&) { return uniform(generator) < percent; });
 }
 
-// Runs of samples, as a packet holds them: 50 ms each.
+// Runs of samples like those of a packet: 50 ms each.
 void lostPackets(Recorded& recorded, double count) {
   constexpr std::int64_t kLength_ns = 50'000'000;
   std::mt19937_64 generator(recorded.scenario.seed);
@@ -66,7 +66,7 @@ void lostPackets(Recorded& recorded, double count) {
   }
 }
 
-// Drivers that stamp messages when they get them: this many at a time.
+// Drivers that stamp messages on arrival: this many at a time.
 void batches(Recorded& recorded, double samples) {
   simulateFaults(recorded, [&](ImuFaults& faults) { faults.batch = static_cast<int>(samples); });
 }

@@ -67,7 +67,7 @@ void mirrorGyroscope(Recorded& recorded, double axis) {
     sample.angular_rate_rad_s = mirrored(static_cast<int>(axis)) * sample.angular_rate_rad_s;
   });
 }
-// The next axis for each: a rotation of 120 degrees, so that nothing is mirrored.
+// Each axis becomes the next one: a rotation of 120 degrees, so that nothing is mirrored.
 void permuteGyroscope(Recorded& recorded, double) {
   changeSamples(recorded, [](ImuSample& sample) {
     const Eigen::Vector3d w = sample.angular_rate_rad_s;
@@ -95,7 +95,7 @@ void deadAccelerometer(Recorded& recorded, double axis) {
   changeSamples(recorded, [&](ImuSample& s) { s.specific_force_m_s2[static_cast<int>(axis)] = 0.0; });
 }
 
-// At this share of what the fastest axis reaches.
+// At this share of the fastest axis's maximum.
 void clipRates(Recorded& recorded, double share) {
   double largest = 0.0;
   changeSamples(recorded, [&](const ImuSample& s) {
@@ -124,7 +124,7 @@ void spikes(Recorded& recorded, double count) {
   }
 }
 
-// Samples that are no numbers, which do not get past whoever reads a recording (SessionRecording).
+// Samples that are NaN, which readers of recordings exclude (SessionRecording).
 void notNumbers(Recorded& recorded, double count) {
   std::mt19937_64 generator(recorded.scenario.seed);
   for (int k = 0; k < static_cast<int>(count); ++k)
@@ -132,7 +132,7 @@ void notNumbers(Recorded& recorded, double count) {
                               static_cast<std::ptrdiff_t>(anySample(recorded, generator)));
 }
 
-// Of another run of the same rig.
+// From another run of the same rig.
 void otherImu(Recorded& recorded, double) {
   Scenario other = recorded.scenario;
   other.seed += 1000;
@@ -145,7 +145,7 @@ void lowPass(Recorded& recorded, double cutoff_hz) {
 void gSensitivity(Recorded& recorded, double rad_s_per_m_s2) {
   simulateFaults(recorded, [&](ImuFaults& faults) { faults.g_sensitivity_rad_s_per_m_s2 = rad_s_per_m_s2; });
 }
-// The accelerometer's steps against the gyroscope's, as 8 g and 500 deg/s of one word have them.
+// The accelerometer's step relative to the gyroscope's, as for 8 g and 500 deg/s in one word.
 void coarseSamples(Recorded& recorded, double step_rad_s) {
   constexpr double kForcePerRate = 9.0;
   simulateFaults(recorded, [&](ImuFaults& faults) {
@@ -153,7 +153,7 @@ void coarseSamples(Recorded& recorded, double step_rad_s) {
     faults.accelerometer_step_m_s2 = kForcePerRate * step_rad_s;
   });
 }
-// Over 50 ms, which no density tells.
+// Over 50 ms, which no noise density describes.
 void wanderingNoise(Recorded& recorded, double rad_s) {
   constexpr double kForcePerRate = 10.0, kTime_s = 0.05;
   simulateFaults(recorded, [&](ImuFaults& faults) {
@@ -162,7 +162,7 @@ void wanderingNoise(Recorded& recorded, double rad_s) {
     faults.wander_time_s = kTime_s;
   });
 }
-// Of the gyroscope, and the accelerometer's ten times as large; the session says nothing of it.
+// Drift of the gyroscope, and ten times as large of the accelerometer; the session does not state it.
 void walkingBiases(Recorded& recorded, double rad_s2_per_root_hz) {
   constexpr double kForcePerRate = 10.0;
   recorded.scenario.imus.front().gyroscope_walk = rad_s2_per_root_hz;
@@ -180,7 +180,7 @@ void statedNoise(Recorded& recorded, double times) {
 
 std::vector<Perturbation> imuPerturbations() {
   return {{"accelerometer late", "ms", {1, 3, 5}, {"delay", "late"}, accelerometerLate},
-          {"gyroscope turned", "deg", {0.3, 1, 3}, {"gyroscope seems to be turned"}, gyroscopeTurned},
+          {"gyroscope turned", "deg", {0.3, 1, 3}, {"gyroscope seems misaligned"}, gyroscopeTurned},
           {"both mirrored", "axis", {0, 1, 2}, {"left-handed", "mirror"}, mirrorBoth},
           {"both swapped", "", {1}, {"left-handed", "swapped"}, swapBoth},
           {"gyroscope swapped", "", {1}, {"left-handed", "swapped", "permuted"}, swapGyroscope},
@@ -202,7 +202,7 @@ std::vector<Perturbation> imuPerturbations() {
           {"coarse samples",
            "rad/s",
            {3e-4, 3e-3, 3e-2},
-           {"noise density", "steps", "at its limit"},
+           {"noise density", "steps", "at its limit", "saturated"},
            coarseSamples},
           {"wandering noise",
            "rad/s",

@@ -1,4 +1,4 @@
-// What the sources of perturbations have in common.
+// Common parts of the sources of perturbations.
 #pragma once
 
 #include "core/geometry/camera_model.h"
@@ -12,7 +12,7 @@
 
 namespace evical::test {
 
-// By what they perturb; perturbations() has them all.
+// Grouped by the perturbed quantity; perturbations() has them all.
 std::vector<Perturbation> boardPerturbations();  // and gravity
 std::vector<Perturbation> cameraPerturbations();
 std::vector<Perturbation> clockPerturbations();
@@ -37,8 +37,8 @@ void simulateFaults(Recorded& recorded, Change&& change) {
   simulateImuAnew(recorded);
 }
 
-// Moves every circle by as much as the image of what `pairAt(camera_from_world, point_m, view)` gives moves: where its
-// centre is in the camera by the truth, and where it shall be seen instead, in metres.
+// Moves every circle by the displacement of the image of `pairAt(camera_from_world, point_m, view)`: from its
+// true centre in the camera to the perturbed one, in metres.
 template <class PairAt>
 void moveCircles(Recorded& recorded, PairAt&& pairAt) {
   const SinusoidMotion motion(recorded.scenario);

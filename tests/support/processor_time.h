@@ -1,4 +1,4 @@
-// Time that processors have computed for the caller. Other programs do not lengthen it, waiting neither.
+// Computing time of the caller. Other programs and waiting do not increase it.
 #pragma once
 
 #include <ctime>

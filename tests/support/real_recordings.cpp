@@ -31,7 +31,7 @@ QByteArray read(const QString& file) {
   return in.open(QIODevice::ReadOnly) ? in.readAll() : QByteArray();
 }
 
-// The lines behind the first, in columns.
+// The lines after the first, in columns.
 std::vector<QList<QByteArray>> rowsOf(const QByteArray& table) {
   std::vector<QList<QByteArray>> rows;
   const QList<QByteArray> lines = table.split('\n');
@@ -40,7 +40,7 @@ std::vector<QList<QByteArray>> rowsOf(const QByteArray& table) {
   return rows;
 }
 
-// "frame_ns, tag, corner, x_px, y_px, ...", corners of a tag against the clock from the bottom left.
+// "frame_ns, tag, corner, x_px, y_px, ...", corners of a tag counter-clockwise from the bottom left.
 QByteArray tagPoints(const QByteArray& corners) {
   QByteArray points = "time_ns,point,x_px,y_px\n";
   for (const QList<QByteArray>& row : rowsOf(corners))
@@ -49,8 +49,8 @@ QByteArray tagPoints(const QByteArray& corners) {
   return points;
 }
 
-// "time, col, row, x_px, y_px[, first event, last event]": circles of one message are taken for one view at the middle
-// of what they were measured in.
+// "time, col, row, x_px, y_px[, first event, last event]": circles of one message form one view at the middle
+// of their measurement interval.
 QByteArray gridPoints(const QByteArray& table, int cols) {
   std::map<QByteArray, std::vector<QList<QByteArray>>> views;
   for (const QList<QByteArray>& row : rowsOf(table)) views[row[0]].push_back(row);

@@ -100,7 +100,7 @@ Pattern charuco(const PrintedBoard& printed) {
   };
 }
 
-// Where the board's plane is behind the corners of all pixels.
+// Board coordinates behind the corners of all pixels.
 std::vector<Eigen::Vector2d> planeBehind(const CameraIntrinsics& camera,
                                          const RigidTransform& camera_from_board) {
   const RigidTransform board_from_camera = inverse(camera_from_board);
@@ -145,7 +145,7 @@ Pattern patternOf(const PrintedBoard& printed) {
 
 GrayImage renderBoard(const PrintedBoard& printed, const CameraIntrinsics& camera,
                       const RigidTransform& camera_from_board, const Exposure& exposure) {
-  // Each part of a pixel at another height and breadth, so that edges along rows are as fine as others.
+  // Each sample of a pixel at a different height and width, so that edges along rows are as fine as others.
   constexpr int kParts = 25;
   const Pattern pattern = patternOf(printed);
   const std::vector<Eigen::Vector2d> corners = planeBehind(camera, camera_from_board);

@@ -1,4 +1,4 @@
-// Pictures of boards with a known truth: every pixel the mean over its area of the pattern behind it.
+// Images of boards with a known truth: every pixel is the mean of the pattern over its area.
 #pragma once
 
 #include "core/frames/found_point.h"
@@ -13,11 +13,11 @@
 
 namespace evical {
 
-// What a board's numbers leave open.
+// Properties of a board that its parameters do not determine.
 struct PrintedBoard {
   Board board;
   int border_bits = 2;           // AprilGrid
-  int dictionary = 0;            // ChArUco: OpenCV's number
+  int dictionary = 0;            // ChArUco: OpenCV's index
   bool first_is_bright = false;  // ChArUco
 };
 
@@ -28,7 +28,7 @@ struct Exposure {
   unsigned seed = 1;
 };
 
-// 752 x 480 pixels, and a lens that bends lines.
+// 752 x 480 pixels, and a lens with distortion.
 CameraIntrinsics distortingCamera();
 
 // Brightness of the board's plane, 0 to 1.
@@ -37,15 +37,15 @@ std::function<double(const Eigen::Vector2d&)> patternOf(const PrintedBoard& prin
 GrayImage renderBoard(const PrintedBoard& printed, const CameraIntrinsics& camera,
                       const RigidTransform& camera_from_board, const Exposure& exposure);
 
-// Where a point is: of a circle, where the lens puts its ellipse's centre. Nothing behind the camera.
+// Image of a point; for a circle, the image of its ellipse's centre. Empty behind the camera.
 std::optional<Eigen::Vector2d> truePoint(const Board& board, int point, const CameraIntrinsics& camera,
                                          const RigidTransform& camera_from_board);
 
-// Of boards that look the same upside down either end may be the first: points by the numbers that they truly have.
+// Boards that look the same upside down may start at either end: points by their true indices.
 FoundPoints asTrue(FoundPoints points, const Board& board, const CameraIntrinsics& camera,
                    const RigidTransform& camera_from_board);
 
-// The camera's view of the board's middle from a distance, turned by rotation vector about it.
+// The camera's view of the board's centre from a distance, rotated by the rotation vector about it.
 RigidTransform lookAt(const Board& board, double distance_m, const Eigen::Vector3d& turn_rad,
                       const Eigen::Vector2d& beside_m = Eigen::Vector2d::Zero());
 

@@ -17,7 +17,7 @@
 namespace evical::test {
 namespace {
 
-// Of lens and noise as the session has them, which need not be true.
+// The session's lens and noise, which need not be true.
 DetectionResult passWith(const Scenario& scenario, const CameraIntrinsics& lens,
                          BoardObservations observations) {
   const Scenario said = asSessionSays(scenario);

@@ -10,10 +10,10 @@ namespace evical::test {
 
 Session sessionFor(const Scenario& scenario);
 
-// The IMUs' samples, and the first camera's circles as the front end finds them in the simulated events, looking
-// for the session's board.
+// The IMUs' samples, and the first camera's circles as detected by the front end in the simulated events,
+// with the session's board.
 DetectionResult detectedPass(const Scenario& scenario, const Session& session);
-// The same with circles as a perfect front end sees them, with noise: without events, and quickly.
+// The same with circles of an ideal front end, with noise: fast, without events.
 DetectionResult perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s);
 
 NamedResult truthOf(const Scenario& scenario);

@@ -1,4 +1,4 @@
-// Circles of one lens as a front end reports them that sees with another.
+// Circles of one lens as reported by a front end that uses another.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -8,7 +8,7 @@
 
 namespace evical::test {
 
-// From the ideal pixels of `truth` to those of `lens`; small figures change as their place does.
+// From the ideal pixels of `truth` to those of `lens`; small shapes change like their position.
 inline void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens,
                        BoardObservations& observations) {
   for (BoardView& view : observations.views) {

@@ -1,5 +1,4 @@
-// A session and what its front end would have found, by simulation without
-// events: seconds instead of minutes.
+// A session and the detections of its front end, simulated without events: seconds instead of minutes.
 #pragma once
 
 #include "core/pipeline/pass/recording_pass.h"
@@ -16,7 +15,7 @@ struct SimulatedPass {
   DetectionResult pass;
 };
 
-// A scenario of config/scenarios, shortened; circle centres with a noise of 0.05 px.
+// A shortened scenario of config/scenarios; circle centres with a noise of 0.05 px.
 SimulatedPass simulatePass(double duration_s, const std::string& scenario = "davis346");
 SimulatedPass simulatePass(double duration_s, const Scenario& scenario);
 

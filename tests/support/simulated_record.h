@@ -1,4 +1,4 @@
-// What a check without a board keeps of a camera, from a scenario's simulated events.
+// The record of a camera in a check without a board, from a scenario's simulated events.
 #pragma once
 
 #include "core/egomotion/camera_record.h"
@@ -9,10 +9,10 @@ namespace evical::test {
 
 struct SimulatedRecord {
   CameraRecord record;
-  double processor_s = 0.0;  // of this thread, that the simulation did not take
+  double processor_s = 0.0;  // of this thread, without the simulation
 };
 
-// Of its first camera.
+// The record of its first camera.
 SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptions& options);
 
 }  // namespace evical::test

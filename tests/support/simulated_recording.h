@@ -1,4 +1,5 @@
-// Recordings that several tests read. Each is simulated once in a build folder, by the first test that asks for it.
+// Recordings that several tests read. Each is simulated once in a build folder, by the first test that needs
+// it.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +8,8 @@
 
 namespace evical::test {
 
-// The session file of the recording of this name. `make` writes it and all that it needs into a folder, session.yaml last. Tests
-// that change files copy them first.
+// The session file of the recording with this name. `make` writes it and all required files into a folder,
+// session.yaml last. Tests that change files copy them first.
 std::filesystem::path simulatedOnce(const std::string& name,
                                     const std::function<void(const std::filesystem::path& folder)>& make);
 

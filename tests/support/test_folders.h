@@ -1,16 +1,16 @@
-// Where the project's own files are that tests read, and where tests leave pictures. Functions, not macros of the compiler's: else
-// every test would be compiled anew in another checkout, ccache or not.
+// Folders of the project's own files that tests read, and of pictures that tests write. These are functions,
+// not compiler macros: otherwise every test would be recompiled in another checkout, even with ccache.
 #pragma once
 
 #include <string>
 
 namespace evical::test {
 
-// `below`: as seen from the project's root.
+// `below`: relative to the project's root.
 std::string sourcePath(const std::string& below);
-// `below`: as seen from the build folder.
+// `below`: relative to the build folder.
 std::string buildPath(const std::string& below);
-// `name`: below config/scenarios, without its ending.
+// `name`: below config/scenarios, without extension.
 std::string scenarioPath(const std::string& name);
 
 }  // namespace evical::test

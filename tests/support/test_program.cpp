@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     for (const auto& [name, runner] : runners()) std::fprintf(stderr, "  %s\n", name.c_str());
     return 2;
   }
-  argv[1] = argv[0];  // the test's own arguments begin behind its name
+  argv[1] = argv[0];  // the test's own arguments follow its name
   const Application application(--argc, ++argv);
   QTEST_SET_MAIN_SOURCE_PATH
   return asked->second(argc, argv);

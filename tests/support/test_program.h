@@ -1,6 +1,5 @@
-// A folder's tests in one program: each source registers its test class, and the program
-// runs the one that is asked for by the source's name, with Qt Test's own arguments
-// behind it: `test_core_geometry tst_so3_spline -v2`.
+// A folder's tests in one program: each source registers its test class, and the program runs the one with
+// the given source name, followed by Qt Test's own arguments: `test_core_geometry tst_so3_spline -v2`.
 #pragma once
 
 #include <QtTest>
@@ -9,7 +8,7 @@ namespace evical::test_program {
 
 using TestRunner = int (*)(int argc, char** argv);
 
-// `source`: the test's file, whose name without folder and ending is the test's name.
+// `source`: the test's file; its name without folder and extension is the test's name.
 struct TestRegistration {
   TestRegistration(const char* source, TestRunner runner);
 };

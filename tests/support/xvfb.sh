@@ -1,5 +1,5 @@
-# To be sourced: a display without a screen, in folders of its own. Wants `scratch`, a folder; what is started here
-# ends with stopDisplay.
+# To be sourced: a display without a screen, in separate folders. Needs `scratch`, a folder; stopDisplay ends
+# all programs that are started here.
 
 # WIDTHxHEIGHT
 startDisplay() {
@@ -9,12 +9,12 @@ startDisplay() {
   export DISPLAY=":$(cat "$scratch/display")" QT_QPA_PLATFORM=xcb XDG_CONFIG_HOME="$scratch" XDG_DATA_HOME="$scratch"
 }
 
-# Its windows are shown, moved and focused by openbox.
+# Openbox shows, moves and focuses its windows.
 startWindowManager() {
   export HOME="$scratch"
   openbox 2>/dev/null &
   manager_pid=$!
-  # It manages as soon as the root window says who does.
+  # It is ready as soon as the root window names the window manager.
   for _ in $(seq 100); do
     xdotool get_desktop >/dev/null 2>&1 && break
     sleep 0.1

@@ -75,7 +75,7 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
     process.waitForReadyRead(20);
     errors += QString::fromUtf8(process.readAllStandardError());
   }
-  // A process that has ended has the number 0, which means everybody here.
+  // A process that has ended has the id 0, which would signal the whole process group.
   if (const auto number = static_cast<pid_t>(process.processId()); number > 0) ::kill(number, signal);
   return finished(process, patience_s, errors);
 }

@@ -1,4 +1,4 @@
-// The program as people run it, and recordings that were simulated once for all of these tests.
+// The program as users run it, and recordings that are simulated once for all of these tests.
 #pragma once
 
 #include <QByteArray>
@@ -20,7 +20,7 @@ struct Outcome {
 
 Outcome runProgram(const QStringList& arguments, int patience_s = 120);
 
-// The same where whoever starts it ignores SIGCHLD, as some init systems and job runners do.
+// The same if the parent process ignores SIGCHLD, like some init systems and job runners.
 Outcome runProgramWithoutChildSignals(const QStringList& arguments, int patience_s = 120);
 
 // The same with standard streams as a shell redirects them: "2>&-".
@@ -29,7 +29,7 @@ Outcome runProgramRedirected(const QString& redirection, const QStringList& argu
 // The same with the largest file it may write, as `ulimit -f` sets it; for full disks.
 Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024);
 
-// Starts it, sends the signal when `ready` says so of what stderr shows (or after `patience_s`), and waits
+// Starts it, sends the signal when `ready` accepts its output on stderr (or after `patience_s`), and waits
 // for its end.
 Outcome interruptProgram(const QStringList& arguments, int signal,
                          const std::function<bool(const QString&)>& ready, int patience_s = 60);
@@ -37,18 +37,18 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
 // Folders of the simulated recordings: "blinking", "intrinsics", "second" (the short one's rig), "short" (text), "short_bag", "still".
 QString simulated(const QString& name);
 
-// The path of one of the project's own files, given as seen from its root.
+// The path of one of the project's own files, relative to its root.
 QString inSources(const QString& below);
 
 QByteArray readFile(const QString& path);
 void writeFile(const QString& path, const QByteArray& content);
 
-// The names in a folder, sorted; hidden and half-written ones too.
+// The names in a folder, sorted, including hidden and temporary ones.
 QStringList filesIn(const QString& folder);
 
 }  // namespace evical::test
 
-// With what the program has printed, if it ended otherwise.
+// Shows the program's output if it ended differently.
 #define VERIFY_OUTCOME(outcome, code)                                                                \
   QVERIFY2((outcome).exit_code == (code),                                                            \
            qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).output + \

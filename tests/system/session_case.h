@@ -1,6 +1,6 @@
-// What people hand to `evical calibrate` by mistake: a session of its own on a simulated recording, of which
-// a test changes one thing. The exit code tells whose fault it is, the last line says what, where and what to
-// do, and no half-written result stays behind.
+// Users' mistakes with `evical calibrate`: a separate session on a simulated recording, with one change per
+// test. The exit code shows the kind of error, the last line states what, where and what to do, and no
+// incomplete result remains.
 #pragma once
 
 #include "tests/support/test_program.h"
@@ -14,7 +14,7 @@
 
 namespace evical::test {
 
-// A session of its own with links to a simulated recording; tests change one thing about it.
+// A separate session with links to a simulated recording; each test makes one change.
 class SessionCase {
  public:
   explicit SessionCase(const QString& recording = "short") {
@@ -42,7 +42,7 @@ class SessionCase {
     QFile::remove(path(file));
     writeFile(path(file), content);
   }
-  // Each line's numbers through `edit`, which may clear a line to drop it.
+  // Passes each line's numbers to `edit`, which may clear a line to drop it.
   void editLines(const QString& file, const std::function<void(QList<double>&)>& edit) {
     QByteArray edited;
     for (const QByteArray& line : readFile(path(file)).split('\n')) {
@@ -69,13 +69,13 @@ class SessionCase {
 
 }  // namespace evical::test
 
-// Rejected before anything is written.
+// Rejected before any file is written.
 #define VERIFY_REJECTED(test, outcome, part) \
   VERIFY_OUTCOME(outcome, 2);                \
   VERIFY_SAYS(outcome, part);                \
-  QVERIFY2(!QDir((test).result()).exists(), "a folder for results was made")
+  QVERIFY2(!QDir((test).result()).exists(), "a folder for results was created")
 
-// Failed while at work: the folder, if there is one, holds the reason and nothing half-written.
+// Failed during the calibration: the folder, if there is one, contains the reason and no incomplete files.
 #define VERIFY_FAILED(test, outcome, part)                                        \
   VERIFY_OUTCOME(outcome, 1);                                                     \
   VERIFY_SAYS(outcome, part);                                                     \

@@ -1,4 +1,4 @@
-// Recordings that are not there, damaged, or not what the session says.
+// Recordings that are missing, damaged, or different from the session.
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
 #include "tests/system/session_case.h"
@@ -108,7 +108,7 @@ void TestBadRecording::bag_withoutAWholeChunk_isRefused() {
 
 void TestBadRecording::events_outOfOrder_areReported() {
   SessionCase test;
-  // Two neighbouring blocks change places.
+  // Two neighbouring blocks are exchanged.
   const QByteArray events = readFile(test.path("events.txt"));
   const auto lineAfter = [&](qsizetype at) { return events.indexOf('\n', at) + 1; };
   const qsizetype first = lineAfter(events.size() / 2), second = lineAfter(first + 20'000),
@@ -121,7 +121,7 @@ void TestBadRecording::events_outOfOrder_areReported() {
 }
 
 void TestBadRecording::eventStamps_thatLie_costNothing_data() {
-  QTest::addColumn<double>("where");  // of the file
+  QTest::addColumn<double>("where");  // position in the file
   QTest::addColumn<double>("moved_s");
   const double kDay_s = 86'400.0;
   QTest::newRow("20 s ahead") << 0.5 << 20.0;
@@ -130,7 +130,7 @@ void TestBadRecording::eventStamps_thatLie_costNothing_data() {
   QTest::newRow("the first 0") << 0.0 << 0.0;
 }
 
-// One line of the events has another time: that event is lost, and said to be.
+// One line of the events has another time: that event is lost, and the loss is reported.
 void TestBadRecording::eventStamps_thatLie_costNothing() {
   QFETCH(double, where);
   QFETCH(double, moved_s);
@@ -145,12 +145,12 @@ void TestBadRecording::eventStamps_thatLie_costNothing() {
   timer.start();
   const Outcome outcome = test.calibrate();
   VERIFY_OUTCOME(outcome, 0);
-  QVERIFY2(outcome.errors.contains("1 events left out, whose time stamps"), qPrintable(outcome.errors));
+  QVERIFY2(outcome.errors.contains("1 events excluded, whose timestamps"), qPrintable(outcome.errors));
   QVERIFY2(!outcome.errors.contains("time runs backwards"), qPrintable(outcome.errors));
   QVERIFY2(timer.elapsed() < 60'000, qPrintable(QString::number(timer.elapsed())));
 }
 
-// A bag, since text has no samples that are no numbers.
+// A bag, since text does not represent NaN samples.
 void TestBadRecording::imuSamples_thatAreNoNumbers_areLeftOut() {
   SessionCase test("short_bag");
   const std::string whole = test.path("recording.bag").toStdString(),
@@ -173,7 +173,7 @@ void TestBadRecording::imuSamples_thatAreNoNumbers_areLeftOut() {
   test.change("recording: recording.bag", "recording: spoilt.bag");
   const Outcome outcome = test.calibrate();
   VERIFY_OUTCOME(outcome, 0);
-  QVERIFY2(outcome.errors.contains("1 IMU samples left out, whose values are no numbers"),
+  QVERIFY2(outcome.errors.contains("1 IMU samples excluded, whose values are not finite"),
            qPrintable(outcome.errors));
 }
 
@@ -248,7 +248,7 @@ void TestBadRecording::init_ofNoSession_writesNone() {
   QCOMPARE(filesIn(folder.path()), before);
 }
 
-// Rounded stamps leave the time offset open, by as much as its sigma says, and that is the reason given.
+// Rounded stamps make the time offset uncertain, by its sigma, and that is the reported reason.
 void TestBadRecording::coarseStamps_areSaid() {
   QTemporaryDir folder;
   for (const QString name : {"imu.txt", "session.yaml", "truth.yaml"})
@@ -267,7 +267,7 @@ void TestBadRecording::coarseStamps_areSaid() {
   const Outcome outcome = runProgram({"calibrate", folder.filePath("session.yaml"), "-o", out});
   VERIFY_OUTCOME(outcome, 0);
   VERIFY_TEXT(QString::fromUtf8(readFile(out + "/result.yaml")),
-              "status: doubtful\nreason: .*time stamps of left's events step by 5 ms");
+              "status: doubtful\nreason: .*event time stamps of left have steps of 5 ms");
   const Outcome compared = runProgram({"compare", out + "/result.yaml", folder.filePath("truth.yaml")});
   const auto match = QRegularExpression("left\\.time_offset.* (-?\\d+\\.\\d+)\\n").match(compared.output);
   QVERIFY2(match.hasMatch(), qPrintable(compared.output));

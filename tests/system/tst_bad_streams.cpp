@@ -1,4 +1,4 @@
-// Standard streams that are closed or full, files that are none, and folders that cannot be had.
+// Standard streams that are closed or full, paths that are not files, and folders that cannot be created.
 #include "tests/system/session_case.h"
 
 #include <sys/stat.h>
@@ -59,7 +59,7 @@ void TestBadStreams::output_thatNobodyReceives_isAnError() {
   }
 }
 
-// A file that is given a closed stream's number would receive what is printed.
+// A file opened with a closed stream's descriptor would receive the printed text.
 void TestBadStreams::closedStreams_areNotTheNextFiles() {
   QTemporaryDir folder;
   const QString usual = folder.filePath("usual.svg"), closed = folder.filePath("closed.svg");
@@ -102,7 +102,7 @@ void TestBadStreams::recording_ofPipes_isRefused() {
   VERIFY_SAYS(outcome, "events.txt.*read twice");
 }
 
-// A link to itself has no status, as a folder without permission has none.
+// A link to itself has no status, like a folder without permission.
 void TestBadStreams::folder_thatCannotBeReached_isBadInput() {
   QTemporaryDir folder;
   const QString loop = folder.filePath("loop");

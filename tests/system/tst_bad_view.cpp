@@ -1,4 +1,4 @@
-// Recordings that do not show what the session says, or too little.
+// Recordings that do not show the session's board, or not enough of it.
 #include "tests/system/session_case.h"
 
 using namespace evical::test;
@@ -54,9 +54,9 @@ void TestBadView::boardSpacing_tenPercentOff_isDoubtful_data() {
   QTest::addColumn<QString>("says");
   QTest::newRow("right") << "0.05" << QString();
   QTest::newRow("too small") << "0.0455"
-                             << "(9|10|11) % larger than spacing_m says";
+                             << "(9|10|11) % larger than specified by spacing_m";
   QTest::newRow("too large") << "0.0556"
-                             << "(9|10|11) % smaller than spacing_m says";
+                             << "(9|10|11) % smaller than specified by spacing_m";
 }
 
 void TestBadView::boardSpacing_tenPercentOff_isDoubtful() {
@@ -68,7 +68,8 @@ void TestBadView::boardSpacing_tenPercentOff_isDoubtful() {
   const Outcome outcome = test.calibrate();
   VERIFY_OUTCOME(outcome, 0);
   const QString result = QString::fromUtf8(readFile(test.result() + "/result.yaml"));
-  const bool warned = outcome.errors.contains(QRegularExpression("warning: .*spacing_m says.*measure it"));
+  const bool warned =
+      outcome.errors.contains(QRegularExpression("warning: .*specified by spacing_m.*measure it"));
   QVERIFY2(warned == !says.isEmpty(), qPrintable(outcome.errors));
   if (says.isEmpty()) return;
   QVERIFY2(result.contains("status: doubtful"), qPrintable(result.left(400)));

@@ -1,5 +1,5 @@
-// `evical batch`: each job its own process and its own failure, a table that tells why, runs that go on where an earlier one was
-// stopped, and bad files of jobs. Over a cluster: tests/cluster.
+// `evical batch`: a separate process and failure per job, a table with the reasons, continuation of stopped
+// batches, and invalid job files. tests/cluster tests it on a cluster.
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
@@ -76,7 +76,7 @@ class TestBatchCommand : public QObject {
     VERIFY_TEXT(lines[2], "^too_short,failed,");
   }
 
-  // What has ended stays so; what somebody may have mended is tried again.
+  // Finished jobs are not repeated; failed ones, whose cause may have been fixed, are tried again.
   void secondRun_doesOnlyWhatIsLeft() {
     const QDateTime before = resultTime("mixed", "good");
     const Outcome again = runProgram({"batch", path("mixed.yaml"), "-o", path("mixed")});
@@ -102,7 +102,7 @@ class TestBatchCommand : public QObject {
     QVERIFY(resultTime("mixed", "good") > before);
     const Outcome table = runProgram({"batch", path("mixed.yaml"), "-o", path("mixed"), "--collect"});
     VERIFY_OUTCOME(table, 1);  // the others are of other options
-    VERIFY_TEXT(table.output, "other: has not been run");
+    VERIFY_TEXT(table.output, "other: was not run");
     QVERIFY2(!table.output.contains("good: "), qPrintable(table.output));
   }
 
@@ -157,13 +157,13 @@ class TestBatchCommand : public QObject {
     QTest::newRow("unknown key") << "job: [a.yaml]\njobs: [" + own + "]\n"
                                  << "job.*unknown key|no such key|unknown";
     QTest::newRow("no session") << "jobs: [a.bag]\n"
-                                << "no session that says what is in it";
+                                << "no session describes it";
     QTest::newRow("nothing of its own") << "session: a.yaml\njobs: [{name: x}]\n"
                                         << "neither a recording nor a session";
     QTest::newRow("two names") << "jobs: [{name: x, session: " + own + "}, {name: x, session: " + own + "}]\n"
-                               << "two jobs are called 'x'";
+                               << "two jobs have the name 'x'";
     QTest::newRow("name out of the folder") << "jobs: [{name: ../x, session: " + own + "}]\n"
-                                            << "name of a folder";
+                                            << "valid name for a result folder";
     QTest::newRow("no memory") << "memory_limit_mb: 0\njobs: [" + own + "]\n"
                                << "memory_limit_mb";
   }
@@ -185,12 +185,12 @@ class TestBatchCommand : public QObject {
     VERIFY_OUTCOME(runProgram({"batch", jobs, "-o", path("empty"), "--collect"}), 2);
     const Outcome result = runProgram({"batch", jobs, "-o", path("fine/recording")});
     VERIFY_OUTCOME(result, 2);
-    VERIFY_TEXT(result.reason(), "holds the result of a calibration");
+    VERIFY_TEXT(result.reason(), "contains the result of a calibration");
     writeFile(path("file"), "a file");
     VERIFY_OUTCOME(runProgram({"batch", jobs, "-o", path("file")}), 2);
   }
 
-  // No program of Slurm's is on this path, whatever the machine has.
+  // The path has no program of Slurm's, even if the machine has them.
   void withoutSlurm_saysSo_andKeepsTheScript() {
     const QString jobs = writeJobs(
         "queue.yaml", QString("threads: 2\nmemory_limit_mb: 700\njobs:\n  - {name: one, session: %1}\n")

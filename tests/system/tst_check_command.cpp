@@ -1,4 +1,4 @@
-// `evical check`: verdicts as exit codes, JSON alone on stdout, files, and what people hand to it by mistake.
+// `evical check`: verdicts as exit codes, JSON alone on stdout, files, and users' mistakes.
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
@@ -12,7 +12,7 @@ using namespace evical::test;
 
 namespace {
 
-// A short recording detects large changes only.
+// A short recording can detect only large changes.
 const QStringList kCoarse = {
     "--set", "check.matters_rotation_deg=5",    "--set", "check.matters_translation_mm=500",
     "--set", "check.matters_time_offset_ms=50", "--set", "check.matters_lens_px=50"};

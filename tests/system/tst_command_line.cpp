@@ -1,5 +1,5 @@
-// The program as a whole: what it writes, its exit codes, and what it leaves behind when it is interrupted or
-// the disk is full.
+// The whole program: its files, its exit codes, and the remaining files after an interruption or on a full
+// disk.
 #include "core/report/truth_comparison.h"
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
@@ -125,14 +125,14 @@ void TestCommandLine::options_asMarkdownAreTheManual() {
   const Outcome outcome = runProgram({"options", "--markdown"});
   VERIFY_EXIT(outcome, 0);
   QVERIFY2(outcome.output.toUtf8() == readFile(inSources("docs/options.md")),
-           "docs/options.md is old: evical options --markdown > docs/options.md");
+           "docs/options.md is outdated: evical options --markdown > docs/options.md");
 }
 
 void TestCommandLine::options_asYamlAreTheDefaultFile() {
   const Outcome outcome = runProgram({"options", "--yaml"});
   VERIFY_EXIT(outcome, 0);
   QVERIFY2(outcome.output.toUtf8() == readFile(inSources("config/default.yaml")),
-           "config/default.yaml is old: evical options --yaml > config/default.yaml");
+           "config/default.yaml is outdated: evical options --yaml > config/default.yaml");
 }
 
 void TestCommandLine::boardThatBlinks_isAPage() {
@@ -195,7 +195,7 @@ void TestCommandLine::calibrate_writesAResultNearTheTruth() {
     QVERIFY2(yaml.contains(key), key);
   QVERIFY(readFile(result + "/trajectory.csv").count('\n') > 900);  // 200 Hz over most of 6 s
 
-  // A fifth of the recording that the accuracy table is about.
+  // A fifth of the recording of the accuracy table.
   const auto path = [](const QString& file) { return std::filesystem::path(file.toStdString()); };
   const evical::TruthComparison comparison =
       evical::compareWithTruth(evical::readResultYaml(path(result + "/result.yaml")),
@@ -295,14 +295,14 @@ void TestCommandLine::export_check_tellsWhatItRead() {
   writeFile(folder.filePath("result.yaml"), kSmallResult);
   const Outcome outcome = runProgram(
       {"export", folder.path(), "--to", "kalibr,esvo,ros", "--check", "-o", folder.filePath("out")});
-  VERIFY_EXIT(outcome, 1);  // one camera is no stereo pair: refused, and not checked
+  VERIFY_EXIT(outcome, 1);  // a single camera is not a stereo pair: refused, and not checked
   QVERIFY2(outcome.output.contains("kalibr: reads back: 1 camera within 0 px, 1 IMU, poses within "),
            qPrintable(outcome.output));
   QVERIFY(outcome.output.contains("ros: reads back: ") && !outcome.output.contains("esvo: reads back"));
   QVERIFY(outcome.errors.contains("esvo: not exported: ") && !outcome.errors.contains("does not read back"));
 }
 
-// The check is of what is on the disk, and a program that is given the folder meets what lay there before.
+// The check reads the files on disk, and a program that uses the folder also finds its earlier files.
 void TestCommandLine::export_check_findsWhatIsInTheWay() {
   QTemporaryDir folder;
   writeFile(folder.filePath("result.yaml"), kSmallResult);
@@ -316,7 +316,7 @@ void TestCommandLine::export_check_findsWhatIsInTheWay() {
   QVERIFY(outcome.output.contains("kalibr: reads back: "));
 }
 
-// `--check FOLDER` writes nothing, and takes what is there.
+// `--check FOLDER` writes nothing and checks the existing files.
 void TestCommandLine::export_check_ofEarlierFiles() {
   QTemporaryDir folder;
   writeFile(folder.filePath("result.yaml"), kSmallResult);
@@ -389,11 +389,11 @@ void TestCommandLine::init_writesTheSessionThatTheRecordingSuggests() {
   const QStringList command = {"init", recording, "-o", file};
   const Outcome outcome = runProgram(command);
   VERIFY_EXIT(outcome, 0);
-  QVERIFY2(outcome.output.startsWith(file + "\nboard: fill it in"), qPrintable(outcome.output));
+  QVERIFY2(outcome.output.startsWith(file + "\nboard: complete its entry"), qPrintable(outcome.output));
   const QString written = QString::fromUtf8(readFile(file));
   QVERIFY2(written.contains("stream: " + stream) && written.contains("# board:"), qPrintable(written));
 
-  // Not before the board is filled in; and what was filled in is not overwritten.
+  // Not before the board is filled in; and entries that were filled in are not overwritten.
   const Outcome unfilled = runProgram({"calibrate", file, "-o", folder.filePath("result")});
   VERIFY_EXIT(unfilled, 2);
   QVERIFY2(unfilled.reason().contains("board"), qPrintable(unfilled.errors));
@@ -505,7 +505,7 @@ void TestCommandLine::interruption_ofASimulationLeavesNothing() {
   QVERIFY2(filesIn(folder.path()).isEmpty(), qPrintable(filesIn(folder.filePath("demo")).join(' ')));
 }
 
-// Permissions don't hold root back: a folder below a file can't be made by anybody.
+// Permissions do not restrict root, but nobody can create a folder below a file.
 void TestCommandLine::folder_thatCannotBeMadeIsRefused() {
   QTemporaryDir folder;
   writeFile(folder.filePath("file"), "not a folder");

@@ -73,7 +73,7 @@ class TestIntrinsicsCommand : public QObject {
     QVERIFY(!QFile::exists(result()));
   }
 
-  // One that stood still: what was found of the others is written all the same.
+  // One camera at rest: the results of the others are written nevertheless.
   void cameraThatFails_leavesTheOthersTheirs() {
     session_.replace(
         "cameras:\n",
@@ -131,7 +131,7 @@ class TestIntrinsicsCommand : public QObject {
     session_.replace("cameras:\n", "cameras:\n  other: {stream: /other, resolution_px: [346, 260]}\n");
     outcome = run("calibrate");
     VERIFY_OUTCOME(outcome, 2);
-    VERIFY_SAYS(outcome, "can not be calibrated against each other.*evical intrinsics");
+    VERIFY_SAYS(outcome, "poses between cameras are ambiguous.*evical intrinsics");
   }
 
   void cameraAlone_isSentToTheIntrinsics() {

@@ -1,4 +1,5 @@
-// `evical maintain`: verdicts as exit codes, files, JSON alone on stdout, and bad input, of which nothing is written.
+// `evical maintain`: verdicts as exit codes, files, JSON alone on stdout, and invalid input, for which
+// nothing is written.
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
@@ -37,7 +38,7 @@ class TestMaintainCommand : public QObject {
     VERIFY_OUTCOME(made, 0);
   }
 
-  // imu.csv as EuRoC has it, each line changed.
+  // imu.csv in EuRoC's format, with each line changed.
   QString changedLog(const QString& name, const std::function<void(QList<double>&)>& change) const {
     QStringList lines =
         QString::fromUtf8(readFile(path("stops_csv") + "/imu.csv")).split('\n', Qt::SkipEmptyParts);
@@ -94,7 +95,7 @@ class TestMaintainCommand : public QObject {
     QVERIFY(QString::fromUtf8(readFile(path("out/report.html"))).contains("<svg"));
   }
 
-  // Half an IMU would look like a large change.
+  // Half of an IMU would look like a large change.
   void logsOfOneSensor_areRefused_data() {
     QTest::addColumn<bool>("gyroscope");
     QTest::addColumn<QString>("problem");
@@ -114,7 +115,7 @@ class TestMaintainCommand : public QObject {
     QVERIFY(!QFile::exists(path("out_half/maintenance.yaml")));
   }
 
-  // A calibration that read the IMU's axes otherwise than the log has them: stops say the same.
+  // A calibration with another interpretation of the IMU's axes than the log: stops detect it.
   void axesOfTheCalibration_areThoseOfTheLog() {
     const QString log = changedLog("turned", [](QList<double>& values) {
       const QList<double> as = values;
@@ -214,7 +215,7 @@ class TestMaintainCommand : public QObject {
                                         path("drive_stops") + "/recording.bag", "--result",
                                         path("drive_stops") + "/calibration", "-o", path("out_twice")});
     VERIFY_OUTCOME(outcome, 2);
-    VERIFY_SAYS(outcome, "another log has some, too");
+    VERIFY_SAYS(outcome, "overlaps in time with another log");
   }
 
   void wrongUnits_areSaid_data() {
@@ -259,14 +260,14 @@ class TestMaintainCommand : public QObject {
   void otherTrajectories_areRefused_data() {
     QTest::addColumn<int>("kind");
     QTest::addColumn<QString>("says");
-    QTest::newRow("another frame") << 0 << "of another frame, turned by 90.0 deg";
+    QTest::newRow("another frame") << 0 << "of another frame, rotated by 90.0 deg";
     QTest::newRow("not in metres") << 1 << "not in metres";
     QTest::newRow("inverted") << 2 << "imu_from_world";
-    QTest::newRow("w first") << 3 << "written w, x, y, z";
-    QTest::newRow("another time") << 4 << "no time in common";
-    QTest::newRow("no rotations") << 5 << "no rotation";
+    QTest::newRow("w first") << 3 << "in the order w, x, y, z";
+    QTest::newRow("another time") << 4 << "does not overlap in time";
+    QTest::newRow("no rotations") << 5 << "not a rotation";
     QTest::newRow("backwards") << 6 << "time runs backwards";
-    QTest::newRow("a point beside it") << 7 << "those of a point";
+    QTest::newRow("a point beside it") << 7 << "of a point";
   }
   void otherTrajectories_areRefused() {
     QFETCH(const int, kind);
@@ -302,13 +303,13 @@ class TestMaintainCommand : public QObject {
     writeFile(path("empty.csv"), "");
     QTest::newRow("no log") << QStringList{path("gone.bag"), "--result", result} << "no such file";
     QTest::newRow("empty log") << QStringList{path("empty.csv"), "--result", result} << "the file is empty";
-    QTest::newRow("no result") << QStringList{log, "--result", path("gone")} << "is not there";
+    QTest::newRow("no result") << QStringList{log, "--result", path("gone")} << "does not exist";
     QTest::newRow("a stream that is not there")
         << QStringList{simulated("still"), "--result", result, "--imu", "imu=/gone"}
-        << "does not know the IMU of it";
+        << "no stream matches an IMU of the old result";
     QTest::newRow("an IMU that the result does not know")
         << QStringList{path("none") + "/recording.bag", "--result", result}
-        << "does not know the IMU of it: streams /front/imu, /rear/imu";
+        << "no stream matches an IMU of the old result: streams /front/imu, /rear/imu";
     QTest::newRow("a name that the result does not know")
         << QStringList{log, "--result", result, "--imu", "front=/imu"} << "no IMU of this name";
     QTest::newRow("a session for a result")
@@ -335,10 +336,10 @@ class TestMaintainCommand : public QObject {
                     "front=" + path("none") + "/recording.bag", "--imu",
                     "rear=" + path("other_seed") + "/recording.bag"});
     VERIFY_OUTCOME(outcome, 4);
-    QVERIFY2(outcome.output.contains("does not turn as"), qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains("does not match that of"), qPrintable(outcome.output));
   }
 
-  // As a log in -g is, and a sensor that was mounted upside down.
+  // A log in -g, and a sensor that was mounted upside down.
   void opposedForces_areSaid() {
     writeFile(path("turned_over.yaml"),
               ("base: " + scenario("none") +
@@ -350,7 +351,7 @@ class TestMaintainCommand : public QObject {
     const Outcome outcome =
         runProgram(maintain("turned_over", path("none") + "/recording.bag", "out_turned_over"));
     VERIFY_OUTCOME(outcome, 2);
-    VERIFY_SAYS(outcome, "rear: its specific force points against that of front");
+    VERIFY_SAYS(outcome, "rear: its specific force is opposite to that of front");
     QVERIFY(!QDir(path("out_turned_over")).exists());
   }
 
@@ -359,7 +360,7 @@ class TestMaintainCommand : public QObject {
         interruptProgram({"maintain", path("none") + "/recording.bag", "--result",
                           path("none") + "/calibration", "-o", path("out_cut")},
                          SIGINT, [](const QString& errors) { return errors.contains("look"); });
-    if (outcome.exit_code == 0) QSKIP("it was done before it could be stopped");
+    if (outcome.exit_code == 0) QSKIP("it ended before it could be stopped");
     VERIFY_OUTCOME(outcome, 1);
     QVERIFY(!QDir(path("out_cut")).exists());
   }

@@ -1,4 +1,5 @@
-// `evical repeat`: verdicts as exit codes, JSON alone on stdout, files that other commands read, and bad input.
+// `evical repeat`: verdicts as exit codes, JSON alone on stdout, files that other commands read, and invalid
+// input.
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
@@ -21,7 +22,7 @@ class TestRepeatCommand : public QObject {
   QString path(const QString& name) const { return folder_.filePath(name); }
   QString session(const QString& name) const { return path(name + ".yaml"); }
 
-  // A part of the short recording, as a recording of its own.
+  // A part of the short recording, as a separate recording.
   void writeSession(const QString& name, const QString& from_to, const QString& change = {},
                     const QString& to = {}) {
     QString text = QString::fromUtf8(readFile(simulated("short") + "/session.yaml"));
@@ -74,7 +75,7 @@ class TestRepeatCommand : public QObject {
     VERIFY_OUTCOME(runProgram({"export", result, "--to", "kalibr", "-o", path("kalibr")}), 0);
     const Outcome check = runProgram({"check", path("both"), session("second")});
     QVERIFY2(check.exit_code == 0 || check.exit_code == 4, qPrintable(check.output + check.errors));
-    // Once more into the same folder, which is its own.
+    // Again into the same folder, which has its own results.
     const Outcome json =
         runProgram({"repeat", session("first"), session("second"), "-o", path("both"), "--json"});
     VERIFY_OUTCOME(json, 0);
@@ -98,18 +99,18 @@ class TestRepeatCommand : public QObject {
   void badInput_endsWith2_data() {
     QTest::addColumn<QStringList>("sessions");
     QTest::addColumn<QString>("part");
-    QTest::newRow("one only") << QStringList{"first"} << "one recording only";
-    QTest::newRow("one listed") << QStringList{"one_listed"} << "one recording only";
+    QTest::newRow("one only") << QStringList{"first"} << "a single recording";
+    QTest::newRow("one listed") << QStringList{"one_listed"} << "a single recording";
     QTest::newRow("another board") << QStringList{"first", "other_board"}
                                    << "board is asymmetric_circles 9 x 4";
     QTest::newRow("another rig") << QStringList{"first", "other_rig"} << "cameras is right";
     QTest::newRow("missing session") << QStringList{"first", "nowhere"} << "nowhere.yaml";
     QTest::newRow("missing recording") << QStringList{"first", "no_file"} << "does not exist";
     QTest::newRow("missing in list") << QStringList{"list"} << "nowhere.bag' does not exist";
-    QTest::newRow("twice") << QStringList{"first", "first"} << "is there twice";
-    QTest::newRow("twice in a list") << QStringList{"copies"} << "is there twice";
-    QTest::newRow("overlap") << QStringList{"first", "overlapping"} << "is there twice";
-    QTest::newRow("twice by another path") << QStringList{"formats"} << "is there twice";
+    QTest::newRow("twice") << QStringList{"first", "first"} << "is listed twice";
+    QTest::newRow("twice in a list") << QStringList{"copies"} << "is listed twice";
+    QTest::newRow("overlap") << QStringList{"first", "overlapping"} << "is listed twice";
+    QTest::newRow("twice by another path") << QStringList{"formats"} << "is listed twice";
   }
   void badInput_endsWith2() {
     QFETCH(QStringList, sessions);
@@ -133,7 +134,7 @@ class TestRepeatCommand : public QObject {
     writeFile(path("kept/result.yaml"), "mine");
     const Outcome outcome = runProgram({"repeat", session("first"), session("second"), "-o", path("kept")});
     VERIFY_OUTCOME(outcome, 2);
-    VERIFY_SAYS(outcome, "holds the result of a calibration");
+    VERIFY_SAYS(outcome, "contains the result of a calibration");
     QCOMPARE(readFile(path("kept/result.yaml")), QByteArray("mine"));
     writeFile(path("file"), "a file");
     VERIFY_OUTCOME(runProgram({"repeat", session("first"), session("second"), "-o", path("file")}), 2);

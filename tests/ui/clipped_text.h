@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which texts of a window are cut off or painted over, by comparing what each needs with the room that it has.
+// Texts of a window that are clipped or painted over, found by comparing their sizes with the available
+// space.
 #pragma once
 
 #include <QAbstractButton>
@@ -31,7 +32,8 @@ inline QString placeOf(const QWidget& widget, const QString& text, QSize needed)
       .arg(needed.height());
 }
 
-// What is seen of a widget before its parents cut it off. A scroll area brings the rest into view, as far as it scrolls.
+// The visible part of a widget before its parents clip it. A scroll area can show the rest, as far as it
+// scrolls.
 inline QSize roomOf(const QWidget& widget) {
   constexpr int kFar_px = 1 << 20;
   QRect room = widget.rect();
@@ -63,7 +65,7 @@ inline bool showsText(const QAbstractButton& button) {
   return tool == nullptr || tool->toolButtonStyle() != Qt::ToolButtonIconOnly || tool->icon().isNull();
 }
 
-// Columns whose header or some cell is cut, where no tool tip says the rest.
+// Columns whose header or a cell is clipped, without a tool tip with the full text.
 inline void findCutCells(const QAbstractItemView& view, const QHeaderView& header, QStringList& found) {
   const QAbstractItemModel* const model = view.model();
   if (model == nullptr || header.isHidden()) return;
@@ -91,7 +93,7 @@ inline QStringList overlaidTexts(const QList<QWidget*>& with_text) {
       if (one >= other || one->parentWidget() != other->parentWidget()) continue;
       const QRect common = one->geometry().intersected(other->geometry());
       if (common.width() > kTolerance_px && common.height() > kTolerance_px)
-        found << QString("%1 lies over another text").arg(placeOf(*one, one->objectName(), common.size()));
+        found << QString("%1 overlaps another text").arg(placeOf(*one, one->objectName(), common.size()));
     }
   return found;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder on a disk that has room for next to nothing: a small file system in memory where the system lets
-// us mount one (visible to this process only), otherwise a limit on the size of files.
+// A folder on an almost full disk: a small file system in memory if the system permits mounting one (visible
+// to this process only), otherwise a limit on the size of files.
 #pragma once
 
 #include <QDir>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether 3D views can draw on this machine.
+// Availability of OpenGL for 3D views on this machine.
 #pragma once
 
 #include "ui/scene/view3d.h"
 
 namespace evical::ui::test {
 
-// Set to kNoEglVendor, this variable of the environment hides all OpenGL of a machine.
+// With the value kNoEglVendor, this environment variable hides all OpenGL of a machine.
 inline constexpr const char* kEglVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
 inline constexpr const char* kNoEglVendor = "/nonexistent";
 

@@ -16,8 +16,8 @@
 
 namespace evical::ui::test {
 
-// How much longer than on the machine that the limits are meant for (two cores of 2020's servers) plain
-// computing takes here and now; never less than 1.
+// Ratio of the current time of plain computing to that on the reference machine of the limits (two cores of a
+// server of 2020); at least 1.
 inline double slowness() {
   constexpr double kUsual_ms = 18.0;
   std::vector<std::uint32_t> numbers(300'000);
@@ -29,7 +29,7 @@ inline double slowness() {
   return std::max<double>(kSlowdown, took_ms / kUsual_ms);
 }
 
-// Time that this process computes from here on. Unlike time by the clock it stays the same while other tests run.
+// Computing time of this process from here on. Unlike wall time, it does not depend on concurrent tests.
 class ComputedTime {
  public:
   double elapsed_ms() const { return 1e3 * (evical::test::processCpu_s() - begin_s_); }
@@ -38,14 +38,14 @@ class ComputedTime {
   double begin_s_ = evical::test::processCpu_s();
 };
 
-// A job that is cancelled ends after half a second at most. Computing counts, so that tests can run in parallel;
-// tst_main_window measures the same by the clock.
+// A cancelled job ends after half a second at most. Computing time counts, so that tests can run in parallel;
+// tst_main_window measures wall time.
 inline double mostAfterCancel_ms() {
   return 500.0 * slowness();
 }
 
-// How many processors others kept busy since it was made: with them about, rates by the clock mean little,
-// and drawing in software waits for threads of its own that do not get to run.
+// Number of processors kept busy by others since construction: with such load, rates in wall time mean
+// little, and software rendering waits for its threads, which are not scheduled.
 class OtherLoad {
  public:
   OtherLoad() : begin_(now()) { wall_.start(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of a page of the window, to be looked at, in which no text is cut off.
+// Pictures of a page of the window for inspection. No text may be clipped in them.
 #pragma once
 
 #include "tests/ui/clipped_text.h"
@@ -10,7 +10,7 @@
 
 namespace evical::ui::test {
 
-// At all sizes that people have: NAME_1024.png and so on.
+// At all usual sizes: NAME_1024.png and so on.
 inline void keepPictures(WindowFixture& test, const QString& name) {
   for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
     test.window.resize(size);

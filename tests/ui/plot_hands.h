@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panels with curves for tests, and a person's hands on them.
+// Panels with curves for tests, and simulated mouse actions on them.
 #pragma once
 
 #include "ui/plots/plot_panel.h"
@@ -41,7 +41,7 @@ inline void addImuAxes(PlotPanel& panel, int count, double rate_hz) {
   }
 }
 
-// Of this thread: what a redraw costs, whoever else uses the machine.
+// Computing time of this thread for a redraw, independent of other load.
 inline bool near(const QColor& a, const QColor& b) {
   return std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) + std::abs(a.blue() - b.blue()) < 60;
 }

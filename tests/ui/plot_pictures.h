@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of a screen, light and dark, in the sizes it must look right in.
+// Pictures of a screen, light and dark, in all required sizes.
 #pragma once
 
 #include "tests/ui/screenshots.h"
@@ -22,7 +22,7 @@ inline void setPalette(bool dark) {
   QApplication::setPalette(palette);
 }
 
-// `settle` is called after each change, and returns when the screen has drawn what it has to.
+// `settle` is called after each change, and returns when the screen has been drawn.
 inline void takePictures(QWidget& screen, const QString& name, const std::function<void()>& settle) {
   for (const bool dark : {false, true}) {
     setPalette(dark);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A short recording with what the front end says of its windows, for tests of the detection screen.
+// A short recording with the front end's results for its windows, for tests of the detection screen.
 #pragma once
 
 #include "core/pipeline/pass/recording_pass.h"
@@ -20,9 +20,9 @@
 
 namespace evical::ui::test {
 
-// The first seconds of a scenario, and what the front end says about them.
+// The first seconds of a scenario, and the front end's results for them.
 struct Recorded {
-  QTemporaryDir folder;  // for what tests write
+  QTemporaryDir folder;  // for files of tests
   Session session;
   DetectionResult pass;
 
@@ -40,7 +40,7 @@ struct Recorded {
   std::shared_ptr<const BoardObservations> observations() const {
     return std::make_shared<BoardObservations>(pass.cameras.front());
   }
-  // That saw these windows, with nothing estimated from them.
+  // Detections of these windows, without estimates from them.
   std::shared_ptr<CalibrationRun> run() const {
     auto run = std::make_shared<CalibrationRun>();
     run->pass = pass;
@@ -48,7 +48,7 @@ struct Recorded {
   }
 };
 
-// The screen as it is once the recording has been read and the window at the cursor analysed.
+// The screen after the recording has been read and the window at the cursor analysed.
 inline void settle(DetectionScreen& screen) {
   QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000 * kSlowdown);
   QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->searches.empty() &&

@@ -1,4 +1,4 @@
-// Where tests of the window leave pictures, to be looked at.
+// Folder in which tests of the window save pictures for inspection.
 #pragma once
 
 #include "tests/support/test_folders.h"
@@ -8,7 +8,7 @@
 
 namespace evical::ui::test {
 
-// The path of a picture in the build folder's screenshots, which is made.
+// The path of a picture in the build folder's screenshots, which is created.
 inline QString screenshotPath(const QString& name) {
   const QString folder = QString::fromStdString(evical::test::buildPath("screenshots"));
   QDir().mkpath(folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run with a trajectory, the screen that shows it, and what can be seen there.
+// A run with a trajectory, its screen, and queries on the displayed picture.
 #pragma once
 
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -80,7 +80,7 @@ inline double distance(const QColor& a, const QColor& b) {
   return std::hypot(a.red() - b.red(), a.green() - b.green(), a.blue() - b.blue());
 }
 
-// Whether a colour appears within a few pixels.
+// True if a colour appears within a few pixels.
 inline bool hasNear(const QImage& image, const QPointF& at, const QColor& colour, int reach_px = 2) {
   for (int y = -reach_px; y <= reach_px; ++y) {
     for (int x = -reach_px; x <= reach_px; ++x) {
@@ -91,7 +91,7 @@ inline bool hasNear(const QImage& image, const QPointF& at, const QColor& colour
   return false;
 }
 
-// With the run shown and all work in the background done.
+// With the run displayed and all background work finished.
 inline std::unique_ptr<TrajectoryScreen> makeScreen(const Example& example, const QSize& size = {1000, 650}) {
   auto screen = std::make_unique<TrajectoryScreen>();
   screen->resize(size);

@@ -51,7 +51,7 @@ StreamInfo streamInfo(const std::string& name, StreamType type, Resolution resol
   return info;
 }
 
-// The IMU beside the first camera.
+// The IMU of the first camera.
 void writeBag(const Scenario& rig, std::size_t camera, const std::filesystem::path& file) {
   const SimulatedCamera& own = rig.cameras[camera];
   std::vector<StreamInfo> streams = {

@@ -3,8 +3,7 @@
 
 namespace evical::ui {
 
-// Under sanitizers everything takes longer: times that tests allow, and how long they
-// wait, are multiplied by this.
+// Under sanitizers everything takes longer: limits and waiting times of tests are multiplied by this.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr int kSlowdown = 20;
 #else

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long the event loop is kept from going round: the gap between two beats of a fast timer in the GUI
-// thread. Time in which the thread was ready to run but other programs had the processor is not counted,
-// waiting for locks and files is.
+// Stalls of the event loop: the gap between two beats of a fast timer in the GUI thread. Time in which the
+// thread was ready to run but other programs had the processor is not counted; waiting for locks and files
+// is.
 #pragma once
 
 #include "tests/support/processor_time.h"
@@ -26,11 +26,11 @@ class StallMeter : public QObject {
   }
 
   double longest_ms() const { return longest_ms_; }
-  // Of it, or of another gap: computed by the thread.
+  // Longest computing time of the thread within one gap, not necessarily the longest gap.
   double longestWork_ms() const { return longest_work_ms_; }
   int beats() const { return beats_; }
 
-  // Forgets what was; returns it.
+  // Resets the meter; returns its value.
   double restart_ms() {
     beat();
     const double longest_ms = longest_ms_;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The stories in windows that a window manager shows, moves and focuses, with the meter of how long they stand still.
+# The stories in windows that a window manager shows, moves and focuses, with a meter of stalls.
 # Exit code 77 (skipped) without the tools.
-#   stories_under_xvfb.sh TEST_PROGRAM
+# stories_under_xvfb.sh TEST_PROGRAM
 set -euo pipefail
 . "$(dirname "$0")/../support/xvfb.sh"
 program=$1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes before a recording: a board that is printed and measured, and how to move before it.
+// Steps before a recording: printing and measuring a board, and the instructions for the motion.
 #include "core/pipeline/session/session.h"
 #include "core/printing/blink_page.h"
 #include "core/printing/board_drawing.h"
@@ -189,7 +189,7 @@ class TestBeforeRecording : public QObject {
     }
   }
 
-  // What is shown must itself be good advice.
+  // The displayed motion must follow the advice itself.
   void motions_turnAndShiftAsTheyAreCalled() {
     const auto spreadOf = [](const ShownMotion& motion) {
       Eigen::Matrix<double, 6, 1> largest = Eigen::Matrix<double, 6, 1>::Zero();

@@ -26,7 +26,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// The screen over a document, as the window wires it, with three cameras.
+// The screen with a document, wired like in the window, with three cameras.
 struct BoardsFormFixture {
   CalibrationDocument document;
   RecordingScreen screen;
@@ -133,7 +133,7 @@ class TestBoardsForm : public QObject {
     QCOMPARE(test.document.undoStack().redoText(), QString("Add a board"));
   }
 
-  // Steps of undo merge within one board only.
+  // Undo steps merge only within one board.
   void editsOfTwoBoards_areTwoSteps() {
     BoardsFormFixture test;
     test.click("add_board");
@@ -149,7 +149,7 @@ class TestBoardsForm : public QObject {
     QCOMPARE(boardAt(test.session(), 1).rows, 11);
   }
 
-  // Without the key that ends it.
+  // Without the final key.
   void typedNumber_isThatOfTheBoardItWasTypedFor() {
     BoardsFormFixture test;
     test.click("add_board");
@@ -177,7 +177,7 @@ class TestBoardsForm : public QObject {
     test.document.undoStack().undo();
     QCOMPARE(test.names(), (Names{"board", "board_2", "board_3"}));
     QCOMPARE(test.session().cameras[2].board, std::string("board_2"));
-    QCOMPARE(test.name()->text(), QString("board_2"));  // what came back is shown
+    QCOMPARE(test.name()->text(), QString("board_2"));  // the restored board is displayed
   }
 
   void renamedBoard_isWhatItsCamerasSee() {
@@ -213,7 +213,7 @@ class TestBoardsForm : public QObject {
     test.type(typed);
     QVERIFY(problem->isVisible());
     QVERIFY2(problem->text().contains(said), qPrintable(problem->text()));
-    QCOMPARE(test.name()->text(), typed);  // to be mended
+    QCOMPARE(test.name()->text(), typed);  // to be corrected
     QCOMPARE(test.names(), (Names{"board", "board_2"}));
     test.type("tags");
     QVERIFY(!problem->isVisible());
@@ -261,7 +261,7 @@ class TestBoardsForm : public QObject {
     QCOMPARE(sessionYaml(again, "/"), sessionYaml(test.session(), "/"));
   }
 
-  // What has no pattern cannot be shown on a screen.
+  // A board without a pattern cannot be shown on a screen.
   void givenPoints_doNotFlash() {
     BoardsFormFixture test;
     Session session = test.session();
@@ -273,7 +273,7 @@ class TestBoardsForm : public QObject {
     QVERIFY(test.find<QCheckBox>("blinks")->isVisible());
   }
 
-  // They are a file's: shown, but neither chosen nor counted here.
+  // They come from a file: shown, but neither chosen nor counted here.
   void givenPoints_areShown_andMayGiveWay() {
     BoardForm form;
     const auto isShown = [&](const QString& title) {

@@ -54,7 +54,7 @@ class TestCalibrationDocument : public QObject {
     QCOMPARE(again.session().cameras.at(0).intrinsics, document.session().cameras.at(0).intrinsics);
   }
 
-  // The window that listens is half gone by then.
+  // The listening window is partly destroyed by then.
   void document_saysNothingAtItsEnd() {
     int said = 0;
     {

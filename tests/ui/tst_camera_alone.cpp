@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The story of who has a camera that records RAW files and no IMU: open, calibrate the camera, look, save, use it; and
-// what is said where that does not go.
+// Story of a user with a camera that records RAW files without an IMU: open, calibrate the camera, inspect,
+// save, use the lens; and the messages if that is not possible.
 #include "ui/window/main_window.h"
 
 #include "core/format/intrinsics_yaml.h"
@@ -49,7 +49,7 @@ Scenario scenario() {
   return read;
 }
 
-// As Prophesee's cameras write it: no IMU, no names, no word of board or lens.
+// Like a file of Prophesee's cameras: no IMU, no names, no description of board or lens.
 void writeRaw(const Scenario& camera, const QString& path) {
   QFile file(path);
   QVERIFY(file.open(QIODevice::WriteOnly));
@@ -63,7 +63,7 @@ void writeRaw(const Scenario& camera, const QString& path) {
 
 QString verdictOf(RecordingScreen& screen) {
   for (const QLabel* const label : screen.findChildren<QLabel*>())
-    for (const char* const known : {"Ready to calibrate", "missing", "Nothing to calibrate but the lens"})
+    for (const char* const known : {"Ready to calibrate", "missing", "Only the lens can be calibrated"})
       if (label->text().contains(known)) return label->text();
   return {};
 }
@@ -77,7 +77,7 @@ class TestCameraAlone : public QObject {
   Scenario scenario_;
   QString raw_;
 
-  // Opened as a recording, with the board as it is.
+  // Opened as a recording, with the default board.
   void open(WindowFixture& test) {
     QSignalSpy opened(&test.window.files(), &SessionFiles::opened);
     test.window.files().open(raw_);
@@ -144,7 +144,7 @@ class TestCameraAlone : public QObject {
     WindowFixture test;
     open(test);
     auto* const recording = test.child<RecordingScreen>();
-    QVERIFY(verdictOf(*recording).startsWith("Nothing to calibrate but the lens"));
+    QVERIFY(verdictOf(*recording).startsWith("Only the lens can be calibrated"));
     auto* const offer = recording->findChild<QPushButton*>("camera_only");
     QVERIFY(offer->isVisible());
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// No page cuts off a text or paints over one, at any size that people have. Also run at twice the scale.
+// No page clips a text or paints over one, at any usual size. Also run at twice the scale.
 #include "tests/support/test_program.h"
 #include "tests/ui/clipped_text.h"
 #include "tests/ui/simulated_session.h"
@@ -16,7 +16,7 @@ class TestClippedText : public QObject {
 
   QTemporaryDir scratch_;
 
-  // Every page, one after the other; also the picture of each, where a folder for them is given.
+  // Every page in turn; also saves its picture if a folder is given.
   QStringList clippedIn(WindowFixture& test, QSize size, const QString& story) {
     QStringList found;
     test.window.resize(size);
@@ -80,7 +80,7 @@ class TestClippedText : public QObject {
     QStringList found = clippedAtAllSizes(test, "opened");
     test.press(Qt::Key_F5);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    spin(1000);  // pages fill themselves after the end
+    spin(1000);  // pages are filled after the end
     found << clippedAtAllSizes(test, "calibrated");
     QVERIFY2(found.isEmpty(), qPrintable(found.join('\n')));
     QVERIFY(test.window.close());

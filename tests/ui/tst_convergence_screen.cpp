@@ -73,7 +73,7 @@ class TestConvergenceScreen : public QObject {
                                       iterations.back().cameras[0].reference_from_camera.translation_m.x());
     QCOMPARE(rows[2].series, "x");
     QVERIFY(std::abs(rows[2].y - expected_mm) < 1e-6);
-    QCOMPARE(rows[iterations.size() - 1].y, 0.0);  // the last, against itself
+    QCOMPARE(rows[iterations.size() - 1].y, 0.0);  // the last one, relative to itself
   }
 
   void parameters_canBeRelativeToTheFirst() {
@@ -118,7 +118,7 @@ class TestConvergenceScreen : public QObject {
     QVERIFY2(lines[1].contains("+ ") && lines[1].contains("gyroscope scale and misalignment"),
              qPrintable(lines[1]));
     QVERIFY2(!lines[1].contains("bias"), qPrintable(lines[1]));
-    QVERIFY2(lines.back().contains("noise that was found"), qPrintable(lines.back()));
+    QVERIFY2(lines.back().contains("estimated noise"), qPrintable(lines.back()));
     QVERIFY(panel(screen, kCost).toolTip().contains("jumps"));
   }
 

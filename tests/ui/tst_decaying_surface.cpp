@@ -33,7 +33,7 @@ std::vector<Event> someEvents() {
   return events;
 }
 
-// Whole microseconds are rounded from another instant.
+// Rounding to whole microseconds depends on the time of reference.
 bool nearlySame(const SurfaceFrame& a, const SurfaceFrame& b) {
   if (a.image.size() != b.image.size() || a.events != b.events) return false;
   for (int y = 0; y < a.image.height(); ++y) {

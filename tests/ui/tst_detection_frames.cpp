@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames on the detection screen: the picture at the cursor, what is found in it, and why it has no board.
+// Frames on the detection screen: the picture at the cursor, the detections in it, or the reason for a
+// missing board.
 #include "core/base/time.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t kDetectionFramesEvents = 0, kDetectionFramesFrames = 1;
 
-// All frames of the recording, and questions to ask of them.
+// All frames of the recording, and queries on them.
 struct DetectionFramesAsked {
   EventWindowReader reader;
   FrameQuestion question;
@@ -42,7 +43,7 @@ struct DetectionFramesAsked {
     question.frame = *question.frames->nearest(question.start_ns + nanosecondsFrom(time_s));
     return analyseFrame(question);
   }
-  // The same frames, each changed.
+  // The same frames, each modified.
   void change(const std::string& folder, const std::function<void(Frame&)>& how) {
     auto changed = std::make_shared<FrameCache>(folder);
     for (std::size_t k = 0; k < question.frames->count(); ++k) {
@@ -107,7 +108,7 @@ class TestDetectionFrames : public QObject {
     }
   }
 
-  // Followed from as far away as the run did.
+  // Tracked from as far back as in the run.
   void analysis_findsWhatTheRunFound() {
     DetectionFramesAsked asked(*recorded_);
     const BoardObservations& run = recorded_->pass.cameras[kDetectionFramesFrames];
@@ -148,7 +149,7 @@ class TestDetectionFrames : public QObject {
       QCOMPARE(told, !analysis.frame->due);
       left_out += told;
     }
-    QCOMPARE(left_out, 5);  // of 20 Hz, 10 are wanted
+    QCOMPARE(left_out, 5);  // of 20 Hz, only 10 are needed
   }
 
   void analysis_tellsWhyAFrameHasNoBoard_data() {
@@ -284,7 +285,7 @@ class TestDetectionFrames : public QObject {
     screen.setRun(recorded_->run(), recorded_->session);
     screen.setCamera(kDetectionFramesFrames);
   }
-  // The last in which the run has seen the board.
+  // The last one in which the run detected the board.
   std::size_t foundWindow() const {
     const BoardObservations& seen = recorded_->pass.cameras[kDetectionFramesFrames];
     for (std::size_t k = 0; k < seen.windows.size(); ++k) {

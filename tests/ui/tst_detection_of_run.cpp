@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run on the detection screen: its windows as it saw them, whatever becomes of the
-// document's session, and its reprojections.
+// A run on the detection screen: its original windows, even if the document's session changes, and its
+// reprojections.
 #include "core/geometry/camera_model.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
@@ -15,7 +15,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-// A camera that stands half a metre before the board and looks straight at it, for two seconds.
+// A camera half a metre in front of the board, facing it, for two seconds.
 CalibrationState restingState(const CameraIntrinsics& lens) {
   CalibrationState state;
   state.world_from_imu_rotation = makeUniformSo3Spline(0.0, 2.0, 0.1);
@@ -28,7 +28,7 @@ CalibrationState restingState(const CameraIntrinsics& lens) {
   return state;
 }
 
-// The first circle lies at the origin: half a metre ahead, 5 cm to the left, 20 cm up.
+// The first circle is at the board's origin: half a metre ahead, 5 cm to the left, 20 cm up.
 const Eigen::Vector3d kFirstCircle(-0.05, -0.2, 0.5);
 
 double distanceFrom_px(const QPolygonF& outline, const Eigen::Vector2d& pixel) {
@@ -86,7 +86,7 @@ class TestDetectionOfRun : public QObject {
     if (what == 3) edited.cameras[0].stream = "/another";
     screen.setSession(edited);
     const std::size_t windows = recorded_->pass.cameras[0].windows.size();
-    // Events of another stream are none that the run saw.
+    // Events of another stream were not part of the run.
     QCOMPARE(screen.timeline().windows().size(), what == 3 ? 0 : windows);
     if (what != 3) compareWindows(screen, 60);
     screen.setSession(recorded_->session);

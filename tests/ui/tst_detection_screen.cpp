@@ -27,7 +27,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-// A burst band over the whole recording, and questions to ask of it.
+// A band of bursts over the whole recording, and queries on it.
 struct DetectionScreenAsked {
   const Recorded& recorded;
   EventWindowReader reader;
@@ -110,7 +110,7 @@ class TestDetectionScreen : public QObject {
              reader.overview().error.c_str());
   }
 
-  // The window's own options and the same bursts: the same circles, far within their sigma.
+  // With the window's own options and the same bursts, the circles are the same, far within their sigma.
   void analysis_tracksAsThePassDid() {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
@@ -152,7 +152,8 @@ class TestDetectionScreen : public QObject {
     QVERIFY(found > asked_for / 2);
   }
 
-  // What a changed option shows first, before the search from nothing: processor time, at 346 x 260.
+  // Time until the first picture after a change of options, before the full search: processor time, at 346 x
+  // 260.
   void analysis_firstAnswerTakesLessThanATenthOfASecond() {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
@@ -183,7 +184,7 @@ class TestDetectionScreen : public QObject {
     QVERIFY(screen.view().legend() == ColourLegend::Direction);
   }
 
-  // Whatever is drawn of them.
+  // Any part of them that is drawn.
   void caption_countsTheWindowsEvents_inEveryMode() {
     DetectionScreen screen;
     showGoodWindow(screen, *recorded_);
@@ -225,7 +226,7 @@ class TestDetectionScreen : public QObject {
     QVERIFY2(text.find("(too few bursts)") != std::string::npos, text.c_str());
   }
 
-  // Tracked, but with too few circles: not in the colour of success, nor in two minds about why.
+  // Tracked, but with too few circles: not in the colour of success, and with one consistent reason.
   void missedWindow_isDrawnAsMissed_forOneReason() {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
@@ -245,7 +246,7 @@ class TestDetectionScreen : public QObject {
     WindowReport report = recorded_->goodWindow();
     report.outcome = WindowOutcome::NoLattice;
     panel.show(&analysis, report, false);
-    QVERIFY2(panel.text().contains("Missed in the last run, too"), qPrintable(panel.text()));
+    QVERIFY2(panel.text().contains("Also missed in the last run"), qPrintable(panel.text()));
     QVERIFY(!panel.text().contains("no lattice"));
 
     const Resolution size = asked.question.scene->resolution_px;

@@ -96,7 +96,7 @@ class TestEventView : public QObject {
     QCOMPARE(placesOf(view.grab().toImage(), theme().brighter.rgb()).size(), 0);
   }
 
-  // Each colour of the wheel lies where an edge of that colour moves to.
+  // Each colour of the wheel is in the direction in which an edge of that colour moves.
   void caption_isWhole_whereItIsWiderThanTheView() {
     const auto rowsUnderCaption = [](int width_px) {
       EventView view;
@@ -169,7 +169,7 @@ class TestEventView : public QObject {
     QVERIFY(view.scale() > 30.0);
     QVERIFY((view.sensorFromWidget(at) - before).manhattanLength() < 1e-9);
     wheelForEventView(view, at, -40);
-    QVERIFY(std::abs(view.scale() - 468.0 / 48.0) < 1e-9);  // never smaller than what fits
+    QVERIFY(std::abs(view.scale() - 468.0 / 48.0) < 1e-9);  // never smaller than the fitted size
   }
 
   void drag_pansAndFFits() {
@@ -214,8 +214,8 @@ class TestEventView : public QObject {
     QVERIFY(image.pixelColor(view.widgetFromSensor({41.5, 10.0}).toPoint()) != QColor(0, 255, 0));
   }
 
-  // 33 ms of processor time for rendering (a worker's) and painting (the window's) together: 30 frames/s on
-  // one core, at 5 million events a second.
+  // 33 ms of processor time for rendering (in a worker) and painting (in the window) together: 30 frames/s on
+  // one core, at 5 million events per second.
   void frame_ofAnHdSensorTakesLessThanAThirtieth() {
     constexpr Resolution kHd_px = {1280, 720};
     const std::vector<Event> events = manyEvents(kHd_px, 250'000);
@@ -229,7 +229,7 @@ class TestEventView : public QObject {
       view.render(&canvas);
     }
     const double frame_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / kFrames;
-    qInfo("%.1f ms a frame", frame_ms);
+    qInfo("%.1f ms per frame", frame_ms);
     QVERIFY(frame_ms < 33.0 * evical::ui::test::slowness());
   }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events drawn over a frame through a calibration: the way of one pixel, and the picture of a rig.
+// Events drawn over a frame through a calibration: the transfer of one pixel, and the picture of a rig.
 #include "core/base/time.h"
 #include "core/frames/frame_options.h"
 #include "core/geometry/camera_model.h"
@@ -28,7 +28,7 @@ const CameraIntrinsics kEventLens{
 const CameraIntrinsics kFrameLens{
     CameraModel::PinholeRadtan, {1280, 1024}, {900.0, 901.0}, {640.0, 512.0}, {-0.08, 0.05, 0.0, 0.0}};
 
-// Two cameras before the board that sway and turn for two seconds, with clocks of their own.
+// Two cameras in front of the board that sway and rotate for two seconds, with separate clocks.
 CalibrationState swayingState(double line_delay_us) {
   CalibrationState state;
   state.world_from_imu_rotation = makeUniformSo3Spline(0.0, 2.0, 0.1);
@@ -52,7 +52,7 @@ CalibrationState swayingState(double line_delay_us) {
   return state;
 }
 
-// Where the frame camera sees the point in the row that it sees it in.
+// Pixel at which the frame camera sees the point, in the row that is exposed at that time.
 Eigen::Vector2d seenInFrame(const CalibrationState& state, const Eigen::Vector3d& point, double time_s) {
   const CameraState& camera = state.cameras[kEventsOverFrameFrames];
   Eigen::Vector2d pixel = *project(kFrameLens, *cameraFromWorldAt(state, camera, time_s) * point);
@@ -63,7 +63,7 @@ Eigen::Vector2d seenInFrame(const CalibrationState& state, const Eigen::Vector3d
   return pixel;
 }
 
-// Between the four pixels around a place.
+// Interpolated between the four pixels around a position.
 std::optional<Eigen::Vector2d> carried(EventsOverFrame& transfer, const Eigen::Vector2d& at_px,
                                        double time_s) {
   const int x = static_cast<int>(std::floor(at_px.x())), y = static_cast<int>(std::floor(at_px.y()));
@@ -111,7 +111,7 @@ class TestEventsOverFrame : public QObject {
     int compared = 0;
     for (double frame_time_s = 0.4; frame_time_s < 1.6; frame_time_s += 0.3) {
       transfer.setFrameTime(frame_time_s);
-      for (const double before_s : {0.0, 0.0203, 0.0501}) {  // whole steps of poses
+      for (const double before_s : {0.0, 0.0203, 0.0501}) {  // whole steps between poses
         const double time_s = std::round(1e4 * (transfer.eventTime_s(frame_time_s) - before_s)) * 1e-4;
         const auto camera_from_world =
             *cameraFromWorldAt(*state, state->cameras[kEventsOverFrameEvents], time_s);
@@ -121,7 +121,7 @@ class TestEventsOverFrame : public QObject {
           QVERIFY(at_px);
           const auto there = carried(transfer, *at_px, time_s);
           QVERIFY(there);
-          // A step of rolling rows is taken once.
+          // A step of the rolling shutter is applied once.
           const double distance_px = (*there - seenInFrame(*state, point, frame_time_s)).norm();
           QVERIFY2(distance_px < 0.05, qPrintable(QString::number(distance_px)));
           ++compared;
@@ -143,11 +143,11 @@ class TestEventsOverFrame : public QObject {
     QVERIFY(!EventsOverFrame::isPossible(*state, kEventsOverFrameEvents, kEventsOverFrameFrames));
   }
 
-  // Events within the board lie where the frame has edges; with a wrong time offset they do not.
+  // Events within the board coincide with the frame's edges; with a wrong time offset they do not.
   void events_lieOnTheFramesEdges() {
     const double right = meanSlope(0.0);
     const double late = meanSlope(0.06), early = meanSlope(-0.06);
-    qInfo("mean slope %.1f of 255 a pixel; %.1f and %.1f with offsets 60 ms off", right, late, early);
+    qInfo("mean slope %.1f of 255 per pixel; %.1f and %.1f with offset errors of 60 ms", right, late, early);
     QVERIFY(right > 1.5 * std::max(late, early));
   }
 
@@ -163,8 +163,7 @@ class TestEventsOverFrame : public QObject {
     screen.setRun(run_, recorded_->session);
     QCOMPARE(screen.whyNoOverlay(), QString());
     screen.setCamera(kEventsOverFrameEvents);
-    QTRY_VERIFY_WITH_TIMEOUT(screen.whyNoOverlay().startsWith("Choose the camera with frames"),
-                             20000 * kSlowdown);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.whyNoOverlay().startsWith("Choose the frame camera"), 20000 * kSlowdown);
   }
 
   void screen_showsBothKinds_data() {
@@ -253,8 +252,8 @@ class TestEventsOverFrame : public QObject {
         20000 * kSlowdown);
   }
 
-  // Of frames at the events of the 20 ms before each, where they are within the board's points, with the frames'
-  // time offset off by so much.
+  // Edge strength of frames at the events of the 20 ms before each, within the board's points, with an error
+  // of the frames' time offset.
   double meanSlope(double offset_error_s) const {
     EventWindowReader reader(recorded_->session, kEventsOverFrameFrames,
                              recorded_->folder.path().toStdString(), [] {});

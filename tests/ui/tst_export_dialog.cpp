@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the export dialog proposes, keeps in mind and refuses; what is said afterwards.
+// The export dialog: its proposals, remembered settings, refusals, and the report afterwards.
 #include "ui/window/export_dialog.h"
 
 #include "core/export/export_target.h"
@@ -96,9 +96,9 @@ class TestExportDialog : public QObject {
     QTest::newRow("has files") << scratch_.path() << "are replaced" << true;
     QTest::newRow("file") << scratch_.filePath("file") << "is a file" << false;
     QTest::newRow("none") << "  "
-                          << "Give a folder" << false;
+                          << "Enter a folder" << false;
     QTest::newRow("relative") << "results"
-                              << "whole path" << false;
+                              << "absolute path" << false;
   }
   void folder_isJudgedWhileItIsTyped() {
     QFETCH(QString, folder);
@@ -116,13 +116,12 @@ class TestExportDialog : public QObject {
     ExportNotice notice;
     notice.showOutcome({"/tmp/drive_calibration", {"Kalibr", "OpenVINS"}, {}, true, {}});
     QVERIFY(notice.text().startsWith("The result was exported\nThe files are in /tmp/drive_calibration"));
-    QVERIFY(notice.text().contains("Kalibr, OpenVINS") &&
-            notice.text().contains("all say what the result says"));
+    QVERIFY(notice.text().contains("Kalibr, OpenVINS") && notice.text().contains("all values agree"));
     notice.showOutcome(
         {"/tmp/x", {"Kalibr"}, {"esvo: not exported: has one camera"}, true, {"kalibr: does not read back"}});
     QVERIFY(notice.text().contains("not for all programs"));
     QVERIFY(notice.text().contains("esvo: not exported: has one camera"));
-    QVERIFY(notice.text().contains("kalibr: does not read back") && !notice.text().contains("all say"));
+    QVERIFY(notice.text().contains("kalibr: does not read back") && !notice.text().contains("agree"));
     QTest::keyClick(&notice, Qt::Key_Escape);
     QVERIFY(notice.isHidden());
   }

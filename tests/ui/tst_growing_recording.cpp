@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording that another program is still writing: its card tells more and more, and notices the end.
+// A recording that another program is still writing: its card is updated, and detects the end.
 #include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -27,7 +27,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-// As a recorder does: more and more of the bytes, in pieces that end anywhere.
+// Writes like a recorder: increasing parts of the bytes, in pieces that end anywhere.
 class Recorder : public QObject {
  public:
   Recorder(const QString& path, QByteArray bytes) : file_(path), bytes_(std::move(bytes)) {
@@ -90,7 +90,7 @@ class TestGrowingRecording : public QObject {
     return read;
   }
 
-  // Whole recordings, and sessions for them.
+  // Complete recordings, and sessions for them.
   std::filesystem::path folderOf(const QString& format) const {
     return scratch_.filePath(format).toStdString();
   }
@@ -101,7 +101,7 @@ class TestGrowingRecording : public QObject {
     if (format == "aedat4") {
       simulate(scenario(), folder, {}, "aedat4");
       Session session = readSession(folder / "session.yaml");
-      session.imus[0].acceleration_unit.reset();  // as the format says
+      session.imus[0].acceleration_unit.reset();  // the format states it
       session.imus[0].angular_rate_unit.reset();
       return session;
     }
@@ -178,7 +178,7 @@ class TestGrowingRecording : public QObject {
     const QString missing_first = stillMissing(first), missing_last = stillMissing(last);
     QVERIFY2(missing_last.size() < missing_first.size(), qPrintable(missing_first + '\n' + missing_last));
     QVERIFY2(last.can_be_calibrated, qPrintable(test.card()->text()));
-    // Other pages have all of it as well.
+    // Other pages have all of its data as well.
     DetectionScreen& detection = *test.child<DetectionScreen>();
     QTRY_VERIFY_WITH_TIMEOUT(detection.timeline().end_s() > 3.7, kPatience_ms);
     QVERIFY(test.window.close());
@@ -207,7 +207,7 @@ class TestGrowingRecording : public QObject {
     write(folder / "deeper" / "imu.txt", 20);
     QCOMPARE(bytesOf({folder}), std::uintmax_t{120});
     QCOMPARE(bytesOf({folder / "events.txt", folder / "not_there"}), std::uintmax_t{100});
-    // The session beside it is saved, and results are written: the recording does not grow by that.
+    // The session next to it is saved, and results are written: the recording does not grow by that.
     std::filesystem::create_directories(folder / "2026-11-27");
     write(folder / "session.yaml", 7);
     write(folder / "2026-11-27" / "result.yaml", 11);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a person takes out of the window: rows, poses, drawings, charts and tables.
+// Data that users take from the window: rows, poses, drawings, charts and tables.
 #include "core/export/pose_text.h"
 #include "core/numerics/angles.h"
 #include "tests/support/file_content.h"
@@ -75,7 +75,7 @@ NamedResult stereoRig() {
   return named;
 }
 
-// As many quantities as a stereo rig has.
+// Columns for all quantities of a stereo rig.
 void nameEverything(UncertaintyReport& report) {
   report.columns.clear();
   for (const std::size_t camera : {0, 1}) {
@@ -112,7 +112,7 @@ const SavedForm& formOf(const std::vector<SavedForm>& forms, const QString& suff
                        [&](const SavedForm& form) { return form.suffix == suffix; });
 }
 
-// Saved as a person does, without the question where.
+// Saved like by a user, without the question for the path.
 QByteArray saved(const std::vector<SavedForm>& forms, const QString& suffix) {
   const QTemporaryDir folder;
   FileSaver saver(nullptr);
@@ -243,7 +243,7 @@ class TestHandOn : public QObject {
     QVERIFY(!svg.contains("<image"));
   }
 
-  // Names and lengths, in the least room that the drawing gets, from all sides.
+  // Names and lengths, in the smallest size of the drawing, from all sides.
   void rig_hasNoTextOverAnother() {
     RigDrawing drawing;
     drawing.setResult(rig_);
@@ -349,7 +349,7 @@ class TestHandOn : public QObject {
                                           "0,0.1,0.2,0.3,0.25,0.125\n0.5,1,2,3,0.5,\n"));
   }
 
-  // As large as windows of 1024x700, 1280x800 and 1920x1080 leave it.
+  // Sizes in windows of 1024x700, 1280x800 and 1920x1080.
   void screenshots() {
     NamedResult full = rig_;
     nameEverything(evical::test::ownResult(full).uncertainty);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a display of twice the usual density: everything drawn ourselves is sharp, and the mouse
-// points where it seems to.
+// Display of twice the usual density: all custom drawing is sharp, and the mouse position is correct.
 #include "tests/support/test_program.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/layers.h"
@@ -33,9 +32,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kDensity = 2;  // QT_SCALE_FACTOR, set where ctest is told of this test
+constexpr int kDensity = 2;  // QT_SCALE_FACTOR, set in the ctest entry of this test
 
-// Shares of the picture's 2x2 blocks that are not of one colour: none in a picture that was blown up.
+// Share of the picture's 2x2 blocks that are not of one colour: none in a picture that was enlarged.
 double fineDetail(const QImage& image) {
   int mixed = 0, blocks = 0;
   for (int y = 0; y + 1 < image.height(); y += 2) {
@@ -115,7 +114,7 @@ class TestHighDpi : public QObject {
     view.setFrame(std::make_shared<SurfaceFrame>(renderEvents(events, 1'000'000'000, {10, 8}, style)));
     const QImage image = pictureOf(view);
     QCOMPARE(image.size(), kDensity * view.size());
-    // Just inside and just outside of the pixel's four sides.
+    // Just inside and just outside the pixel's four sides.
     constexpr double kInside = 0.45, kOutside = 0.55;
     for (const QPointF& side : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)}) {
       for (const double distance : {kInside, kOutside}) {
@@ -200,7 +199,7 @@ class TestHighDpi : public QObject {
     view.look(StandardView::Front);
     view.resize(401, 299);
     const QImage image = pictureOf(view);
-    if (!view.problem().isEmpty()) QSKIP("no OpenGL here");
+    if (!view.problem().isEmpty()) QSKIP("OpenGL is not available");
     QCOMPARE(image.size(), kDensity * view.size());
     QVERIFY(fineDetail(image) > 0.001);
     for (const auto& [point, drawn] : {std::pair{Vector3d(-0.17, -0.09, 0.0), true},

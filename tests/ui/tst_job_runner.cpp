@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kJobRunnerPatience_ms = 5000 * kSlowdown;
 
-// Works until it is asked to stop.
+// Works until a stop is requested.
 void workUntilStopped(const RunContext& context) {
   while (true) {
     context.throwIfStopped();
@@ -146,11 +146,11 @@ class TestJobRunner : public QObject {
     QFETCH(int, kind);
     JobRunnerWatched test;
     test.runner.start("Job", {}, [kind](const RunContext&) {
-      if (kind == 0) throw badInput("a.bag", "is no recording", "Give a bag");
+      if (kind == 0) throw badInput("a.bag", "is not a recording", "Give a bag");
       if (kind == 1) throw calibrationFailed("left", "no board", "Show it");
       if (kind == 2) throw std::bad_alloc();
       if (kind == 3) throw std::logic_error("that cannot be");
-      throw 42;  // NOLINT: also this must not be lost
+      throw 42;  // NOLINT: this must not be lost either
     });
     QCOMPARE(test.outcome(), JobOutcome::Failed);
     QTEST(test.error().place, "place");
@@ -161,8 +161,8 @@ class TestJobRunner : public QObject {
   }
 
   void error_readsAsASentence() {
-    const JobError error{true, "a.bag", "is no recording", "Give a bag"};
-    QCOMPARE(error.text(), QString("a.bag: is no recording. Give a bag"));
+    const JobError error{true, "a.bag", "is not a recording", "Give a bag"};
+    QCOMPARE(error.text(), QString("a.bag: is not a recording. Give a bag"));
   }
 
   void deletion_whileRunning_stopsAndWaits() {
@@ -180,7 +180,7 @@ class TestJobRunner : public QObject {
       QTest::qWait(30);
     }
     QVERIFY(ended);
-    QCoreApplication::processEvents();  // nothing that the job posted may come now
+    QCoreApplication::processEvents();  // no posted event of the job may arrive now
   }
 
   void inputsOfTheWork_areGoneWhenItHasFinished() {

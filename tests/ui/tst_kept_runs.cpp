@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs that last: undone, kept, opened again, compared; with a recording that is gone, and from a damaged folder.
+// Kept runs: undone, kept, opened again, compared; with a missing recording, and from a damaged folder.
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "tests/support/test_program.h"
@@ -31,7 +31,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-// Of the Result page: all that it says of the quantities.
+// Text of the Result page: all of its quantities.
 QStringList shownNumbers(WindowFixture& test) {
   QStringList texts;
   const QTreeWidget* const tree = test.child<ResultScreen>()->findChild<QTreeWidget*>();
@@ -66,7 +66,7 @@ class TestKeptRuns : public QObject {
   Q_OBJECT
 
   QTemporaryDir scratch_;
-  QString session_;  // a copy of our own, with runs beside it after the story
+  QString session_;  // a separate copy, with runs next to it after the story
 
   QString runs() const { return scratch_.filePath("session.runs"); }
   QStringList folders() const {
@@ -150,7 +150,7 @@ class TestKeptRuns : public QObject {
     const CalibrationRun& run = *test.document().last().run;
     QCOMPARE(run.result.circle_residuals.size(), saved.run->result.circle_residuals.size());
     QVERIFY(!shownNumbers(test).isEmpty());
-    // Twice the same: what is drawn comes from nothing else.
+    // Identical twice: the drawing depends on nothing else.
     const QStringList numbers = shownNumbers(test), residuals = shownResiduals(test);
     QVERIFY(residuals.join("").size() > 1000);
     WindowFixture again;
@@ -158,7 +158,7 @@ class TestKeptRuns : public QObject {
     QTRY_COMPARE(shownNumbers(again), numbers);
     QCOMPARE(shownResiduals(again), residuals);
     QVERIFY(again.window.close());
-    // Marks of what was found, on the page that has the recording.
+    // Marks of the detections, on the page of the recording.
     test.window.showScreen("detection");
     QTRY_VERIFY_WITH_TIMEOUT(test.child<DetectionScreen>()->timeline().windowAt(2.0).has_value(),
                              kPatience_ms);
@@ -172,7 +172,7 @@ class TestKeptRuns : public QObject {
     RunHistory history;
     history.setSession({}, saved.session.recording);
     QVERIFY(!QString::fromStdString(history.place().string()).startsWith(scratch_.path()));
-    for (int k = 0; k < 2; ++k) history.keep(saved.run, saved.session, "0.0.0", {});  // of the same second
+    for (int k = 0; k < 2; ++k) history.keep(saved.run, saved.session, "0.0.0", {});  // in the same second
     QTRY_COMPARE_WITH_TIMEOUT(history.runs().size(), std::size_t{2}, kPatience_ms);
     const std::filesystem::path before = history.runs().front().folder;
     history.moveTo(file);
@@ -234,9 +234,9 @@ class TestKeptRuns : public QObject {
     QVERIFY(!shownNumbers(test).isEmpty());
     test.window.showScreen("detection");
     auto* const screen = test.child<DetectionScreen>();
-    QPushButton* const look = button(screen, "Look for the recording");
+    QPushButton* const look = button(screen, "Find the recording");
     QTRY_VERIFY_WITH_TIMEOUT(look && look->isVisible(), kPatience_ms);
-    QVERIFY(screen->timeline().windowAt(2.0).has_value());  // what was found is marked without it
+    QVERIFY(screen->timeline().windowAt(2.0).has_value());  // detections are marked without it
     takePictures(test, "missing_recording");
     answerFileDialog(moved);
     QTest::mouseClick(look, Qt::LeftButton);
@@ -259,7 +259,7 @@ class TestKeptRuns : public QObject {
     QVERIFY(opened.wait(kPatience_ms));
     auto* const error = test.child<ErrorPanel>();
     QTRY_VERIFY(error->isVisible());
-    QVERIFY2(error->text().contains("Not everything of this run is there"), qPrintable(error->text()));
+    QVERIFY2(error->text().contains("The run is incomplete"), qPrintable(error->text()));
     QVERIFY2(error->text().contains("trajectory"), qPrintable(error->text()));
     QTRY_VERIFY(!shownNumbers(test).isEmpty());
     for (const QString& name : test.window.screenNames()) {
@@ -277,7 +277,7 @@ class TestKeptRuns : public QObject {
   }
 
  private:
-  // To be looked at.
+  // For visual inspection.
   static void takePictures(WindowFixture& test, const QString& name) {
     for (const bool dark : {false, true}) {
       applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);

@@ -20,7 +20,7 @@ namespace {
 
 using Done = std::function<void()>;
 
-// Works until it is told to stop.
+// Works until a stop is requested.
 Done waitForStop(const std::stop_token& stop, std::atomic<int>& begun) {
   ++begun;
   while (!stop.stop_requested()) std::this_thread::yield();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera's result page: its numbers are the lens's, with their sigmas; another lens beside it; the maps and the views.
+// A camera's result page: the lens's numbers with their sigmas, the comparison with another lens, the maps
+// and the views.
 #include "ui/screens/lens/lens_screen.h"
 
 #include "core/base/error.h"
@@ -31,7 +32,7 @@ namespace {
 
 constexpr double kFocalSigma_px = 0.25;
 
-// A DAVIS346's lens, whose numbers are known independently of each other; circles in the left half of the image.
+// The lens of a DAVIS346 with uncorrelated parameters; circles in the left half of the image.
 NamedIntrinsics lens() {
   NamedIntrinsics named{"left", "/left/events", "test", {}, {}};
   IntrinsicsResult& result = named.result;
@@ -61,7 +62,7 @@ NamedIntrinsics lens() {
   return named;
 }
 
-// Focal lengths off by four of our sigmas.
+// Focal lengths with an error of four sigmas.
 KnownIntrinsics otherLens() {
   KnownIntrinsics other{lens().result.intrinsics, {}};
   other.camera.focal_length_px.array() -= 4.0 * kFocalSigma_px;
@@ -106,12 +107,12 @@ class TestLensScreen : public QObject {
     QCOMPARE(rowOf(screen, "Principal point y")->text(1), QString("131.50"));
     QCOMPARE(rowOf(screen, "Distortion k1")->text(1), QString("-0.3000"));
     QCOMPARE(rowOf(screen, "Distortion k1")->text(2), QString("0.0020"));
-    QVERIFY(!rowOf(screen, "Distortion k3"));  // which this lens goes without
+    QVERIFY(!rowOf(screen, "Distortion k3"));  // which this lens does not have
     QCOMPARE(rowOf(screen, "Reprojection error, RMS")->text(1), QString("0.123"));
     QCOMPARE(rowOf(screen, "Views used")->text(1), QString("2 of 140"));
     QCOMPARE(rowOf(screen, "Board's distance")->text(1), QString("0.60 to 1.20"));
-    QVERIFY(rowOf(screen, "Pinhole, radial-tangential (taken)"));
-    QVERIFY(!rowOf(screen, "Pinhole, equidistant")->text(0).contains("taken"));
+    QVERIFY(rowOf(screen, "Pinhole, radial-tangential (selected)"));
+    QVERIFY(!rowOf(screen, "Pinhole, equidistant")->text(0).contains("selected"));
     QVERIFY(!rowOf(screen, "Edge localisation bias"));  // frames have none
   }
 
@@ -132,7 +133,7 @@ class TestLensScreen : public QObject {
     screen.setLens(lens());
     auto* const tree = screen.findChild<QTreeWidget*>("lens_numbers");
     QVERIFY(tree->isColumnHidden(4));
-    screen.setOthers({{"factory.yaml", otherLens()}});  // a new one is compared with at once
+    screen.setOthers({{"factory.yaml", otherLens()}});  // a new one is compared immediately
     QVERIFY(!tree->isColumnHidden(4));
     QCOMPARE(rowOf(screen, "Focal length x")->text(4), QString("+1.00"));
     QCOMPARE(rowOf(screen, "Focal length x")->text(5), QString("4.0"));
@@ -166,12 +167,12 @@ class TestLensScreen : public QObject {
     equidistant.camera.distortion = {};
     screen.setOthers({{"equidistant.yaml", equidistant}});
     QVERIFY(screen.findChild<QTreeWidget*>("lens_numbers")->isColumnHidden(4));
-    QVERIFY(allTextForLensScreen(screen).contains("Their models differ"));
+    QVERIFY(allTextForLensScreen(screen).contains("The models differ"));
     KnownIntrinsics larger = otherLens();
     larger.camera.resolution_px = {640, 480};
     screen.setOthers({{"vga.yaml", larger}});
     QVERIFY2(
-        allTextForLensScreen(screen).contains("is for an image of 640 x 480 px, this one for 346 x 260 px"),
+        allTextForLensScreen(screen).contains("is for images of 640 x 480 px, but this one for 346 x 260 px"),
         qPrintable(allTextForLensScreen(screen)));
   }
 

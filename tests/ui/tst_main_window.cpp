@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole story, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export, reopen.
+// The complete workflow, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export,
+// reopen.
 #include "core/frontend/front_end_options.h"
 #include "ui/window/main_window.h"
 
@@ -50,7 +51,7 @@ QAction* actionOf(const MainWindow& window, const QString& text) {
   return nullptr;
 }
 
-// Of labels and buttons that are not hidden, though their page may not be in front.
+// Labels and buttons that are not hidden, even if their page is not in front.
 QString visibleTexts(const QWidget& page) {
   QString all;
   for (const QLabel* const label : page.findChildren<QLabel*>())
@@ -169,7 +170,7 @@ class TestMainWindow : public QObject {
     const QString fake = scratch_.filePath("fake.bag");
     QFile file(fake);
     QVERIFY(file.open(QIODevice::WriteOnly));
-    file.write("this is no recording at all\n");
+    file.write("this is not a recording\n");
     file.close();
     WindowFixture test;
     test.window.files().open(fake);
@@ -211,7 +212,7 @@ class TestMainWindow : public QObject {
     QVERIFY(std::abs(lens().detection_intrinsics->focal_length_px.x() - truth_px) < 0.005 * truth_px);
     QVERIFY(!test.document().runIsOutdated());
     test.window.showScreen("result");
-    spin(200);  // filled in a turn of its own
+    spin(200);  // filled in a later turn of the event loop
     QStringList rows;
     for (const QTreeWidget* const tree : test.child<ResultScreen>()->findChildren<QTreeWidget*>())
       for (QTreeWidgetItem* const row :
@@ -261,7 +262,7 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // It would read as if the recording were to be written; and there is nothing to be lost.
+  // A question would read as if the recording were to be written, and nothing can be lost.
   void recordingThatNobodyTouched_isLeftWithoutAQuestion() {
     WindowFixture test;
     QSignalSpy opened(&test.window.files(), &SessionFiles::opened);
@@ -271,7 +272,7 @@ class TestMainWindow : public QObject {
     QVERIFY(test.document().file().isEmpty());
     QVERIFY(!test.window.isWindowModified());
     auto* const save = test.child<QAction>("save");
-    QVERIFY(save->isEnabled());  // it may be kept as a session all the same
+    QVERIFY(save->isEnabled());  // it may nevertheless be saved as a session
     QVERIFY(test.window.close());
   }
 
@@ -307,7 +308,7 @@ class TestMainWindow : public QObject {
     QVERIFY(drop.isAccepted());
   }
 
-  // A title bar has room, too.
+  // A title bar needs space, too.
   void firstStart_fitsTheScreen() {
     WindowFixture test;
     QVERIFY(test.window.height() < test.window.screen()->availableGeometry().height() - 30);
@@ -339,7 +340,7 @@ class TestMainWindow : public QObject {
     QVERIFY(guide->findChild<QTextBrowser*>()->toPlainText().contains("noise densities"));
   }
 
-  // The least of up to three runs: what else the machine or its host does only ever adds.
+  // The minimum of up to three runs: other load on the machine or its host can only increase the time.
   void calibrating_neverStallsTheWindow() {
     double least_ms = std::numeric_limits<double>::max();
     for (int run = 0; run < 3 && least_ms >= 50.0 * slowness(); ++run) {
@@ -430,7 +431,7 @@ class TestMainWindow : public QObject {
     QCOMPARE(reader.file, QFileInfo(folder).absoluteFilePath());
   }
 
-  // The browser's part is ours for a moment.
+  // The test takes the browser's role for a moment.
   void openTheReport(WindowFixture& test) {
     ReportReader reader;
     QDesktopServices::setUrlHandler("file", &reader, "open");

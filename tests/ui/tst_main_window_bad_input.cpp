@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What goes wrong around the program: disks that are full, recordings that vanish or are cut off
-// while they are used, files that are something else, a computer without OpenGL. The window lives on
-// and says what to do.
+// External faults: full disks, recordings that disappear or are truncated during use, files of another type,
+// a computer without OpenGL. The window keeps running and gives advice.
 #include "ui/window/main_window.h"
 
 #include "core/recording/conversion.h"
@@ -33,7 +32,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-constexpr int kSoon_ms = 20'000 * kSlowdown;  // of what takes next to nothing
+constexpr int kSoon_ms = 20'000 * kSlowdown;  // for work that takes hardly any time
 
 void writeFile(const QString& path, const QByteArray& content) {
   QFile file(path);
@@ -80,8 +79,8 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(!test.child<ErrorPanel>()->isVisible());
   }
 
-  // An accelerometer that is read the wrong way round: the panel offers what mends it, a click does, and undo takes it
-  // back.
+  // An accelerometer with reversed axes: the panel offers the repair, a click applies it, and undo reverts
+  // it.
   void failureWithARepair_isMendedByAClick() {
     WindowFixture test;
     Session session = readSession(simulatedSession().toStdString());
@@ -121,8 +120,8 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // Events in one file, IMU samples in another: the second brings what the session lacks. One that is none
-  // changes nothing, and the streams stay listed.
+  // Events in one file, IMU samples in another: the second adds the sensors that the session lacks. A file
+  // without sensors changes nothing, and the streams stay listed.
   void recordingInTwoFiles_isPutTogether() {
     const QTemporaryDir folder;
     convertRecording({readSession(simulatedSession().toStdString()).recording,
@@ -155,7 +154,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // What was open stays open, with its streams.
+  // The open recording stays open, with its streams.
   void recordingThatIsNone_leavesTheOpenOneAlone() {
     const QTemporaryDir folder;
     WindowFixture test;
@@ -171,8 +170,8 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // Its events are in a cache of the program's own; calibrating it again cannot work, and
-  // says which file is gone.
+  // Its events are in the program's cache; calibrating it again cannot work, and the message names the
+  // missing file.
   void recordingRemoved_whilePlaying() {
     const QTemporaryDir folder;
     WindowFixture test;
@@ -200,11 +199,11 @@ class TestMainWindowBadInput : public QObject {
     test.window.files().open(copyWithRecording(folder.path()));
     calibrateUntilDetecting(test);
     QVERIFY(QFile::remove(folder.filePath("recording.bag")));
-    QCOMPARE(test.waitForJob(), JobOutcome::Done);  // an open file lives on
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);  // an open file continues to exist
     QVERIFY(test.document().last().run);
   }
 
-  // What was there can still be used; or nothing can, and the reason is said. Never more than that.
+  // The existing data can still be used; or nothing can, and the reason is given. Never more than that.
   void recordingCutOff_whileCalibrating() {
     const QTemporaryDir folder;
     WindowFixture test;
@@ -282,8 +281,8 @@ class TestMainWindowBadInput : public QObject {
     QTest::newRow("empty") << "empty.bag" << QByteArray();
     QTest::newRow("a picture") << "picture.png" << QByteArray("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
     QTest::newRow("a bag's first line only") << "short.bag" << QByteArray("#ROSBAG V2.0\n");
-    QTest::newRow("a bag that lies") << "lie.bag"
-                                     << QByteArray("#ROSBAG V2.0\n\xff\xff\xff\x7f\xff\xff\xff\x7f", 21);
+    QTest::newRow("a bag with false contents")
+        << "lie.bag" << QByteArray("#ROSBAG V2.0\n\xff\xff\xff\x7f\xff\xff\xff\x7f", 21);
     QTest::newRow("words") << "words.txt" << QByteArray("to be or not to be\nthat is the question\n");
     QTest::newRow("a folder of nothing") << "." << QByteArray();
     QTest::newRow("nothing at all") << "/nonexistent/recording.bag" << QByteArray();
@@ -305,7 +304,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.files().recentFiles().isEmpty());
   }
 
-  // The front end succeeds; then the IMU's samples turn out to be of another time.
+  // The front end succeeds; then the IMU samples turn out to be from another time.
   void calibrationFailingHalfWay_keepsWhatWasThereBefore() {
     WindowFixture test;
     test.window.files().open(simulatedSession());
@@ -331,7 +330,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // In a process of its own: the drivers are looked for once.
+  // In a separate process, since drivers are searched only once.
   void withoutOpenGl_everythingElseWorks() {
     if (qEnvironmentVariable(kEglVendors) != kNoEglVendor) {
       QProcess process;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session of two cameras in the real window: whoever lets a camera be chosen shows that camera's things.
+// A session of two cameras in the real window: each page with a choice of camera shows the data of that
+// camera.
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"
@@ -35,7 +36,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-// The one that lists the cameras; it is seen once there is something to choose from.
+// The control that lists the cameras; it is visible if there is more than one.
 QComboBox* cameraBox(QWidget* screen) {
   for (QComboBox* const box : screen->findChildren<QComboBox*>()) {
     if (box->count() == 2 && box->itemText(0) == "left" && box->itemText(1) == "right") return box;
@@ -49,7 +50,7 @@ void choose(QComboBox* box, int index) {
   QCOMPARE(box->currentIndex(), index);
 }
 
-// Mean place of the circles that the front end found in the picture.
+// Mean position of the circles that the front end found in the picture.
 QPointF middleOf(const WindowAnalysis& analysis) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const auto& circle : analysis.trace().circles) sum += circle.centre_px;
@@ -81,7 +82,7 @@ class TestMainWindowCameras : public QObject {
       for (int row = 0; row < streams->rowCount(); ++row) cameras += streams->role(row) == StreamRole::Camera;
       return cameras;
     };
-    QTRY_COMPARE_WITH_TIMEOUT(camerasListed(), 2, kPatience_ms);  // each is in a file of its own
+    QTRY_COMPARE_WITH_TIMEOUT(camerasListed(), 2, kPatience_ms);  // each is in a separate file
     QStringList tabs;
     for (QTabWidget* const widget : test_->child<RecordingScreen>()->findChildren<QTabWidget*>()) {
       for (int k = 0; k < widget->count(); ++k) tabs << widget->tabText(k);
@@ -131,7 +132,7 @@ class TestMainWindowCameras : public QObject {
     }
   }
 
-  // Live windows of the camera that is not chosen must not appear.
+  // Live windows of a camera that is not selected must not appear.
   void live_followsTheChosenCamera() {
     test_->window.showScreen("detection");
     auto* const screen = test_->child<DetectionScreen>();
@@ -144,7 +145,7 @@ class TestMainWindowCameras : public QObject {
     choose(cameraBox(screen), 0);
   }
 
-  // The other one's picture is what it shows when it is chosen.
+  // The other camera's picture is the one that it shows when selected.
   void detection_showsBothCamerasSideBySide() {
     test_->window.showScreen("detection");
     auto* const screen = test_->child<DetectionScreen>();
@@ -158,7 +159,7 @@ class TestMainWindowCameras : public QObject {
         kPatience_ms);
     QVERIFY(screen->companionView().legend() == ColourLegend::Polarity);
     QTRY_VERIFY_WITH_TIMEOUT(beside()->events > 100, kPatience_ms);
-    QTest::qWait(500);  // until all of its recording has been read
+    QTest::qWait(500);  // until its whole recording has been read
     QVERIFY(test_->window.grab().save(screenshotPath("detection_both_cameras.png")));
     const auto other = beside();
     screen->setPicture(PictureChoice::Alone);
@@ -267,7 +268,7 @@ class TestMainWindowCameras : public QObject {
     return all;
   }
 
-  // In the chart that has `mark` among its series.
+  // In the chart that has the series `mark`.
   static int pointsOf(QWidget* screen, const char* mark, const QString& series) {
     for (const QString& csv : charts(screen)) {
       if (csv.contains(mark)) return static_cast<int>(csv.count('\n' + series + ','));
@@ -282,7 +283,7 @@ class TestMainWindowCameras : public QObject {
     return count;
   }
 
-  // An instant at which both cameras saw the whole board.
+  // A time at which both cameras saw the whole board.
   double commonWindow_s() const {
     const auto& cameras = test_->document().last().run->pass.cameras;
     for (const WindowReport& left : cameras[0].windows) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An HD recording in the real window: nothing stalls it, and the event view keeps up
-// while the front end runs.
+// An HD recording in the real window: nothing stalls it, and the event view is updated in time while the
+// front end runs.
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"
@@ -29,7 +29,7 @@ namespace {
 constexpr double kLongestStall_ms = 50.0;
 constexpr double kLeastFrames_hz = 30.0;
 
-// The longest of each kind of moment.
+// The longest stall for each kind of moment.
 class Stalls {
  public:
   void take(StallMeter& meter, const QString& moment) {
@@ -43,7 +43,7 @@ class Stalls {
       qInfo("%5.1f ms, %5.1f ms of them computing: %s", stall->longest_ms, stall->work_ms,
             qPrintable(stall.key()));
   }
-  // Of each moment of both the lesser.
+  // The lesser of both for each moment.
   Stalls lesser(const Stalls& other) const {
     Stalls lesser = *this;
     for (auto stall = other.stalls_.begin(); stall != other.stalls_.end(); ++stall) {
@@ -101,8 +101,8 @@ class TestMainWindowHd : public QObject {
     session_ = simulatedHdSession();
   }
 
-  // A moment stalls the window where it does so each time: what else runs, on this machine or beside it on
-  // its host, only ever makes one run's moment longer, so that the least of up to three counts.
+  // A moment counts as a stall only if it stalls in each run: other load, on this machine or on its host, can
+  // only lengthen a moment in one run, so the minimum of up to three counts.
   void calibrating_neverStallsTheWindow() {
     Stalls least;
     bool fine = false;
@@ -114,16 +114,16 @@ class TestMainWindowHd : public QObject {
       least = run == 0 ? *stalls : least.lesser(*stalls);
       least.print();
       if (!others.quiet())
-        qInfo("others keep %.1f processors busy: only computing counts", others.processors());
+        qInfo("others keep %.1f processors busy: only computing time counts", others.processors());
       const double slower = std::max(slowness_before, slowness());
-      if (slower > 1.1) qInfo("a machine %.1f times slower than meant", slower);
+      if (slower > 1.1) qInfo("the machine is %.1f times slower than the reference", slower);
       fine = (others.quiet() ? least.longest_ms() : least.longestWork_ms()) < slower * kLongestStall_ms;
     }
     QVERIFY(fine);
   }
 
-  // The cursor plays beside the calibration, so that the view has a new picture whenever it can show one.
-  // What else runs on the machine only ever takes from the rate: the best of three counts.
+  // The cursor plays during the calibration, so that the view always has a new picture to show. Other load on
+  // the machine can only decrease the rate: the best of three counts.
   void eventView_paintsThirtyTimesASecond_whileTheFrontEndRuns() {
     double pictures_hz = 0.0;
     bool quiet = false;
@@ -134,16 +134,16 @@ class TestMainWindowHd : public QObject {
       quiet = quiet || others.quiet();
     }
     if (pictures_hz >= least_hz) return;
-    if (!quiet) QSKIP("the machine is busy with other work: no rate by the clock can be asked for");
+    if (!quiet) QSKIP("the machine is busy with other work: rates in wall time are not meaningful");
     QFAIL(qPrintable(QString("%1 pictures/s").arg(pictures_hz)));
   }
 
  private:
-  // Screen after screen while it runs and afterwards, then the instants of the recording one after the other.
+  // One screen after the other, during the run and afterwards, then the times of the recording in order.
   std::optional<Stalls> stallsOfACalibration() {
     StallMeter meter;
     WindowFixture test;
-    qInfo("%5.1f ms: the window is made and shown", meter.restart_ms());
+    qInfo("%5.1f ms: the window is created and shown", meter.restart_ms());
     test.window.files().open(session_);
     spin(300);
     qInfo("%5.1f ms: the session is opened", meter.restart_ms());
@@ -162,7 +162,7 @@ class TestMainWindowHd : public QObject {
       return std::nullopt;
     }
     if (shown <= screens.size()) {
-      qWarning("too short to look at every screen");
+      qWarning("the run is too short to show every screen");
       return std::nullopt;
     }
     spin(static_cast<int>(screens.size()) * 170);
@@ -201,7 +201,7 @@ class TestMainWindowHd : public QObject {
     return meant ? counter.pictures / duration_s : 0.0;
   }
 
-  // Cold jumps: each is a new picture, a new search from nothing, and a new pose in the 3D view.
+  // Jumps without cached results: each needs a new picture, a new full search, and a new pose in the 3D view.
   static void lookAround(WindowFixture& test, StallMeter& meter, Stalls& stalls) {
     auto* const screen = test.child<DetectionScreen>();
     for (const QString& name : {QString("detection"), QString("trajectory"), QString("signals")}) {

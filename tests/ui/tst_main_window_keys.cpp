@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys work wherever the focus is after what people do with the mouse.
+// Keys work for any focus that remains after mouse actions.
 #include "core/optimisation/optimisation_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
@@ -30,13 +30,13 @@ using namespace evical::ui::test;
 
 namespace {
 
-// As the keyboard does: to whatever has the focus.
+// Sends keys to the focused widget, like the keyboard.
 void pressKey(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
   QVERIFY(QApplication::focusWidget() != nullptr);
   QTest::keyClick(QApplication::focusWidget(), key, modifiers);
 }
 
-// A test of Detection's keys after somebody has done something else.
+// A test of Detection's keys after another action of the user.
 struct Opened : WindowFixture {
   explicit Opened(const QString& session) { window.files().open(session); }
   DetectionScreen& detection() { return *child<DetectionScreen>(); }
@@ -157,13 +157,13 @@ class TestMainWindowKeys : public QObject {
     QVERIFY(of_pages >= 11);
   }
 
-  // Of every page, and of every motion: each is there, and is shown in its part.
+  // Every page and every motion is present, and is shown in its section.
   void guide_hasPictures() {
     WindowFixture test;
     test.press(Qt::Key_F1);
     auto* const browser = test.child<QDialog>("user_guide")->findChild<QTextBrowser*>();
     QTRY_VERIFY(browser->verticalScrollBar()->maximum() > 1000);
-    QTRY_COMPARE(browser->verticalScrollBar()->value(), 0);  // it opens at its beginning
+    QTRY_COMPARE(browser->verticalScrollBar()->value(), 0);  // it opens at the top
     QStringList shown;
     for (QTextBlock block = browser->document()->begin(); block.isValid(); block = block.next())
       for (auto part = block.begin(); !part.atEnd(); ++part)
@@ -178,7 +178,7 @@ class TestMainWindowKeys : public QObject {
         for (int x = 0; x < image.width(); x += 3) colours << image.pixel(x, y);
       QVERIFY2(colours.size() > 8, qPrintable(name));
     }
-    for (const QString& page : test.window.screenNames().mid(0, 8))  // those that one recording fills
+    for (const QString& page : test.window.screenNames().mid(0, 8))  // those with the data of one recording
       QVERIFY2(shown.filter(page == "result" ? "result-light" : page).size() >= 1, qPrintable(page));
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of windows in the main window: what is rejected there goes into the next run, and is undone; a residual
+// The list of windows in the main window: rejections apply to the next run and can be undone; a residual
 // leads to its window.
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
@@ -46,7 +46,7 @@ struct Story : WindowFixture {
     for (int row = 0; row < list().model().rowCount(); ++row) count += list().model().isRejected(row) ? 1 : 0;
     return count;
   }
-  // With Shift from the first to the last, and the key.
+  // Selects from the first to the last with Shift, then presses the key.
   void rejectRows(int first, int last, Qt::KeyboardModifiers modifiers = {}) {
     table().scrollTo(table().model()->index(first, 0), QAbstractItemView::PositionAtTop);
     const auto at = [&](int row) {
@@ -108,7 +108,7 @@ class TestMainWindowWindows : public QObject {
     QCOMPARE(second->pass.cameras[0].views.size(), views - static_cast<std::size_t>(rejected));
     QVERIFY(!test.document().rejectionsArePending());
 
-    // Taken back for good, by another run; what is measured is what it was.
+    // Undone permanently by another run; the measurements are the original ones.
     test.list().setFilter(WindowFilter::Rejected);
     test.rejectRows(0, rejected - 1, Qt::ShiftModifier);
     QCOMPARE(test.rejectedInList(), 0);

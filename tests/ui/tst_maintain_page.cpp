@@ -1,4 +1,4 @@
-// The story of who cannot go before a board again: logs of the IMUs are held against the old result.
+// Story of a user without access to a board: logs of the IMUs are compared with the old result.
 #include "core/pipeline/simulate/drive_simulation.h"
 #include "core/report/assessment_report.h"
 #include "core/synthetic/drive_scenario.h"
@@ -54,7 +54,7 @@ class TestMaintainPage : public QObject {
   static QPushButton* button(WindowFixture& test, const char* name) {
     return page(test).findChild<QPushButton*>(name);
   }
-  // By the dialog, the field, and the page's own button.
+  // Through the dialog, the field, and the page's own button.
   static void look(WindowFixture& test, const QString& log, const QString& result) {
     answerFileDialog(log);
     QTest::mouseClick(button(test, "add_logs"), Qt::LeftButton);
@@ -219,7 +219,7 @@ class TestMaintainPage : public QObject {
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const name : {"maintenance.yaml", "report.html", "track1.csv", "stops.csv", "log.txt"})
       QVERIFY2(QFileInfo(QDir(folder).filePath(name)).size() > 0, name);
-    QVERIFY(test.child<ExportNotice>()->text().contains("What was found of the IMUs was saved"));
+    QVERIFY(test.child<ExportNotice>()->text().contains("The maintenance of the IMUs was saved"));
   }
 };
 

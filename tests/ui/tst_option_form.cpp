@@ -23,7 +23,7 @@ using namespace evical::ui;
 
 namespace {
 
-// A form over options, as the window wires it to the document.
+// A form for options, connected to the document like in the window.
 struct OptionFormFixture {
   CalibrationOptions options;
   OptionForm form;
@@ -96,14 +96,14 @@ class TestOptionForm : public QObject {
     const int before = test.options.front_end->grid.least_circles;
     test.type("grid.least_circles", "-3");
     QCOMPARE(test.options.front_end->grid.least_circles, before);
-    QVERIFY(test.allText("grid.least_circles").contains("below the least"));
+    QVERIFY(test.allText("grid.least_circles").contains("below the minimum"));
     QVERIFY(test.allText("grid.least_circles").contains(QString("It stays at %1").arg(before)));
     QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
     test.type("grid.least_circles", "banana");
     QVERIFY(test.allText("grid.least_circles").contains("'banana' is not a whole number"));
     QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
     test.type("grid.least_circles", "9");
-    QVERIFY(!test.allText("grid.least_circles").contains("below the least"));
+    QVERIFY(!test.allText("grid.least_circles").contains("below the minimum"));
     QCOMPARE(test.options.front_end->grid.least_circles, 9);
   }
 
@@ -136,7 +136,7 @@ class TestOptionForm : public QObject {
     }
   }
 
-  // Every position of every slider is a value that the option takes.
+  // Every position of every slider is a valid value of the option.
   void slider_endsAreWithinTheRange() {
     OptionFormFixture test;
     for (const OptionRow& row : documentedOptions()) {
@@ -144,8 +144,9 @@ class TestOptionForm : public QObject {
       if (slider == nullptr) continue;
       for (const int position : {slider->maximum(), slider->minimum()}) {
         slider->setValue(position);
-        QVERIFY2(!test.allText(QString::fromStdString(row.name)).contains(" the least"), row.name.c_str());
-        QVERIFY2(!test.allText(QString::fromStdString(row.name)).contains("above the most"),
+        QVERIFY2(!test.allText(QString::fromStdString(row.name)).contains("below the minimum"),
+                 row.name.c_str());
+        QVERIFY2(!test.allText(QString::fromStdString(row.name)).contains("above the maximum"),
                  row.name.c_str());
       }
       test.options = {};
@@ -177,19 +178,19 @@ class TestOptionForm : public QObject {
     QCOMPARE(test.options, CalibrationOptions{});
     QVERIFY(test.field(lower)->text() != QString("0.1"));
     for (const QString& name : {lower, upper}) QVERIFY2(test.allText(name).contains(said), qPrintable(name));
-    test.type(upper, "0.15");  // taken, as the value that was refused doesn't count
+    test.type(upper, "0.15");  // accepted, since the value that was refused does not count
     for (const QString& name : {lower, upper}) QVERIFY2(!test.allText(name).contains(said), qPrintable(name));
     test.type(lower, "0.1");
     QCOMPARE(test.options.front_end->detection.shortest_window_s, 0.1);
     QVERIFY(!test.allText(lower).contains(said));
     test.type(upper, "0.05");
     QVERIFY(test.allText(lower).contains(said));
-    test.type(upper, "0.15");  // what holds
+    test.type(upper, "0.15");  // the value in use
     for (const QString& name : {lower, upper}) QVERIFY2(!test.allText(name).contains(said), qPrintable(name));
     test.type(upper, "0.05");
-    test.type(upper, "7");  // a mistake of its own
+    test.type(upper, "7");  // a separate mistake
     QVERIFY(!test.allText(lower).contains(said));
-    QVERIFY(test.allText(upper).contains("above the most"));
+    QVERIFY(test.allText(upper).contains("above the maximum"));
   }
 
   void resetThatAnotherExcludes_isRefusedNextToBoth() {

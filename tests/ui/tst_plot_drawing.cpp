@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plot draws, and how fast.
+// Content and speed of a plot's drawing.
 #include "tests/support/processor_time.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"

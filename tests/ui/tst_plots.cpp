@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a person does with a plot: looks closer, points at it, hides a curve, keeps it as a file.
+// User actions on a plot: zoom, point, hide a curve, save as a file.
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_hands.h"
 #include "tests/ui/plot_pictures.h"
@@ -50,7 +50,7 @@ void TestPlots::wheel_zoomsTimeOnlyAndWithControlTheValues() {
   QCOMPARE(panel.yRange(), y);
   const auto x = panel.xRange();
   QVERIFY(x.second - x.first < 9.0);
-  QVERIFY(std::abs(0.5 * (x.first + x.second) - 5.0) < 0.1);  // the mouse's place stays
+  QVERIFY(std::abs(0.5 * (x.first + x.second) - 5.0) < 0.1);  // the position under the mouse stays
   wheel(panel, panel.pixelAt(5.0, 5.0), Qt::ControlModifier);
   QCOMPARE(panel.xRange(), x);
   QVERIFY(panel.yRange().second < y.second);

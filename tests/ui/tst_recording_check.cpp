@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recording is looked through by itself after it is opened: what the page says then, and that nothing waits for it.
+// Automatic check of an opened recording: the page's report, which nothing else waits for.
 #include "core/optimisation/optimisation_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
@@ -102,7 +102,7 @@ class TestRecordingCheck : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(!test.check.running(), 5000 * kSlowdown);
     QVERIFY(since.elapsed_ms() < 2000.0 * slowness());
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    spin(2000);  // the result says more: nothing starts anew
+    spin(2000);  // the result has more information: nothing starts again
     QVERIFY(!test.check.running());
     QCOMPARE(test.checked.size(), 0);
     QVERIFY(test.window.close());
@@ -157,7 +157,7 @@ class TestRecordingCheck : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // Of a camera alone nobody asks how far apart the sensors are, nor how an IMU was moved.
+  // With a single camera, neither the distance between the sensors nor an IMU's motion is assessed.
   void cameraAlone_isJudgedWithoutTheRig() {
     CheckFixture test;
     test.window.workbench().lens.setAim(CalibrationAim::Camera);
@@ -169,7 +169,7 @@ class TestRecordingCheck : public QObject {
       QVERIFY2(one.thing != AssessedThing::Translation && one.thing != AssessedThing::Turns &&
                    one.thing != AssessedThing::Obstacle,
                nameOf(one.thing));
-    QVERIFY2(!test.card()->text().contains("how far apart"), qPrintable(test.card()->text()));
+    QVERIFY2(!test.card()->text().contains("distance between the sensors"), qPrintable(test.card()->text()));
     // The rig is judged anew.
     test.window.workbench().lens.setAim(CalibrationAim::Rig);
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
@@ -182,7 +182,7 @@ class TestRecordingCheck : public QObject {
     for (const Light light : {Light::Good, Light::Fair, Light::Poor}) {
       LightMark mark;
       mark.setLight(light);
-      // Where something is painted, whatever the colour.
+      // Areas that are painted, in any colour.
       QImage shape = mark.grab().toImage().convertToFormat(QImage::Format_RGB32);
       const QRgb ground = shape.pixel(0, 0);
       for (int y = 0; y < shape.height(); ++y)

@@ -29,7 +29,7 @@ using namespace evical::ui;
 
 namespace {
 
-// The screen over a session, as the window wires it.
+// The screen with a session, wired like in the window.
 struct RecordingScreenFixture {
   Session session;
   std::shared_ptr<const Inspection> inspection;
@@ -185,7 +185,7 @@ class TestRecordingScreen : public QObject {
     QVERIFY(!inkOf(25));  // 625
   }
 
-  // The sheet's rim grows with the drawing; its measure above keeps its place.
+  // The sheet's margin grows with the drawing; the ruler above stays at its place.
   void largeDrawing_hasItsMeasureInIt() {
     BoardDrawing drawing;
     drawing.resize(1000, 1200);
@@ -251,13 +251,13 @@ class TestRecordingScreen : public QObject {
     QTest::addColumn<QString>("words");
     QTest::newRow("no number") << "soon"
                                << ""
-                               << "Give seconds";
+                               << "Enter seconds";
     QTest::newRow("negative") << "-1"
                               << ""
-                              << "Give seconds";
+                              << "Enter seconds";
     QTest::newRow("not finite") << "0"
                                 << "inf"
-                                << "Give seconds";
+                                << "Enter seconds";
     QTest::newRow("end first") << "2"
                                << "1"
                                << "after the begin";
@@ -282,7 +282,7 @@ class TestRecordingScreen : public QObject {
     QVERIFY2(shown->text().contains(words), qPrintable(shown->text()));
     QCOMPARE(shown->property("role").toString(), QString("problem"));
     QVERIFY(test.edits.isEmpty());
-    QCOMPARE(begin_field->text(), begin);  // to be mended
+    QCOMPARE(begin_field->text(), begin);  // to be corrected
   }
 
   void units_areTheFormats_untilTheyAreGiven() {
@@ -292,7 +292,7 @@ class TestRecordingScreen : public QObject {
     test.screen.setSession(test.session);
     const auto boxes = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>();
     for (const QComboBox* const units : {boxes.at(1), boxes.at(2)}) {
-      QCOMPARE(units->currentText(), QString("as the format says"));
+      QCOMPARE(units->currentText(), QString("from the file"));
       QVERIFY(!units->toolTip().isEmpty());
     }
     boxes.at(2)->setCurrentIndex(2);
@@ -360,7 +360,7 @@ class TestRecordingScreen : public QObject {
     QVERIFY(test.session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
   }
 
-  // The fields are those of the model, and start as a lens of that model does.
+  // The fields are those of the model, with the start values of such a lens.
   void coefficients_areThoseOfTheModel() {
     RecordingScreenFixture test;
     auto* const form = test.screen.findChild<CameraForm*>();
@@ -414,7 +414,7 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.session.cameras[1].same_sensor_as, first.toStdString());
     RecordingScreenFixture::type(nameOf(formOf(first)), "davis");
     QCOMPARE(test.session.cameras[1].same_sensor_as, std::string("davis"));
-    // Which another camera's sensor is cannot be another's.
+    // A camera whose sensor another one uses cannot use that of a third one.
     QCOMPARE(formOf("davis")->findChild<QComboBox*>("same_sensor_as")->count(), 1);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The story of who has several recordings of one rig: all are calibrated, one does not fit, two are held side by side.
+// Story of a user with several recordings of one rig: all are calibrated, one does not fit, two are compared.
 #include "core/report/repeat_comparison.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
@@ -62,11 +62,11 @@ class TestRepeatPage : public QObject {
     QVERIFY(button(test, "start_repeat")->isEnabled());
     type(test, {});
     QTest::keyClick(screen->findChild<QLineEdit*>("repeat_folder"), Qt::Key_Delete);
-    QVERIFY(button(test, "start_repeat")->toolTip().contains("where the results go"));
+    QVERIFY(button(test, "start_repeat")->toolTip().contains("folder for the results"));
     type(test, scratch_.filePath("nowhere"));
     QTest::mouseClick(button(test, "start_repeat"), Qt::LeftButton);
     QVERIFY(!test.runner().running());
-    QVERIFY2(test.child<ErrorPanel>()->text().contains("which board, is not said"),
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("without a description"),
              qPrintable(test.child<ErrorPanel>()->text()));
     auto* const list = screen->findChild<QListWidget*>("list_recordings");
     list->setCurrentRow(0);
@@ -82,7 +82,7 @@ class TestRepeatPage : public QObject {
     test.window.showScreen("repeat");
     auto* const screen = test.child<RepeatScreen>();
     QTest::mouseClick(button(test, "add_open"), Qt::LeftButton);
-    // A session, and a recording that is taken as one of the rig that is open.
+    // A session, and a recording that is used with the open rig.
     const QString recording = QFileInfo(simulatedFurtherSession(2)).dir().filePath("recording.bag");
     screen->files().add({recording, simulatedFurtherSession(4), simulatedFurtherSession(3, 1.5)});
     const QString folder = scratch_.filePath("together");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The story of who calibrated some time ago: a new recording is held against the old result.
+// Story of a user with an earlier calibration: a new recording is compared with the old result.
 #include "core/report/assessment_report.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
@@ -41,7 +41,7 @@ class TestResultCheckPage : public QObject {
   static QPushButton* button(WindowFixture& test, const char* name) {
     return test.child<ResultCheckScreen>()->findChild<QPushButton*>(name);
   }
-  // With a run to be checked, kept beside the session's file.
+  // With a run to check, kept next to the session's file.
   void calibrate(WindowFixture& test) {
     test.window.files().open(session_);
     QTRY_VERIFY(test.document().hasSession());
@@ -90,7 +90,7 @@ class TestResultCheckPage : public QObject {
     QVERIFY(button(test, "start_check_result")->isEnabled());
   }
 
-  // What is open and has no result yet is the new recording.
+  // An open recording without a result is the new recording.
   void openRecording_isProposed() {
     WindowFixture test;
     test.window.files().open(session_);
@@ -104,7 +104,7 @@ class TestResultCheckPage : public QObject {
     calibrate(test);
     QTRY_VERIFY_WITH_TIMEOUT(!field(test, "old_result").isEmpty(), kPatience_ms);
     QVERIFY(QFile::exists(field(test, "old_result") + "/result.yaml"));
-    QVERIFY(field(test, "new_recording").isEmpty());  // that of the result says nothing new
+    QVERIFY(field(test, "new_recording").isEmpty());  // the result's own recording gives no new information
     cancelled(test);
 
     const ResultCheckJob& job = test.window.workbench().result_check;

@@ -89,7 +89,7 @@ class TestSignalsScreen : public QObject {
     QVERIFY(std::abs(sample->angular_rate_rad_s.x() - first[2].toDouble()) < 1e-6);
   }
 
-  // Over each other the last one would hide the others.
+  // Drawn over each other, the last one would hide the others.
   void residuals_haveARowEach_andTheirNoiseIsNamed() {
     SignalsScreen screen;
     screen.resize(1000, 650);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole story, from nothing to files that are handed on, by mouse and keyboard: of who has a DAVIS and a printer, and of who has two
-// event cameras that each recorded a file. A meter says how long the window ever stood still. Also run under Xvfb with a window manager.
+// Complete workflows by mouse and keyboard, from an empty window to exported files: one user has a DAVIS and
+// a printer, another one has two event cameras with a file each. A meter reports the longest stall of the
+// window. Also run under Xvfb with a window manager.
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
@@ -39,7 +40,7 @@ void press(QPushButton* button) {
   QTest::mouseClick(button, Qt::LeftButton);
 }
 
-// What people know of their sensors from data sheets, typed in one go.
+// Values that users know from data sheets, typed at once.
 void describeSensors(CalibrationDocument& document, const Session& known) {
   Session session = document.session();
   for (std::size_t k = 0; k < session.cameras.size(); ++k)
@@ -129,7 +130,7 @@ class TestStories : public QObject {
     QCOMPARE(test.document().session().cameras.size(), std::size_t{2});
     QVERIFY(test.document().session().cameras[1].recording == recording.toStdString());
   }
-  // One beside the other, at one moment.
+  // One next to the other, at one time.
   void seesBothCameras(WindowFixture& test) {
     test.window.showScreen("detection");
     auto* const detection = test.child<DetectionScreen>();
@@ -142,7 +143,7 @@ class TestStories : public QObject {
                                  detection->companionView().frame()->events > 100,
                              kPatience_ms);
   }
-  // Both cameras, 0.1 m from each other, as they are mounted.
+  // Both cameras, mounted 0.1 m from each other.
   static void comparesPoses(WindowFixture& test, const Session& known) {
     const auto& cameras = test.document().last().run->result.state.cameras;
     QCOMPARE(cameras.size(), known.cameras.size());
@@ -174,7 +175,7 @@ class TestStories : public QObject {
     auto* const card = test.child<RecordingScreen>()->checkCard();
     QVERIFY2(card->isVisible() && check.checked()->assessment.can_be_calibrated, qPrintable(card->text()));
   }
-  // To the result's page.
+  // Goes to the result's page.
   void calibrate(WindowFixture& test) {
     test.press(Qt::Key_F5);
     QVERIFY2(test.runner().running(), qPrintable(test.child<ErrorPanel>()->text()));
@@ -182,7 +183,7 @@ class TestStories : public QObject {
     QTRY_COMPARE_WITH_TIMEOUT(test.screen(), QString("result"), kPatience_ms);
     const auto run = test.document().last().run;
     QVERIFY(run && run->result.status != CalibrationStatus::Failed);
-    // Nobody chose a moment: one with the board is in view, not the recording's last.
+    // No time was chosen: one with the board is shown, not the recording's last.
     auto* const detection = test.child<DetectionScreen>();
     const auto& windows = run->pass.cameras.front().windows;
     QTRY_VERIFY(std::any_of(windows.begin(), windows.end(), [&](const WindowReport& window) {
@@ -238,9 +239,9 @@ class TestStories : public QObject {
     QVERIFY(test.window.close());
   }
   static void stoodStill(const StallMeter& meter, const OtherLoad& others) {
-    constexpr double kMost_ms = 250.0;  // what people call at once; dialogs open, pages are laid out
+    constexpr double kMost_ms = 250.0;  // limit of an immediate response, including dialogs and page layout
     const double longest_ms = others.quiet() ? meter.longest_ms() : meter.longestWork_ms();
-    qInfo("the window stood still for %.0f ms at most (%.0f ms of work); others keep %.1f processors busy",
+    qInfo("longest stall of the window: %.0f ms (%.0f ms of work); others keep %.1f processors busy",
           meter.longest_ms(), meter.longestWork_ms(), others.processors());
     QVERIFY(meter.beats() > 100);
     QVERIFY2(longest_ms < kMost_ms * slowness(), qPrintable(QString::number(longest_ms)));

@@ -16,7 +16,7 @@ using namespace evical::ui;
 
 namespace {
 
-// Contrast of WCAG 2: text should have 4.5 and more.
+// Contrast of WCAG 2: text should have at least 4.5.
 double luminance(const QColor& colour) {
   const auto linear = [](double c) { return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
   return 0.2126 * linear(colour.redF()) + 0.7152 * linear(colour.greenF()) + 0.0722 * linear(colour.blueF());
@@ -31,8 +31,8 @@ double toLinear(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-// As people see colours who lack one kind of cones: G. Machado, M. Oliveira, L. Fernandes, A Physiologically-based Model
-// for Simulation of Color Vision Deficiency, 2009, severity 1, of linear RGB.
+// Colours as seen with a lack of one kind of cones: G. Machado, M. Oliveira, L. Fernandes, A
+// Physiologically-based Model for Simulation of Color Vision Deficiency, 2009, severity 1, of linear RGB.
 using Vision = std::array<std::array<double, 3>, 3>;
 constexpr Vision kDeuteranopia = {
     {{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}};
@@ -46,7 +46,7 @@ std::array<double, 3> times(const Vision& matrix, const std::array<double, 3>& v
   return product;
 }
 
-// CIE L*a*b*, D65, of what is seen.
+// CIE L*a*b*, D65, of the perceived colour.
 std::array<double, 3> labOf(const QColor& colour, const Vision& vision) {
   std::array<double, 3> seen =
       times(vision, {toLinear(colour.redF()), toLinear(colour.greenF()), toLinear(colour.blueF())});
@@ -64,7 +64,7 @@ double difference(const QColor& a, const QColor& b, const Vision& vision) {
   return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
 }
 
-// Mean colour of the pixels that are drawn, and how much of the picture they are.
+// Mean colour of the drawn pixels, and their share of the picture.
 struct Ink {
   QColor colour;
   double share = 0.0;
@@ -94,7 +94,7 @@ class TestTheme : public QObject {
   Q_OBJECT
 
  private slots:
-  // 2.3 is just noticed where two colours touch; thin lines apart from each other need far more.
+  // 2.3 is just noticeable between adjacent colours; separate thin lines need far more.
   void states_andAxes_areToldApart_byWhoSeesNoRedOrNoGreen() {
     constexpr double kWellApart = 20.0, kLeastContrast = 3.0;
     for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
@@ -152,7 +152,7 @@ class TestTheme : public QObject {
     window.resize(120, 130);
     window.show();
     const QImage picture = window.grab().toImage();
-    // Somewhere along the left edge there is a line that stands out from the window.
+    // Along the left edge there is a line that contrasts with the window.
     for (const QWidget* const field : std::initializer_list<QWidget*>{&box, &line, &number}) {
       double best = 1.0;
       for (int x = field->x(); x < field->x() + 8; ++x)

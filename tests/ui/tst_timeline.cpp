@@ -23,7 +23,7 @@ WindowReport window(double time_s, WindowOutcome outcome) {
   return report;
 }
 
-// Ten seconds, a window each tenth: the first half complete, then partial, the last second missed.
+// Ten seconds, a window every tenth: the first half complete, then partial, the last second missed.
 std::vector<WindowReport> hundredWindows() {
   std::vector<WindowReport> windows;
   for (int k = 0; k < 100; ++k) {
@@ -135,7 +135,7 @@ class TestTimeline : public QObject {
     fill(timeline);
     const QImage image = timeline.grab().toImage();
     const int low = timeline.height() - 25, high = timeline.height() - 32;
-    // Of two columns, as dots are in every second one.
+    // Two columns, since dots are in every second one.
     const auto inkAt = [&](double time_s, int top, const QColor& colour) {
       int count = 0;
       const int x = at(timeline, time_s).x();
@@ -148,7 +148,7 @@ class TestTimeline : public QObject {
     const int dots = inkAt(7.04, low, theme().warning);
     QVERIFY2(dots >= 2 && dots <= 6, qPrintable(QString::number(dots)));
     QCOMPARE(inkAt(9.54, low, theme().bad), 8);
-    QVERIFY(inkAt(9.54, high, theme().bad) >= 4);  // it sticks out
+    QVERIFY(inkAt(9.54, high, theme().bad) >= 4);  // it protrudes
   }
 
   void unusedParts_areFaded() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 3D view's time: played, scrubbed and stepped through, with the events of the moment in the camera's frustum.
+// Time in the 3D view: playing, scrubbing and stepping, with the events of the moment in the camera's
+// frustum.
 #include "core/geometry/camera_model.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/shown_trajectory.h"
@@ -127,9 +128,9 @@ class TestTrajectoryPlay : public QObject {
     QVERIFY(!screen.isPlaying());
   }
 
-  // Those of a corner of the image, so that they must be seen at that corner of the frustum.
+  // Events of an image corner, which must appear at that corner of the frustum.
   void events_areDrawnInTheFrustum() {
-    if (!has_opengl_) QSKIP("no OpenGL here");
+    if (!has_opengl_) QSKIP("OpenGL is not available");
     const auto screen = shownScreen({1200, 800});
     QVERIFY(screen);
     for (int k = 0; k < kSceneLayerCount; ++k)
@@ -173,7 +174,7 @@ class TestTrajectoryPlay : public QObject {
     QVERIFY(onImagePlane(events, std::nullopt).empty());
   }
 
-  // At the width that is left of 1024 beside the side bar, and with a dock open.
+  // At the remaining width of 1024 px with the side bar, and with an open dock.
   void nothing_isCutOrHidden_inNarrowWindows() {
     for (const int width : {820, 560, 400}) {
       const auto screen = shownScreen({width, 600});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the 3D view shows of a run.
+// A run in the 3D view.
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "tests/ui/shown_trajectory.h"
@@ -43,7 +43,7 @@ class TestTrajectoryScreen : public QObject {
 };
 
 void TestTrajectoryScreen::empty_saysWhatToDo() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   TrajectoryScreen screen;
   screen.resize(1000, 650);
   const QImage image = picture(screen.view());
@@ -57,7 +57,7 @@ void TestTrajectoryScreen::empty_saysWhatToDo() {
 }
 
 void TestTrajectoryScreen::board_isWhereItsCirclesAre() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   TrajectoryScreen screen;
   screen.resize(1000, 650);
   screen.setBoards(example_.session);
@@ -77,7 +77,7 @@ void TestTrajectoryScreen::board_isWhereItsCirclesAre() {
 }
 
 void TestTrajectoryScreen::trajectory_isDrawnInTheColourOfItsSpeed() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   for (const SceneLayer layer : {SceneLayer::Cameras, SceneLayer::CurrentCamera, SceneLayer::ImuAxes,
@@ -116,12 +116,12 @@ void TestTrajectoryScreen::residual_coversWhatTheCameraSaw() {
 }
 
 void TestTrajectoryScreen::layers_comeAndGo() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   const QImage all = picture(screen->view());
   for (int k = 0; k < kSceneLayerCount; ++k) {
-    if (static_cast<SceneLayer>(k) == SceneLayer::Events) continue;  // nobody gave any
+    if (static_cast<SceneLayer>(k) == SceneLayer::Events) continue;  // none were given
     const auto layer = static_cast<SceneLayer>(k);
     screen->setLayerVisible(layer, false);
     QVERIFY2(picture(screen->view()) != all, qPrintable(QString::number(k)));
@@ -160,7 +160,7 @@ void TestTrajectoryScreen::throughTheCamera_showsWhatItSees() {
 }
 
 void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   auto run = std::make_shared<CalibrationRun>(*example_.run);
   run->result.state.cameras.push_back(run->result.state.cameras.front());
   run->result.state.cameras.back().reference_from_camera.translation_m.x() += 0.1;
@@ -194,7 +194,7 @@ void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
 }
 
 void TestTrajectoryScreen::theme_changesThePicture() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   screen->show();
@@ -206,7 +206,7 @@ void TestTrajectoryScreen::theme_changesThePicture() {
 }
 
 void TestTrajectoryScreen::picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWas() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   const QImage before = picture(screen->view());
@@ -223,7 +223,7 @@ void TestTrajectoryScreen::picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWa
 }
 
 void TestTrajectoryScreen::screenshots() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   for (const bool dark : {false, true}) {
     setPalette(dark);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 3D view over time: its cursor, the camera followed, views and states that come while a job runs.
+// The 3D view over time: its cursor, following the camera, views and states that arrive while a job runs.
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/shown_trajectory.h"
@@ -42,7 +42,7 @@ class TestTrajectoryTime : public QObject {
 };
 
 void TestTrajectoryTime::rawPoses_lieOnTheTrajectory() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   for (int k = 0; k < kSceneLayerCount; ++k) screen->setLayerVisible(static_cast<SceneLayer>(k), false);
@@ -63,7 +63,7 @@ void TestTrajectoryTime::rawPoses_lieOnTheTrajectory() {
 }
 
 void TestTrajectoryTime::rawPoses_growWithTheDetections() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   TrajectoryScreen screen;
   screen.resize(1000, 650);
   screen.setBoards(example_.session);
@@ -103,7 +103,7 @@ void TestTrajectoryTime::click_picksTheTime() {
 }
 
 void TestTrajectoryTime::time_movesTheCamera() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   const auto screen = makeScreen(example_);
   QVERIFY(screen);
   QSignalSpy selected(screen.get(), &TrajectoryScreen::timeSelected);
@@ -134,12 +134,12 @@ void TestTrajectoryTime::followingTheCamera_keepsItInTheMiddle() {
 }
 
 void TestTrajectoryTime::halfMinute_drawsFast() {
-  if (!has_opengl_) QSKIP("no OpenGL here");
+  if (!has_opengl_) QSKIP("OpenGL is not available");
   evical::test::RigOptions options;
   options.duration_s = 30.0;
   options.imu_rate_hz = 50.0;
   const evical::test::SimulatedRig rig = evical::test::simulateRig(options);
-  std::unique_ptr<View3D> view;  // outlives the screen, which still speaks to it at its end
+  std::unique_ptr<View3D> view;  // outlives the screen, whose destructor still uses it
   TrajectoryScreen screen;
   screen.view()->setParent(nullptr);
   view.reset(screen.view());

@@ -132,7 +132,7 @@ void TestView3D::pan_movesThePictureByTheStepOnScreen() {
 }
 
 void TestView3D::project_agreesWithThePicture() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView square;
   square.view.look(StandardView::Home);
   const QImage image = square.image();
@@ -148,7 +148,7 @@ void TestView3D::project_agreesWithThePicture() {
 }
 
 void TestView3D::picture_followsTheSize() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView square;
   const int small = countPixels(square.image(), qRgb(255, 0, 0));
   square.view.resize(800, 600);
@@ -159,7 +159,7 @@ void TestView3D::picture_followsTheSize() {
 }
 
 void TestView3D::picture_isTheSameAfterALongWay() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView square;
   const QImage before = square.image();
   for (int k = 0; k < 5; ++k) QTest::keyClick(&square.view, Qt::Key_Left);
@@ -169,7 +169,7 @@ void TestView3D::picture_isTheSameAfterALongWay() {
 }
 
 void TestView3D::drag_turnsTheView() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView square;
   QSignalSpy turned(&square.view, &View3D::turned);
   const QImage before = square.image();
@@ -239,7 +239,7 @@ void TestView3D::click_isNoDrag() {
 }
 
 void TestView3D::overlay_isPaintedOnTop() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView square;
   square.view.setOverlay([](QPainter& painter) { painter.fillRect(QRect(195, 145, 10, 10), Qt::green); });
   const QImage image = square.image();
@@ -248,7 +248,7 @@ void TestView3D::overlay_isPaintedOnTop() {
 }
 
 void TestView3D::views_comeAndGo() {
-  if (!evical::ui::test::hasOpenGl()) QSKIP("no OpenGL here");
+  if (!evical::ui::test::hasOpenGl()) QSKIP("OpenGL is not available");
   SquareView stays;
   const QImage before = stays.image();
   for (int k = 0; k < 20; ++k) {
@@ -260,7 +260,7 @@ void TestView3D::views_comeAndGo() {
   QCOMPARE(stays.image(), before);
 }
 
-// In a process of its own: the drivers are looked for once.
+// In a separate process, since drivers are searched only once.
 void TestView3D::withoutOpenGl_saysSo() {
   if (qEnvironmentVariable(evical::ui::test::kEglVendors) != evical::ui::test::kNoEglVendor) {
     QProcess process;

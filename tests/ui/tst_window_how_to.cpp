@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Core names what people can do by HowTo; the window says it in words of its own, without commands.
+// Core refers to user actions by HowTo; the window describes them in its own terms, without commands.
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 #include "ui/jobs/window_how_to.h"
@@ -33,7 +33,8 @@ class TestWindowWords : public QObject {
     speakWith(commandLineWords);
   }
 
-  // Commands and options of ours belong in how_to.cpp. Other programs' options are in core/export and core/foreign.
+  // Evical's commands and options belong in how_to.cpp. Other programs' options are in core/export and
+  // core/foreign.
   void core_namesNoCommandsItself() {
     const QString core = QString::fromStdString(evical::test::sourcePath("core"));
     const QRegularExpression comment("^ *//.*$", QRegularExpression::MultilineOption),
@@ -47,7 +48,7 @@ class TestWindowWords : public QObject {
         "/batch/batch_run.cpp",             // starts programs
         "/recording/recording_server.cpp",  // likewise
         "/session/option_pages.cpp",        // the output of a command
-        "/html/number_sections.cpp",        // a report is for both front ends, and names both
+        "/html/number_sections.cpp",        // a report is for both front ends, and mentions both
     };
     int literals = 0;
     QDirIterator files(core, {"*.cpp"}, QDir::Files, QDirIterator::Subdirectories);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of windows: what it says of each, in which order, which of them; pictures of those in view only; and what
-// is rejected with mouse and keys.
+// The list of windows: its columns, sorting and filters; pictures of the visible rows only; rejections with
+// mouse and keys.
 #include "core/base/time.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
@@ -41,8 +41,8 @@ CircleResidual residualOf(int view, int circle, double x_px) {
   return residual;
 }
 
-// Windows of 20 ms: of ten in a row one is missed, two are partial, the others complete. Residuals of the k-th view
-// are k thousandths of a pixel, its circles move by 10 k px/s.
+// Windows of 20 ms: of ten consecutive ones, one is missed, two are partial, the others complete. Residuals
+// of the k-th view are k thousandths of a pixel, its circles move by 10 k px/s.
 std::shared_ptr<CalibrationRun> runOf(int windows) {
   auto run = std::make_shared<CalibrationRun>();
   run->pass.cameras.resize(1);
@@ -62,7 +62,7 @@ std::shared_ptr<CalibrationRun> runOf(int windows) {
       each.velocity_px_s = Eigen::Vector2d(0.0, 10.0 * view);
       found.circles.push_back(each);
       CircleResidual residual = residualOf(view, circle, circle == 2 ? 7.0 : 0.001 * view);
-      residual.used = circle != 2;  // a wild one, which the run dropped
+      residual.used = circle != 2;  // an outlier, which the run dropped
       run->result.circle_residuals.push_back(residual);
     }
     seen.views.push_back(found);
@@ -211,7 +211,7 @@ class TestWindowList : public QObject {
     QTest::keyClick(&list.table(), Qt::Key_Delete);
     QCOMPARE(wanted.count(), 1);
     QCOMPARE(timesOf(wanted), std::vector{0.01 + 0.02});
-    QCOMPARE(list.text(1, Model::State), QString("Complete"));  // until the document says so
+    QCOMPARE(list.text(1, Model::State), QString("Complete"));  // until the document changes
     list.setRejected(timesOf(wanted));
     list.setPending(1, 0);
     QCOMPARE(list.text(1, Model::State), QString("Rejected"));
@@ -219,7 +219,7 @@ class TestWindowList : public QObject {
     QVERIFY(list.said().contains("1 to be rejected"));
     QVERIFY(!list.button("Reject").isEnabled());
     QVERIFY(list.button("Recalibrate").isEnabled());
-    // Rows 2 to 4, of which the middle one was missed: there is nothing to reject in it.
+    // Rows 2 to 4, of which the middle one was missed: it has nothing to reject.
     list.click(2);
     list.click(4, Qt::ShiftModifier);
     QCOMPARE(list.selectedWindows(), (std::vector{2, 3, 4}));
@@ -231,7 +231,7 @@ class TestWindowList : public QObject {
     list.table().setFocus();
     QTest::keyClick(&list.table(), Qt::Key_Delete, Qt::ShiftModifier);
     QCOMPARE(timesOf(wanted), (std::vector{0.01 + 0.02 * 2, 0.01 + 0.02 * 4}));
-    // While something runs, and of runs that cannot be repeated, nothing is asked for.
+    // During a run, and for runs that cannot be repeated, nothing is requested.
     const auto asked = wanted.count();
     list.setBusy(true);
     QVERIFY(!list.button("Recalibrate").isEnabled());
@@ -249,14 +249,14 @@ class TestWindowList : public QObject {
     QCOMPARE(list.selectedWindows(), std::vector{200});
     QVERIFY(list.table().viewport()->rect().contains(
         list.table().visualRect(list.table().currentIndex().siblingAtColumn(Model::State)).center()));
-    QVERIFY(chosen.isEmpty());  // it was not a person
+    QVERIFY(chosen.isEmpty());  // not by the user
     QTest::keyClick(&list.table(), Qt::Key_Down);
     QCOMPARE(chosen.count(), 1);
     QCOMPARE(chosen[0][0].toDouble(), 0.01 + 0.02 * 201);
     list.setTime(chosen[0][0].toDouble());
     QCOMPARE(list.selectedWindows(), std::vector{201});
     QCOMPARE(chosen.count(), 1);
-    // Several that were chosen stay so.
+    // Selected rows stay selected.
     list.setTime(0.01);
     list.click(0);
     list.click(2, Qt::ControlModifier);
@@ -304,7 +304,7 @@ class TestWindowList : public QObject {
     QVERIFY(picture.height() == kPictureSize_px.height() || picture.width() == kPictureSize_px.width());
     std::set<QRgb> colours;
     for (int x = 0; x < picture.width(); ++x) colours.insert(picture.pixel(x, picture.height() / 2));
-    QVERIFY(colours.size() > 4);  // something is seen
+    QVERIFY(colours.size() > 4);  // something is visible
   }
 
   void picture_ofAFrameIsTheFrame() {
@@ -357,7 +357,7 @@ class TestWindowList : public QObject {
     QCOMPARE(screen.time_s(), windows[30].time_s);
     QTest::keyClick(&screen, Qt::Key_M, Qt::ShiftModifier);
     QCOMPARE(screen.time_s(), windows[10].time_s);
-    // A row that is chosen moves the cursor, and stays chosen.
+    // A row that is selected moves the cursor, and stays selected.
     auto& table = *screen.findChild<QTreeView*>("windows");
     QSignalSpy selected(&screen, &DetectionScreen::timeSelected);
     const QModelIndex row = table.indexBelow(table.currentIndex());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which controls of a window a screen reader has no name for, as Qt's own accessibility tells it.
+// Controls of a window without a name for screen readers, according to Qt's accessibility.
 #pragma once
 
 #include <QAbstractButton>
@@ -29,7 +29,7 @@ inline bool isControl(const QWidget& widget) {
          (widget.focusPolicy() & Qt::TabFocus && widget.metaObject()->className()[0] != 'Q');
 }
 
-// What Qt makes of parts for itself: editors of spin boxes, lists of combo boxes, headers, buttons of tab bars.
+// Parts that Qt creates: editors of spin boxes, lists of combo boxes, headers, buttons of tab bars.
 inline bool isPartOfAnother(const QWidget& widget) {
   if (widget.objectName().startsWith("qt_")) return true;
   for (const QWidget* parent = widget.parentWidget(); parent; parent = parent->parentWidget()) {
@@ -43,7 +43,8 @@ inline bool isPartOfAnother(const QWidget& widget) {
   return name == "QHeaderView" || name == "QTableCornerButton";
 }
 
-// "ResultScreen > QTreeWidget 'name'": only classes of our own on the way, as messages of tests are cut off.
+// "ResultScreen > QTreeWidget 'name'": only our own classes on the path, since messages of tests are
+// truncated.
 inline QString pathOf(const QWidget& widget) {
   QString path = QString("%1 '%2'").arg(widget.metaObject()->className(), widget.objectName());
   for (const QWidget* at = widget.parentWidget(); at && !at->isWindow(); at = at->parentWidget())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The real main window for tests, with a person's hands: clicks, keys, answers to dialogs.
+// The real main window for tests, with simulated user actions: clicks, keys, answers to dialogs.
 #pragma once
 
 #include "tests/ui/slowdown.h"
@@ -27,7 +27,7 @@ namespace evical::ui::test {
 
 inline constexpr int kPatience_ms = 120'000 * kSlowdown;
 
-// Settings, recent files and the demo's place in folders of the tests' own.
+// Settings, recent files and the demo's place in separate folders for tests.
 inline void usePrivateFolders(const QTemporaryDir& scratch) {
   QCoreApplication::setOrganizationName("evical_test");
   QStandardPaths::setTestModeEnabled(true);
@@ -38,14 +38,14 @@ inline void usePrivateFolders(const QTemporaryDir& scratch) {
   applyTheme(*qApp, Appearance::Light);
 }
 
-// Lets the event loop go round as it does in the program.
+// Runs the event loop like in the program.
 inline void spin(int duration_ms) {
   QEventLoop loop;
   QTimer::singleShot(duration_ms, &loop, &QEventLoop::quit);
   loop.exec();
 }
 
-// In place of what the field holds; ended by Return.
+// Replaces the field's content; ended by Return.
 inline void type(QLineEdit* field, const QString& text) {
   field->setFocus();
   field->selectAll();
@@ -81,7 +81,7 @@ inline void answerExportDialog(const QStringList& targets, const QString& folder
   });
 }
 
-// A question that is not asked would have its answer given to a later one.
+// If a question is not asked, its answer would be given to a later one.
 inline QList<QTimer*>& awaitedQuestions() {
   static QList<QTimer*> awaited;
   return awaited;
@@ -105,7 +105,7 @@ struct WindowFixture {
   MainWindow window{"0.0.0"};
   QSignalSpy finished{&window.workbench().runner, &JobRunner::finished};
 
-  // Recordings are not looked through by themselves: tests of that turn it on.
+  // The automatic check of recordings is disabled; tests of that enable it.
   WindowFixture() {
     window.workbench().check.setAutomatic(false);
     window.show();
@@ -135,7 +135,7 @@ struct WindowFixture {
     QTest::mouseClick(button, Qt::LeftButton);
   }
   void press(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    window.activateWindow();  // no window manager does it after a dialog
+    window.activateWindow();  // no window manager does this after a dialog
     QVERIFY(QTest::qWaitForWindowActive(&window));
     QTest::keyClick(&window, key, modifiers);
   }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The program where there is no display: it says so instead of aborting, and does what needs none.
-#   window_without_display.sh PROGRAM
+# The program without a display: it reports this instead of aborting, and runs commands that need none.
+# window_without_display.sh PROGRAM
 set -uo pipefail
 program=$1
 unset DISPLAY WAYLAND_DISPLAY QT_QPA_PLATFORM

@@ -11,7 +11,7 @@ namespace evical::ui {
 namespace {
 
 constexpr std::int64_t kKept_ns = 10'000'000'000;
-constexpr std::int64_t kBackwards_ns = 200'000'000;  // room for steps back before the next restart
+constexpr std::int64_t kBackwards_ns = 200'000'000;  // margin for steps back without a restart
 constexpr std::int64_t kChunk_ns = 50'000'000;
 constexpr std::int64_t kEverything = std::numeric_limits<std::int64_t>::max();
 
@@ -50,7 +50,7 @@ bool BurstBand::cover(std::int64_t begin_ns, std::int64_t end_ns) {
   const bool finished = complete_ns == kEverything;
   const bool far_ahead = fed_until_ns_ < begin_ns - lead_ns_ - kBackwards_ns;
   if (!running_ || begin_ns < covered_from_ns_ || (extractor_ && far_ahead)) restart(begin_ns);
-  if (!extractor_) return true;  // to the end already
+  if (!extractor_) return true;  // already at the end
   const std::int64_t wanted_ns = end_ns + lag_ns_;
   feedUntil(std::min(wanted_ns, complete_ns));
   if (finished && fed_until_ns_ > cache_->lastEvent_ns()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bursts around the cursor, taken from cached events: up to ten seconds are kept, so that stepping and
-// playing only add what is new. A jump costs what the front end's own history costs: 0.7 s of events.
+// Edge bursts around the cursor, from cached events. Up to ten seconds are kept, so that stepping and playing
+// only add new ones. A jump costs one front-end history of events: 0.7 s.
 #pragma once
 
 #include "core/frontend/burst_window.h"
@@ -17,8 +17,8 @@ class BurstBand {
  public:
   BurstBand(std::shared_ptr<const EventCache> cache, Resolution resolution_px, const BurstOptions& options);
 
-  // All bursts with begin_ns <= time < end_ns, and others. False: the recording is not read that far yet;
-  // what there is can be asked for.
+  // Provides at least all bursts with begin_ns <= time < end_ns. False: the recording is not yet read that
+  // far, and history() has only the existing ones.
   bool cover(std::int64_t begin_ns, std::int64_t end_ns);
   const BurstHistory& history() const { return history_; }
 
@@ -29,7 +29,7 @@ class BurstBand {
   std::shared_ptr<const EventCache> cache_;
   Resolution resolution_px_;
   BurstOptions options_;
-  std::int64_t lead_ns_, lag_ns_;            // events before and after a burst's time that decide about it
+  std::int64_t lead_ns_, lag_ns_;            // time before and after a burst in which events affect it
   std::optional<BurstExtractor> extractor_;  // null once finished
   BurstHistory history_;
   std::int64_t covered_from_ns_ = 0, fed_until_ns_ = 0;

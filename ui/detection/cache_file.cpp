@@ -21,7 +21,7 @@ CacheFile::CacheFile(const std::filesystem::path& folder, Words words)
   std::string path = (folder / "evical_cache_XXXXXX").string();
   file_ = mkostemp(path.data(), O_CLOEXEC);
   if (file_ < 0) {
-    throw badInput(folder.string(), std::string("no temporary file can be made: ") + std::strerror(errno),
+    throw badInput(folder.string(), std::string("no temporary file can be created: ") + std::strerror(errno),
                    "Make the folder writable");
   }
   unlink(path.c_str());  // the file itself lives until it is closed

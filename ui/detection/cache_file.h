@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A temporary file that is gone when this object is, whatever becomes of the program.
+// A temporary file that disappears with this object, even after a crash of the program.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,19 @@ namespace evical::ui {
 
 class CacheFile {
  public:
-  // What is kept in it, as messages call it ("events"), and what to do where there is no room.
+  // Name of the content in messages ("events"), and advice for a full disk.
   struct Words {
     std::string content, room_advice;
   };
 
-  // Throws CalibrationError if there can be no file in the folder.
+  // Throws CalibrationError if no file can be created in the folder.
   CacheFile(const std::filesystem::path& folder, Words words);
   ~CacheFile();
   CacheFile(const CacheFile&) = delete;
   CacheFile& operator=(const CacheFile&) = delete;
 
-  // Any thread; of what was written before. Throw CalibrationError if the disk is full, or the file has no more.
+  // Thread-safe; read() needs the bytes to be written already. Throw CalibrationError if the disk is full or
+  // the file is too short.
   void write(const void* bytes, std::size_t count, std::uint64_t position);
   void read(void* bytes, std::size_t count, std::uint64_t position) const;
 

@@ -74,7 +74,7 @@ void paintDirections(QPainter& painter, const QRect& room) {
   painter.setBrush(theme().window);
   painter.drawEllipse(wheel.adjusted(11, 11, -11, -11));
   painter.setPen(QPen(theme().text, 1.5));
-  for (int k = 0; k < 4; ++k) {  // outwards, as the edge does
+  for (int k = 0; k < 4; ++k) {  // outwards, in the direction of motion
     painter.save();
     painter.translate(wheel.center());
     painter.rotate(90.0 * k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the colours of the event view mean, in the picture's corner.
+// Legend of the event view's colours, in a corner of the picture.
 #pragma once
 
 #include <QRect>
@@ -9,12 +9,12 @@ class QPainter;
 namespace evical::ui {
 
 enum class ColourLegend {
-  None,       // of a photograph alone
-  Polarity,   // events: which brighten, which darken
+  None,       // frame without events
+  Polarity,   // events: brighter and darker
   Direction,  // normal flow: a wheel of the directions
 };
 
-// In the lower right corner of `room`; nothing where it would fill the picture.
+// In the lower right corner of `room`; nothing if it would fill the picture.
 void paintLegend(QPainter& painter, const QRect& room, ColourLegend legend);
 
 }  // namespace evical::ui

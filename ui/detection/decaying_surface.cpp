@@ -38,7 +38,7 @@ SurfaceFrame DecayingSurface::render(const std::shared_ptr<const EventCache>& ca
 }
 
 void DecayingSurface::add(std::int64_t begin_ns, std::int64_t end_ns) {
-  // What the reader has not written yet may come later.
+  // Events that are not yet written may still come.
   end_ns_ = std::max(begin_ns, std::min(end_ns, cache_->completeUntil_ns()));
   events_.clear();
   cache_->gather(begin_ns, end_ns_, events_);

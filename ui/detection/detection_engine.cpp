@@ -66,8 +66,8 @@ class DetectionEngine::Analyst {
   }
 
  private:
-  // First by the frames just before; where that finds less than all, followed from further away, as a run does. What
-  // was found is kept: a frame lasts longer than the cursor stays at one place.
+  // First with the frames just before; if that finds only part of the board, with tracking from further back,
+  // as in a run. The result is kept: a frame lasts longer than the cursor stays at one place.
   void handleFrame(const AnalysisTask& task) {
     const Source& source = task.source;
     FrameQuestion question;
@@ -245,11 +245,11 @@ void DetectionEngine::start(RenderTask task) {
 
 void DetectionEngine::start(AnalysisTask task) {
   analysis_job_.start([this, task = std::move(task)](const std::stop_token&) -> std::function<void()> {
-    makeThreadModest();  // pictures go first, which are looked at one after the other
+    makeThreadModest();  // pictures have priority
     try {
       analyst_->handle(task);
     } catch (const CalibrationError&) {
-      // The cache cannot be read; the renderer's picture stays empty, and the reader has said why.
+      // The cache is unreadable; the renderer's picture stays empty, and the reader has reported the reason.
     }
     return nullptr;
   });
@@ -266,7 +266,7 @@ SurfaceFrame DetectionEngine::pictureAt(const Source& source, std::int64_t time_
     shown.image = pictureOf(decodeFrame(frames.frame(at), "frame"));
     frame_px_ = shown.resolution_px();
   } catch (const CalibrationError&) {
-    // The analysis says why; the place of the picture stays what it was.
+    // The analysis reports the reason; the size of the picture does not change.
     shown.image = emptyImage(frame_px_.known() ? frame_px_ : Resolution{640, 480}, style);
   }
   return shown;
@@ -288,7 +288,7 @@ void DetectionEngine::addEvents(const RenderTask& task, SurfaceFrame& frame) {
                                  frame.image);
 }
 
-// At the same moment, as far as a result tells how far the clocks are apart.
+// At the same moment, if a result contains the time offset between the clocks.
 void DetectionEngine::renderCompanion(const RenderTask& task) {
   const Source& source = task.source;
   const bool of_frames = source.kind == CameraKind::Events;
@@ -305,7 +305,7 @@ void DetectionEngine::renderCompanion(const RenderTask& task) {
     frame = of_frames ? pictureAt(source, time_ns, style)
                       : companion_surface_.render(source.cache, time_ns, source.events_px, style);
   } catch (const CalibrationError&) {
-    return;  // the cache cannot be read, as the main picture's reader says
+    return;  // the cache is unreadable, which the main picture's reader reports
   }
   if (!of_frames) frame.time_s = time_s;
   if (source.opening == opening_) companions_.put(std::make_shared<SurfaceFrame>(std::move(frame)));
@@ -349,7 +349,7 @@ void DetectionEngine::renderSurface(const RenderTask& task) {
     }
     frame.window_events = eventsOfWindow(*task.source.cache, task.source.start_ns, wish);
   } catch (const CalibrationError&) {
-    // The file is gone; what the reader says tells more than an old picture.
+    // The file is gone: the reader's message is more informative than an old picture.
     frame = renderEvents({}, time_ns, task.source.resolution_px, style);
   }
   frame.time_s = wish.time_s;

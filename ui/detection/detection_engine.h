@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The work behind the detection screen, in three threads: one reads the recording, one draws the surface or the frame
-// at the cursor, one runs the front end on the window there. Only the newest wish of each kind is fulfilled.
+// Background work of the detection screen, in three threads: one reads the recording, one draws the surface
+// or the frame at the cursor, one runs the front end on the window there. Only the newest request of each
+// kind is processed.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -22,18 +23,18 @@
 
 namespace evical::ui {
 
-// Of a camera that has a companion of the other kind.
+// For a camera with a companion of the other kind.
 enum class PictureChoice { Alone, SideBySide, Overlaid };
 
 struct DetectionRequest {
   double time_s = 0.0, half_width_s = 0.01;
   SurfaceStyle style;
-  PictureChoice picture = PictureChoice::Alone;  // Overlaid: of frames, where a result says how
-  bool search = true;                            // from nothing, too
-  bool flow = true;                              // normal flow, too
+  PictureChoice picture = PictureChoice::Alone;  // Overlaid: for frames, with a calibration
+  bool search = true;                            // also search without a prediction
+  bool flow = true;                              // also compute normal flow
 };
 
-// What windows are searched for, and seen through.
+// Board to search for, and the lens.
 struct DetectionSetup {
   Board board;
   std::optional<CameraIntrinsics> lens = {};
@@ -41,7 +42,7 @@ struct DetectionSetup {
   bool operator==(const DetectionSetup&) const = default;
 };
 
-// Events that can be looked up from any thread.
+// Events that can be read from any thread.
 struct KeptEvents {
   std::size_t camera = 0;
   std::int64_t start_ns = 0;
@@ -63,18 +64,18 @@ class DetectionEngine : public QObject {
     options_ = options;
     frame_options_ = frames;
   }
-  // What a run found, of the recording that is open; null: nothing.
+  // Calibration for the open recording; null: none.
   void setResult(std::shared_ptr<const CalibrationState> result) { result_ = std::move(result); }
   void setObservations(std::shared_ptr<const BoardObservations> observations);
-  void show(const DetectionRequest& wish);  // nothing before the recording is open
+  void show(const DetectionRequest& wish);  // ignored before the recording is open
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
 
   bool isOpen() const { return reader_ != nullptr; }
   RecordingOverview overview() const;
-  PictureSource pictureSource() const;  // as far as it has been read
-  // Of the camera in view, or of its companion; none where neither has events.
+  PictureSource pictureSource() const;  // of the part that has been read
+  // Events of the shown camera or its companion; none if neither has events.
   std::optional<KeptEvents> keptEvents() const;
-  // Of the frame after the nearest (+1) or before it (-1); nothing where there is none.
+  // Time of the frame after the nearest (+1) or before it (-1); none if it does not exist.
   std::optional<double> timeOfFrameBeside_s(double time_s, int direction) const;
   std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }
   std::shared_ptr<const SurfaceFrame> takeCompanion() { return companions_.take(); }
@@ -87,7 +88,7 @@ class DetectionEngine : public QObject {
   void analysisReady();
 
  private:
-  // Where a camera's windows come from.
+  // Source of a camera's windows.
   struct Source {
     CameraKind kind = CameraKind::Events;
     std::shared_ptr<const EventCache> cache;
@@ -102,7 +103,7 @@ class DetectionEngine : public QObject {
   struct RenderTask {
     Source source;
     DetectionRequest wish;
-    std::shared_ptr<const LiveWindow> live;  // in place of the cache
+    std::shared_ptr<const LiveWindow> live;  // instead of the cache
   };
   struct AnalysisTask {
     Source source;
@@ -132,17 +133,17 @@ class DetectionEngine : public QObject {
   std::size_t camera_ = 0;
   std::shared_ptr<const CalibrationState> result_;
   std::shared_ptr<const BoardObservations> observations_;
-  std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use
+  std::atomic<int> opening_ = 0;  // counts openings: results of earlier ones are dropped
   Mailbox<SurfaceFrame> frames_, companions_;
   Mailbox<WindowAnalysis> analyses_;
   std::shared_ptr<EventWindowReader> reader_;
   std::unique_ptr<Analyst> analyst_;
-  // The renderer's.
+  // Used by the renderer only.
   DecayingSurface surface_;
   DecayingSurface companion_surface_;
-  Resolution frame_px_;  // of the last frame that could be decoded
+  Resolution frame_px_;  // of the last decoded frame
   std::unique_ptr<EventsOverFrame> events_over_frame_;
-  // Last: their threads use the rest.
+  // Last members: their threads use the others.
   LatestJob read_job_{OutdatedWork::Dropped};
   LatestJob render_job_{OutdatedWork::Delivered};
   LatestJob analysis_job_{OutdatedWork::Delivered};

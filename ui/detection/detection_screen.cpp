@@ -32,10 +32,10 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kFrame_ms = 25;  // some are dropped where there is other work
+constexpr int kFrame_ms = 25;  // frames are dropped under load
 
-// What decides about the events that are read. Where neither session nor recording says it, the lens tells
-// the resolution; one that is not known yet does not contradict another.
+// True if both sessions read the same events. If neither session nor recording has a resolution, the lens
+// determines it; an unknown one does not contradict another.
 bool sameEvents(const Session& a, const Session& b) {
   const auto same_source = [](const auto& x, const auto& y) {
     return x.stream == y.stream && x.recording == y.recording && x.clock_offset_s == y.clock_offset_s;
@@ -67,9 +67,9 @@ void DetectionScreen::connectEngine() {
   connect(engine_.get(), &DetectionEngine::frameReady, this, &DetectionScreen::takeFrame);
   connect(engine_.get(), &DetectionEngine::analysisReady, this, &DetectionScreen::takeAnalysis);
   connectPictures();
-  look_for_ = new QPushButton(icon("search"), tr("Look for the recording..."), view_);
-  look_for_->setAccessibleName(tr("Look for the recording"));
-  look_for_->setToolTip(tr("Choose where the recording is now; what the run found stays"));
+  look_for_ = new QPushButton(icon("search"), tr("Find the recording..."), view_);
+  look_for_->setAccessibleName(tr("Find the recording"));
+  look_for_->setToolTip(tr("Choose the new place of the recording; the run's data are kept"));
   look_for_->hide();
   auto* const over_view = new QVBoxLayout(view_);
   over_view->addStretch(3);
@@ -146,7 +146,8 @@ void DetectionScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Se
   if (runInView() != nullptr) goWhereSeen(run_->pass.cameras);
 }
 
-// Nobody has chosen a moment yet: one with the board is better than the recording's start or, after following, its end.
+// Until the user chooses a time: one with the board is better than the recording's start or, after following,
+// its end.
 void DetectionScreen::goWhereSeen(std::span<const BoardObservations> cameras) {
   if (time_is_chosen_ || following() || camera_ >= cameras.size()) return;
   const std::optional<double> seen_s = middleOfSeen_s(cameras[camera_].windows);
@@ -160,7 +161,7 @@ const CalibrationRun* DetectionScreen::runInView() const {
   return here && camera_ < run_->pass.cameras.size() ? run_.get() : nullptr;
 }
 
-// Of a run, its own: what it saw fits no other board and no other lens.
+// A run's detections belong to its own board and lens.
 DetectionSetup DetectionScreen::detectionSetupOf(std::size_t camera) const {
   if (const CalibrationRun* const run = runInView())
     return {run_session_.boardOf(camera), run->pass.lenses.at(camera).detection_intrinsics};
@@ -329,14 +330,14 @@ void DetectionScreen::takeOverview() {
     view_->setMessage(
         missing.isEmpty()
             ? tr("The recording cannot be read.\n%1").arg(QString::fromStdString(overview.error))
-            : tr("The recording is not there any more:\n%1").arg(missing));
-    status_->setText(missing.isEmpty() ? tr("not readable to its end") : tr("recording missing"));
+            : tr("The recording is missing:\n%1").arg(missing));
+    status_->setText(missing.isEmpty() ? tr("not readable to the end") : tr("recording missing"));
     status_->setToolTip(QString::fromStdString(overview.error));
     if (!overview.started) return;
   } else {
     status_->setText(overview.finished ? QString()
                                        : tr("reading %1 %").arg(100.0 * overview.fraction_read, 0, 'f', 0));
-    status_->setToolTip(tr("Recordings are read once, so that any instant can be shown at once"));
+    status_->setToolTip(tr("Recordings are read once, so that any time can be shown immediately"));
   }
   if (!overview.started) return;
   adaptTo(overview.kind);
@@ -353,7 +354,7 @@ void DetectionScreen::takeOverview() {
   request();
 }
 
-// The first one is at a fixed time, before it is known how long the recording is.
+// The initial cursor is at a fixed time, before the length of the recording is known.
 void DetectionScreen::keepCursorInside(const RecordingOverview& overview) {
   if (!overview.finished || time_s_ <= timeline_->end_s()) return;
   moveTo(0.5 * timeline_->end_s());
@@ -381,7 +382,7 @@ SurfaceStyle DetectionScreen::style() const {
 void DetectionScreen::refresh() {
   const auto& frame = view_->frame();
   const bool here = analysisIsHere();
-  // Words of a run's windows are laid out as often as they can be read, not as often as there are pictures.
+  // While following, the panel's text is updated at a readable rate, not at the rate of pictures.
   if (!following()) panel_timer_.stop();
   if (!panel_timer_.isActive()) {
     refreshPanel();
@@ -410,7 +411,7 @@ bool DetectionScreen::analysisIsHere() const {
 
 void DetectionScreen::refreshPanel() {
   const bool here = analysisIsHere();
-  if (framesInView() && analysis_ && !here) return;  // what is shown is of a frame that was just left
+  if (framesInView() && analysis_ && !here) return;  // the shown picture is of the previous frame
   const bool unsettled = here && (framesInView() ? !analysis_->frame->settled : analysis_->searches.empty());
   const bool searching = unsettled && !timer_.isActive() && !following();
   const double time_s = here && framesInView() ? analysis_->time_s : time_s_;

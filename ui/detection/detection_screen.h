@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the camera saw and what the front end makes of it: the events or the frame at the cursor with a layer for each
-// stage, a timeline of the whole recording, and why a window or a frame came out as it did.
+// Recorded events or frames and the front end's stages: the picture at the cursor with one layer per stage, a
+// timeline of the whole recording, and the reason for the outcome of a window or a frame.
 #pragma once
 
 #include "core/pipeline/pass/view_rejection.h"
@@ -30,7 +30,7 @@ class QToolButton;
 
 namespace evical::ui {
 
-// A run of one camera's lens alone has none, nor has one whose folder lost them.
+// False for a run of one camera's lens alone, and if the folder lost its poses.
 inline bool hasPoses(const CalibrationRun& run) {
   return !run.result.state.cameras.empty() &&
          !run.result.state.world_from_imu_rotation.control_points.empty();
@@ -55,56 +55,56 @@ class DetectionScreen : public QWidget {
   explicit DetectionScreen(QWidget* parent = nullptr);
   ~DetectionScreen() override;
 
-  // Reads the recording anew if it or its streams changed. The window in view is looked at again at once,
+  // Reads the recording again if it or its streams changed. The shown window is analysed again immediately,
   // with the session's options.
   void setSession(const Session& session);
-  // What the run saw, with the board and the lenses that it saw it with, and where it reprojects; `session`
-  // is what it was made from. Shown wherever the recording in view is its own. Null forgets.
+  // Detections of a run, with its board and lenses, and their reprojections; `session` is the run's. Shown if
+  // the open recording is the run's. Null: none.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
 
-  // What the next calibration from the run's detections is to leave out, by camera; nothing where none can be asked for.
+  // Times that the next calibration from the run's detections excludes, by camera; none if it is impossible.
   void setRejections(const std::optional<RejectedTimes>& rejections);
-  void setBusy(bool busy);  // a job runs: no calibration can be started
+  void setBusy(bool busy);  // a running job blocks calibrations
 
-  // While a job runs: give these to it, and the screen shows the windows as they are found.
+  // Observer for a running job: the screen shows its windows during the detection.
   std::shared_ptr<CalibrationObserver> liveObserver();
   void setLive(bool live);
   bool isLive() const { return live_; }
   void showLiveFrame(std::shared_ptr<const LiveWindow> window);
 
   std::size_t camera() const { return camera_; }
-  bool framesInView() const { return kind_ == CameraKind::Frames; }  // of that camera
+  bool framesInView() const { return kind_ == CameraKind::Frames; }  // kind of the shown camera
   double time_s() const { return time_s_; }
-  // Goes to a window in the middle that has the board; not where somebody has chosen a moment, or follows a run.
+  // Moves to a window near the middle that shows the board; not if the user has chosen a time or follows a
+  // run.
   void goWhereSeen(std::span<const BoardObservations> cameras);
   bool isPlaying() const { return timer_.isActive(); }
   EventView& view() { return *view_; }
-  void readAgain();                                        // the recording is not what it was
-  std::optional<KeptEvents> keptEvents() const;            // of the recording, as far as it has been read
-  EventView& companionView() { return *companion_view_; }  // beside it, where both are chosen
+  void readAgain();                                        // the recording has changed
+  std::optional<KeptEvents> keptEvents() const;            // of the part of the recording that has been read
+  EventView& companionView() { return *companion_view_; }  // next to view(), if both are shown
   Timeline& timeline() { return *timeline_; }
   WindowPanel& panel() { return *panel_; }
   WindowList& windowList() { return *list_; }
   const std::shared_ptr<const WindowAnalysis>& analysis() const { return analysis_; }
 
  public slots:
-  void setCamera(std::size_t camera);  // of the session
+  void setCamera(std::size_t camera);  // index in the session
   void setTime(double time_s);
   void setMode(evical::ui::SurfaceMode mode);
   void setPicture(evical::ui::PictureChoice picture);
-  QString whyNoOverlay() const;  // empty where events can be drawn over the frame
+  QString whyNoOverlay() const;  // empty: events can be drawn over the frame
   void setLayerVisible(evical::ui::Layer layer, bool visible);
   void setPlaying(bool playing);
   void step(int direction);  // to the next window or frame (+1) or the one before (-1)
   void stepToMissed(int direction);
-  void setWindowsListed(
-      bool listed);  // the list of windows, in place of layers and verdict where it is narrow
+  void setWindowsListed(bool listed);  // list of windows; replaces layers and verdict if space is short
 
  signals:
   void timeSelected(double time_s);  // by the user, or by playing
   void rejectionsWanted(const evical::RejectedTimes& rejections, const QString& what);
   void recalibrationWanted();
-  void recordingWanted(const QString& missing);  // a recording's path: the user wants to look for it
+  void recordingWanted(const QString& missing);  // path of a recording that the user wants to find
 
  protected:
   void changeEvent(QEvent*) override;
@@ -127,16 +127,16 @@ class DetectionScreen : public QWidget {
   void addKeys();
 
   void chooseCamera(std::size_t camera);
-  const CalibrationRun* runInView() const;  // null: there is none of this recording
+  const CalibrationRun* runInView() const;  // null: none of this recording
   DetectionSetup detectionSetupOf(std::size_t camera) const;
   void showRun();
   void select(double time_s);
   void moveTo(double time_s);
   void advance();
-  void request();  // of the engine: what the cursor, the mode and the layers ask for
+  void request();  // asks the engine for the cursor, mode and layers
   void takeOverview();
-  QString missingRecording() const;  // the path of the camera's, where it is not there any more
-  void showMarksAlone();             // of a run whose recording is missing
+  QString missingRecording() const;  // path of the camera's recording if it is missing
+  void showMarksAlone();             // for a run whose recording is missing
   void keepCursorInside(const RecordingOverview& overview);
   void takeFrame();
   void takeAnalysis();
@@ -146,10 +146,10 @@ class DetectionScreen : public QWidget {
   void refreshPanel();
   static QString captionOf(const SurfaceFrame& frame);
   static ColourLegend legendOf(const SurfaceFrame& frame, SurfaceMode mode);
-  void adaptTo(CameraKind kind);  // controls that say nothing of this kind go
+  void adaptTo(CameraKind kind);  // hides controls that do not apply to this kind
   void connectPictures();
   PictureChoice picture() const;
-  void offerPictures();  // those that there are of this camera
+  void offerPictures();  // the choices for this camera
   void refreshCompanion();
   void keepSecondOpen();
   void showSecond(const DetectionRequest& wish);
@@ -162,27 +162,27 @@ class DetectionScreen : public QWidget {
 
   std::optional<Session> session_;
   std::size_t camera_ = 0;
-  CameraKind kind_ = CameraKind::Events;  // of that camera
+  CameraKind kind_ = CameraKind::Events;  // kind of camera_
   FrontEndOptions options_;
   std::shared_ptr<const CalibrationRun> run_;
   Session run_session_;
   std::shared_ptr<const WindowAnalysis> analysis_;
   LayerSet layers_ = defaultLayers();
   double time_s_ = 0.1;
-  bool time_is_chosen_ = false;  // by somebody, for the session that is open
+  bool time_is_chosen_ = false;  // by the user, for the open session
   bool live_ = false, following_ = false;
 
   QTimer timer_, panel_timer_;
   QElapsedTimer since_frame_;
   std::optional<std::size_t> companion_;  // the camera of the other kind
-  std::optional<std::size_t> second_;     // where there is none: another of the same kind
+  std::optional<std::size_t> second_;     // without a companion: another camera of the same kind
   EventView *view_ = nullptr, *companion_view_ = nullptr;
   Timeline* timeline_ = nullptr;
   WindowPanel* panel_ = nullptr;
   WindowList* list_ = nullptr;
   QWidget* side_ = nullptr;
   std::optional<RejectedTimes> rejections_;
-  std::optional<bool> list_wanted_;  // nothing: as there is room
+  std::optional<bool> list_wanted_;  // none: depends on the space
   QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr, *picture_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
   QToolButton *play_button_ = nullptr, *follow_button_ = nullptr, *list_button_ = nullptr;

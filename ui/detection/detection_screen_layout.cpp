@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kSideWidth_px = 272;
 
-// Several colours lie side by side.
+// Several colours are drawn side by side.
 QIcon swatch(const std::vector<QColor>& colours, double pixel_ratio) {
   constexpr int kSize_px = 12;
   QPixmap pixmap(static_cast<int>(kSize_px * pixel_ratio), static_cast<int>(kSize_px * pixel_ratio));
@@ -105,23 +105,23 @@ QWidget* DetectionScreen::makeToolBar() {
   mode_box_ = new QComboBox;
   mode_box_->addItems({tr("Time surface"), tr("Accumulated events"), tr("Normal flow")});
   mode_box_->setToolTip(
-      tr("Time surface: each pixel's newest event, fading with age.\nAccumulated events: all of "
-         "the window.\nNormal flow: edges, coloured by the direction they move in"));
+      tr("Time surface: newest event of each pixel, fading with age.\nAccumulated events: all of "
+         "the window.\nNormal flow: edges, coloured by their direction of motion"));
   fade_box_ = new QDoubleSpinBox;
   fade_box_->setRange(1.0, 200.0);
   fade_box_->setDecimals(0);
   fade_box_->setValue(15.0);
   fade_box_->setSuffix(tr(" ms"));
-  fade_box_->setToolTip(tr("An event has faded to a third after this time"));
+  fade_box_->setToolTip(tr("Time after which an event has faded to a third"));
   camera_box_ = new QComboBox;
   camera_box_->setToolTip(tr("Camera"));
   camera_box_->setAccessibleName(tr("Camera"));
-  mode_box_->setAccessibleName(tr("How events are drawn"));
-  fade_box_->setAccessibleName(tr("After which time events have faded"));
+  mode_box_->setAccessibleName(tr("Drawing of events"));
+  fade_box_->setAccessibleName(tr("Fading time of events"));
   camera_box_->hide();
   picture_box_ = new QComboBox;
   picture_box_->setObjectName("picture_choice");
-  picture_box_->setAccessibleName(tr("Which pictures are shown"));
+  picture_box_->setAccessibleName(tr("Pictures"));
   picture_box_->addItems({{}, tr("Side by side"), tr("Events over frame")});
   picture_box_->hide();
   row->addWidget(camera_box_);
@@ -133,7 +133,7 @@ QWidget* DetectionScreen::makeToolBar() {
   row->addStretch(1);
   addListButton(row);
   status_ = new QLabel;
-  keepSize(*status_, tr("not readable to its end"));
+  keepSize(*status_, tr("not readable to the end"));
   row->addWidget(status_);
   connect(addButton(row, "zoom-out", tr("Zoom out (-)")), &QToolButton::clicked, this,
           [this] { view_->zoomBy(0.5, QRectF(view_->rect()).center()); });
@@ -190,7 +190,7 @@ QWidget* DetectionScreen::makeTransport() {
   row->setSpacing(4);
   connect(addButton(row, "to-start", tr("To the start (Home)")), &QToolButton::clicked, this,
           [this] { select(timeline_->begin_s()); });
-  connect(addButton(row, "step-back", tr("Window or frame before (Left)")), &QToolButton::clicked, this,
+  connect(addButton(row, "step-back", tr("Previous window or frame (Left)")), &QToolButton::clicked, this,
           [this] { step(-1); });
   play_button_ = addButton(row, "play", tr("Play (Space)"));
   connect(play_button_, &QToolButton::clicked, this, [this] { setPlaying(!isPlaying()); });
@@ -204,8 +204,8 @@ QWidget* DetectionScreen::makeTransport() {
     speed_box_->addItem(
         speed < 1.0 ? tr("1/%1 speed").arg(1.0 / speed, 0, 'f', 0) : tr("%1 x speed").arg(speed), speed);
   speed_box_->setCurrentIndex(3);
-  speed_box_->setAccessibleName(tr("Speed of playing"));
-  speed_box_->setToolTip(tr("Speed of playing, against the recording's own"));
+  speed_box_->setAccessibleName(tr("Playback speed"));
+  speed_box_->setToolTip(tr("Playback speed, relative to the recording"));
   row->addWidget(speed_box_);
   time_box_ = new QDoubleSpinBox;
   time_box_->setDecimals(4);
@@ -213,14 +213,14 @@ QWidget* DetectionScreen::makeTransport() {
   time_box_->setSingleStep(0.001);
   time_box_->setSuffix(tr(" s"));
   time_box_->setKeyboardTracking(false);
-  time_box_->setToolTip(tr("Cursor, since the recording's start"));
+  time_box_->setToolTip(tr("Cursor, in seconds since the recording's start"));
   time_box_->setAccessibleName(tr("Cursor in seconds"));
   connect(time_box_, &QDoubleSpinBox::valueChanged, this, [this](double time_s) { select(time_s); });
   row->addWidget(time_box_);
   row->addSpacing(8);
   addMissedButtons(row);
   row->addStretch(1);
-  follow_button_ = addButton(row, "follow", tr("Show the windows as they are found"));
+  follow_button_ = addButton(row, "follow", tr("Show the windows during the detection"));
   follow_button_->setText(tr("Follow the run"));
   follow_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   follow_button_->setCheckable(true);

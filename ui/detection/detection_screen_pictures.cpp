@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two cameras of a rig in one sight: of the two kinds, or of the same.
+// Two cameras of a rig in one view: of different kinds, or of the same kind.
 #include "core/optimisation/optimisation_options.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
@@ -20,7 +20,7 @@
 namespace evical::ui {
 namespace {
 
-// The measured view of the window in sight; empty where there is none.
+// The measured board view of the shown window; empty if there is none.
 BoardView viewAt(const std::vector<BoardObservations>& cameras, std::size_t camera, double time_s) {
   if (camera >= cameras.size()) return {};
   constexpr double kHalfWindow_s = 0.05;
@@ -62,13 +62,13 @@ PictureChoice DetectionScreen::picture() const {
 
 QString DetectionScreen::whyNoOverlay() const {
   if (!companion_) return tr("There is no camera of the other kind");
-  if (!framesInView()) return tr("Choose the camera with frames: events are drawn over its picture");
+  if (!framesInView()) return tr("Choose the frame camera: events are drawn over its picture");
   const CalibrationRun* const run = runInView();
-  if (!run) return tr("Calibrate first: the result tells where the frame camera sees what events saw");
+  if (!run) return tr("Calibrate first: the projection of events into the frame needs the result");
   if (!EventsOverFrame::isPossible(run->result.state, *companion_, camera_))
-    return tr("The last run has no lens of one of the two cameras, or no trajectory");
+    return tr("The last run lacks a lens of the two cameras, or the trajectory");
   if (run_session_.boardIndexOf(camera_) + run_session_.boardIndexOf(*companion_) > 0)
-    return tr("Both cameras must see one board, whose frame is the world");
+    return tr("Both cameras must see the first board, whose frame is the world frame");
   return {};
 }
 
@@ -88,10 +88,10 @@ void DetectionScreen::offerPictures() {
   auto* const item = qobject_cast<QStandardItemModel*>(picture_box_->model())->item(overlaid);
   item->setEnabled(why_not.isEmpty());
   const QString help =
-      tr("Each event where the frame camera sees it at the frame's time: from its pixel to the board's "
+      tr("Each event is projected into the frame at the frame's time: from its pixel to the board's "
          "plane and\ninto the frame, through the lenses, poses and time offsets of the last run");
   item->setToolTip(why_not.isEmpty() ? help : why_not);
-  picture_box_->setToolTip(why_not.isEmpty() || second_ ? tr("This camera's picture, or both cameras'")
+  picture_box_->setToolTip(why_not.isEmpty() || second_ ? tr("Picture of this camera, or of both")
                                                         : tr("No events over the frame: %1").arg(why_not));
   const bool beside = picture() == PictureChoice::SideBySide;
   companion_view_->setVisible(beside);
@@ -146,7 +146,7 @@ void DetectionScreen::keepSecondOpen() {
   if (!second_camera_->isOf(*second_)) second_camera_->open(*session_, *second_);
 }
 
-// At the same moment, as far as a result tells how far the clocks are apart.
+// At the same moment, if a result contains the time offset between the clocks.
 void DetectionScreen::showSecond(const DetectionRequest& wish) {
   if (!second_ || !second_camera_->isOf(*second_)) return;
   second_camera_->know(*session_, detectionSetupOf(*second_), seenBy(*second_));
@@ -166,7 +166,7 @@ void DetectionScreen::refreshCompanion() {
   companion_view_->setCaption(QString::fromStdString(session_->cameras[*shown].name) + tr("    ") +
                               captionOf(*frame));
   companion_view_->setLegend(legendOf(*frame, companion_ ? SurfaceMode::Decayed : style().mode));
-  if (!companion_) return;  // the second camera has layers of its own
+  if (!companion_) return;  // the second camera has its own layers
   companion_view_->setOverlay(
       [reprojection = reprojectionInto(*companion_, frame->time_s)](QPainter& painter, double scale) {
         LayerSet layers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of windows beside the picture.
+// List of windows next to the picture.
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/timeline.h"
@@ -17,9 +17,9 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kRoomForBoth_px = 1350;                   // list, layers and a picture between them
+constexpr int kRoomForBoth_px = 1350;                   // for the list, the layers and a picture between them
 constexpr double kListShare = 0.455;                    // of the page
-constexpr int kListLeast_px = 330, kListMost_px = 360;  // a picture of 1000 px stays at 1920
+constexpr int kListLeast_px = 330, kListMost_px = 360;  // leaves a picture of 1000 px at a width of 1920
 
 int countOnlyIn(const std::vector<double>& these, const std::vector<double>& others) {
   std::vector<double> only;
@@ -56,8 +56,8 @@ void DetectionScreen::addListButton(QHBoxLayout* row) {
 }
 
 void DetectionScreen::addMissedButtons(QHBoxLayout* row) {
-  connect(addButton(row, "missed-before", tr("Missed window before (Shift+M)")), &QToolButton::clicked, this,
-          [this] { stepToMissed(-1); });
+  connect(addButton(row, "missed-before", tr("Previous missed window (Shift+M)")), &QToolButton::clicked,
+          this, [this] { stepToMissed(-1); });
   connect(addButton(row, "missed-next", tr("Next missed window (M)")), &QToolButton::clicked, this,
           [this] { stepToMissed(+1); });
 }
@@ -85,9 +85,9 @@ void DetectionScreen::resizeEvent(QResizeEvent* event) {
 void DetectionScreen::listWindows() {
   const CalibrationRun* const run = live_ ? nullptr : runInView();
   list_->setRun(run != nullptr ? run_ : nullptr, camera_,
-                live_ ? tr("Windows are listed when all have been found.")
-                      : tr("Calibrate (F5): then each window is listed here, with its picture, what became "
-                           "of it and how well it fits."));
+                live_ ? tr("The windows will be listed when the detection is complete.")
+                      : tr("Calibrate (F5) to list the windows, each with its picture, outcome "
+                           "and fit."));
   showRejections();
   showPictures();
 }

@@ -13,7 +13,7 @@ constexpr std::int64_t kLongestBlock_ns = std::numeric_limits<std::uint32_t>::ma
 }  // namespace
 
 EventCache::EventCache(const std::filesystem::path& folder)
-    : file_(folder, {"events", "Make room there: 8 bytes an event are needed"}),
+    : file_(folder, {"events", "Free some space there: 8 bytes per event are needed"}),
       complete_until_ns_(std::numeric_limits<std::int64_t>::min()),
       last_written_ns_(complete_until_ns_) {
   open_.reserve(kBlockEvents);

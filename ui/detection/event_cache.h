@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All events of one camera where any instant can be looked up at once. Recordings are read once and in order;
-// to scrub in them, their events are kept in a temporary file of 8 bytes an event (half of what a bag takes)
-// that is gone when the cache is. Memory: an index of 24 bytes every 8192 events. Looking something up reads
-// the blocks it lies in, about 10 ns an event while the system still has them in memory, whatever the place.
+// All events of one camera, with random access by time. The recording is read once, in order; its events are
+// stored in a temporary file of 8 bytes per event (half of a bag's), which is deleted with the cache. Memory:
+// an index of 24 bytes per 8192 events. A look-up reads the blocks around it, at about 10 ns per event at any
+// place while the system has them in memory.
 #pragma once
 
 #include "core/data/event.h"
@@ -18,25 +18,24 @@ namespace evical::ui {
 
 class EventCache {
  public:
-  // Throws CalibrationError if there can be no file in the folder.
+  // Throws CalibrationError if no file can be created in the folder.
   explicit EventCache(const std::filesystem::path& folder);
 
-  // One thread writes, events in order of time; x and y below 32768. Throws CalibrationError
-  // if the disk is full.
+  // One thread writes, in order of time; x and y below 32768. Throws CalibrationError if the disk is full.
   void append(EventSpan events);
-  void finish();  // no more will come
+  void finish();  // no more events
 
-  // Any thread. Events before this time have all been stored; the largest time there is once finished.
+  // Thread-safe. All events before this time have been stored; the maximum of the type after finish().
   std::int64_t completeUntil_ns() const;
-  std::int64_t lastEvent_ns() const;  // of those stored; the smallest time there is if none are
+  std::int64_t lastEvent_ns() const;  // last stored event; the minimum of the type if none
   std::uint64_t eventCount() const;
-  // Appends the events with begin_ns <= time < end_ns in order of time, as far as they are stored.
+  // Appends the stored events with begin_ns <= time < end_ns, in order of time.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<Event>& events) const;
-  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // of what gather() would append
+  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // number that gather() would append
 
  private:
   struct Stored {
-    std::uint32_t after_ns;  // since the block's first
+    std::uint32_t after_ns;  // since the block's first event
     std::uint16_t x_px;
     std::uint16_t y_px_and_brighter;  // brighter in the lowest bit
   };
@@ -54,7 +53,7 @@ class EventCache {
                                      std::vector<Stored>& stored) const;
 
   CacheFile file_;
-  std::vector<Stored> open_;  // the writer's own
+  std::vector<Stored> open_;  // of the writing thread
   std::int64_t open_first_ns_ = 0, last_ns_ = 0;
 
   mutable std::mutex mutex_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLargestScale = 64.0;
 constexpr double kZoomStep = 1.25;
-constexpr double kGridScale = 14.0;  // from here on single pixels are outlined
+constexpr double kGridScale = 14.0;  // pixels are outlined from this scale on
 constexpr int kMargin_px = 6;
 constexpr int kWrapped = Qt::AlignLeft | Qt::AlignVCenter | Qt::TextWordWrap;
 
@@ -89,7 +89,7 @@ void EventView::zoomBy(double factor, const QPointF& about) {
   update();
 }
 
-// The picture may be moved about, but its part in the widget never gets smaller than it must be.
+// Panning never reduces the visible part of the picture below the largest possible one.
 void EventView::keepInSight() {
   const Resolution size_px = frame_->resolution_px();
   const auto kept = [](double origin, double picture, double widget) {
@@ -156,7 +156,7 @@ QRect EventView::pictureInSight() const {
   return picture.intersected(rect()).toAlignedRect();
 }
 
-// In the picture's corner, as far as that is in sight.
+// In a corner of the visible part of the picture.
 QRect EventView::noteBox(const QSize& size, bool below) const {
   constexpr int kInside_px = 6;
   const QRect seen = pictureInSight().adjusted(kInside_px, kInside_px, -kInside_px, -kInside_px);

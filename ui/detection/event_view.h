@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sensor's picture with what is drawn over it: zoom to pixels by wheel, pan by drag, F to fit, and what
-// the pixel under the mouse last saw. Draws what it is given; computes nothing.
+// Picture of the sensor with overlays: wheel zooms down to pixels, drag pans, F fits; shows the last event of
+// the pixel under the mouse. Draws its input without any computation.
 #pragma once
 
 #include "ui/detection/colour_legend.h"
@@ -23,28 +23,28 @@ class EventView : public QWidget {
   Q_OBJECT
 
  public:
-  // Paints in the sensor's pixels, (0, 0) being the middle of the top left one; `scale` is
-  // widget pixels per sensor pixel.
+  // Paints in sensor pixels, with (0, 0) in the centre of the top left one; `scale` is widget pixels per
+  // sensor pixel.
   using Overlay = std::function<void(QPainter& painter, double scale)>;
 
   explicit EventView(QWidget* parent = nullptr);
 
-  void setFrame(std::shared_ptr<const SurfaceFrame> frame);  // null: nothing to show
+  void setFrame(std::shared_ptr<const SurfaceFrame> frame);  // null: no picture
   const std::shared_ptr<const SurfaceFrame>& frame() const { return frame_; }
   void setOverlay(Overlay overlay);
-  void setCaption(const QString& caption);  // top left, over the picture
+  void setCaption(const QString& caption);  // top left, on the picture
   const QString& caption() const { return caption_; }
-  void setLegend(ColourLegend legend);  // of the picture's colours
+  void setLegend(ColourLegend legend);  // for the picture's colours
   ColourLegend legend() const { return legend_; }
   const QString& message() const { return message_; }
-  void setMessage(const QString& message);  // in the middle, where there is no picture
+  void setMessage(const QString& message);  // shown in the middle without a picture
 
   void fit();
   void zoomBy(double factor, const QPointF& about);
   double scale() const { return scale_; }
   QPointF sensorFromWidget(const QPointF& point) const;
   QPointF widgetFromSensor(const QPointF& pixel) const;
-  QString readout() const;  // of the pixel under the mouse; empty if there is none
+  QString readout() const;  // for the pixel under the mouse; empty without one
 
   QSize sizeHint() const override { return {700, 480}; }
   QSize minimumSizeHint() const override { return {240, 160}; }

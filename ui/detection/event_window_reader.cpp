@@ -17,7 +17,7 @@ namespace evical::ui {
 namespace {
 
 constexpr double kBin_s = 0.01;
-constexpr std::size_t kMostBins = 10'000'000;  // a day; a clock that jumps further has no curve there
+constexpr std::size_t kMostBins = 10'000'000;  // a day; no curve beyond a larger clock jump
 constexpr auto kTellEvery = std::chrono::milliseconds(100);
 
 // Sums and counts by bin of time.
@@ -59,14 +59,13 @@ CameraKind kindOf(const SessionRecording& recording, const Session& session, std
     case StreamType::Frames:
       return CameraKind::Frames;
     default:
-      throw badInput(
-          session.cameras[camera].name,
-          "its stream holds points that another program measured, and no pictures",
-          "Choose a camera with events or frames; what is known of the points is in detections.csv");
+      throw badInput(session.cameras[camera].name,
+                     "has a stream of points measured by another program, without pictures",
+                     "Choose a camera with events or frames; the points are in detections.csv");
   }
 }
 
-// An event camera's size is known; of frames it need not be.
+// The resolution is known for event cameras, but not always for frame cameras.
 std::optional<Resolution> knownSize(const SessionRecording& recording, std::size_t camera) {
   try {
     return recording.resolution_px(camera);
@@ -89,7 +88,7 @@ std::optional<std::size_t> companionOf(const SessionRecording& recording, const 
 
 }  // namespace
 
-// Fills the cache with the events that a calibration takes.
+// Fills the cache with the events that a calibration uses.
 class EventWindowReader::CacheFilling {
  public:
   CacheFilling(EventCache& cache, std::size_t camera, const SessionCamera& session, Resolution resolution_px,
@@ -125,7 +124,7 @@ class EventWindowReader::CacheFilling {
   Bins rate_;
 };
 
-// The reading thread's own state.
+// State of the reading thread.
 class EventWindowReader::Pass {
  public:
   Pass(const Session& session, std::size_t camera, const std::filesystem::path& folder)

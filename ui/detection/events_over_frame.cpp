@@ -12,7 +12,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kPoseStep_s = 1e-4;  // the fastest hand moves a board by a tenth of a pixel
+constexpr double kPoseStep_s = 1e-4;  // the fastest motion by hand is a tenth of a pixel
 
 std::vector<Eigen::Vector3f> raysOf(const CameraIntrinsics& lens, Resolution size_px) {
   std::vector<Eigen::Vector3f> rays;
@@ -42,7 +42,7 @@ void mixInto(QRgb& pixel, QRgb colour, double part) {
                channel(qBlue(pixel), qBlue(colour)));
 }
 
-// The newest event of each of the frame's pixels.
+// Newest event of each pixel of the frame.
 struct NewestEvents {
   static constexpr float kNone = -1.0F;
   int width, height;
@@ -114,7 +114,7 @@ int EventsOverFrame::pixelsOfEvent() const {
   return static_cast<int>(std::lround(std::clamp(times, 1.0, kMost)));
 }
 
-// Of a rolling shutter: when the row was exposed in which the point is seen.
+// For a rolling shutter: exposure time of the row in which the point is seen.
 std::optional<Eigen::Vector2d> EventsOverFrame::inFrame(const Eigen::Vector3d& point_in_world) const {
   const CameraIntrinsics& lens = *frames().lens.inUse();
   const auto pixel = project(lens, *frame_camera_from_world_ * point_in_world);

@@ -16,7 +16,7 @@
 namespace evical::ui {
 namespace {
 
-// This frame and those around it that a run would look at.
+// Frames around this one that a run would process.
 struct Neighbourhood {
   std::vector<std::size_t> before, after;  // the nearest ones, in order of time
   bool due = true;
@@ -49,14 +49,14 @@ std::array<double, 2> brightnessOf(const GrayImage& image) {
   return {percentile(0.05), percentile(0.95)};
 }
 
-// Of a view that a tracker without a bound on blur has made.
+// Motion blur of a view from a tracker without a limit on blur.
 double blurOf(const BoardView& view, double exposure_s) {
   std::vector<double> speeds_px_s;
   for (const CircleObservation& point : view.circles) speeds_px_s.push_back(point.velocity_px_s.norm());
   return exposure_s * medianOf(std::move(speeds_px_s));
 }
 
-// The tracker over some frames, one of which is asked about.
+// Tracker over some frames, with one frame in question.
 class Tracking {
  public:
   explicit Tracking(const FrameQuestion& question)
@@ -78,7 +78,7 @@ class Tracking {
   std::string doubt() const { return tracker_.doubt(); }
 
  private:
-  // Blurred views, too, are of interest here.
+  // Blurred views are shown, too.
   static FrameOptions unblurred(FrameOptions options) {
     options.largest_blur_px = std::numeric_limits<double>::infinity();
     return options;
@@ -109,7 +109,7 @@ void track(const FrameQuestion& question, const Neighbourhood& neighbours, Windo
   if (frame.blur_px > question.options.largest_blur_px) analysis.outcome = WindowOutcome::Blurred;
 }
 
-// What is too little for a view is shown all the same.
+// Points are shown even if they are too few for a view.
 void addPointsOfNoUse(const FrameQuestion& question, const GrayImage& image, FrameFinding& frame) {
   BoardFinder finder(question.board, question.options);
   PointsInFrame found;
@@ -138,7 +138,7 @@ void lookAt(const FrameQuestion& question, const GrayImage& image, WindowAnalysi
     track(question, neighbours, analysis);
     if (frame.points.empty()) addPointsOfNoUse(question, image, frame);
   } catch (const CalibrationError& error) {
-    frame.problem = error.place() + " " + error.problem();  // the board's numbers make none
+    frame.problem = error.place() + " " + error.problem();  // the board's numbers cause none
   }
 }
 

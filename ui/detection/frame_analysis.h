@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What becomes of one frame: the tracker's own answer (core/frames/frame_tracker.h), given the frames around it. A pure
-// function of its inputs, for a worker thread.
+// Analysis of one frame with the tracker of a run (core/frames/frame_tracker.h) and the frames around it. A
+// pure function of its inputs, for a worker thread.
 #pragma once
 
 #include "core/frames/frame_options.h"
@@ -17,11 +17,10 @@ namespace evical::ui {
 
 struct FrameQuestion {
   std::shared_ptr<const FrameCache> frames;
-  std::int64_t start_ns = 0;  // the recording's
-  std::size_t frame = 0;      // in the cache
+  std::int64_t start_ns = 0;  // start of the recording
+  std::size_t frame = 0;      // index in the cache
   std::size_t frames_read = 0;
-  std::size_t frames_before =
-      2;  // from which the board is followed to this one, of those that a run would look at
+  std::size_t frames_before = 2;  // number of processed frames from which the board is tracked to this one
   std::string camera;
   Board board;
   FrameOptions options;
@@ -29,16 +28,16 @@ struct FrameQuestion {
   bool operator==(const FrameQuestion&) const = default;
 };
 
-// A run follows the board through the recording; here some frames before this one do, and the one after it tells with
-// them how fast the board moves.
+// A run tracks the board through the recording. Here, some frames before this one are used, and the one after
+// it, which gives the board's speed.
 WindowAnalysis analyseFrame(const FrameQuestion& question);
 
-// Whether a board that is followed from further away may show more.
+// True if tracking from further back may find more of the board.
 bool goesFurther(const WindowAnalysis& analysis);
 
 std::vector<StageReport> describeFrame(const WindowAnalysis& analysis, const FrameOptions& options);
 
-// As finders see it.
+// The image as finders use it.
 QImage pictureOf(const GrayImage& image);
 
 }  // namespace evical::ui

@@ -23,7 +23,7 @@ Frame withoutBytes(const Frame& frame) {
 }  // namespace
 
 FrameCache::FrameCache(const std::filesystem::path& folder)
-    : file_(folder, {"frames", "Make room there: as much as the frames take in the recording"}) {}
+    : file_(folder, {"frames", "Free some space there: as much as the frames take in the recording"}) {}
 
 void FrameCache::append(const Frame& frame) {
   if (const auto last_ns = lastTime_ns(); last_ns && frame.time_ns <= *last_ns) return;

@@ -17,15 +17,16 @@ std::string whichText(const FrameFinding& frame) {
   std::string text = print("%zu of %zu", frame.number, frame.count);
   if (frame.size_px.known()) text += print(", %d x %d px", frame.size_px.width_px, frame.size_px.height_px);
   return text + (frame.exposure_s > 0.0 ? print(", exposed for %.2f ms", 1e3 * frame.exposure_s)
-                                        : std::string(", exposure not known"));
+                                        : std::string(", exposure unknown"));
 }
 
 StageReport pictureStage(const WindowAnalysis& analysis, const FrameOptions& options) {
   const FrameFinding& frame = *analysis.frame;
   const double contrast = frame.brightest - frame.darkest;
   const bool pale = !isOfUse(analysis) && contrast < options.least_contrast;
-  std::string text = print("9 of 10 pixels lie between %.0f and %.0f of 255", frame.darkest, frame.brightest);
-  if (pale) text += print(": hardly any contrast (least_contrast is %.0f)", options.least_contrast);
+  std::string text =
+      print("90 % of the pixels are between %.0f and %.0f of 255", frame.darkest, frame.brightest);
+  if (pale) text += print(": too little contrast (least_contrast is %.0f)", options.least_contrast);
   return {"picture", pale ? StageVerdict::Failed : StageVerdict::Passed, text};
 }
 
@@ -33,9 +34,9 @@ StageReport searchStage(const WindowAnalysis& analysis) {
   const FrameFinding& frame = *analysis.frame;
   if (frame.points.empty())
     return {"search", StageVerdict::Failed,
-            "no board where the frames before put it, and none in all of the frame"};
+            "no board at the place predicted from previous frames, nor elsewhere in the frame"};
   return {"search", StageVerdict::Passed,
-          frame.tracked ? "followed from the frames before" : "found in all of the frame"};
+          frame.tracked ? "tracked from previous frames" : "found by a search of the whole frame"};
 }
 
 StageReport pointsStage(const WindowAnalysis& analysis, const FrameOptions& options) {
@@ -59,9 +60,9 @@ StageReport blurStage(const WindowAnalysis& analysis, const FrameOptions& option
   const bool blurred = analysis.outcome == WindowOutcome::Blurred;
   if (!isOfUse(analysis) && !blurred) return {"blur", StageVerdict::NotReached, "not reached"};
   if (!(frame.exposure_s > 0.0))
-    return {"blur", StageVerdict::Note, "not known, as the recording does not tell the exposure"};
+    return {"blur", StageVerdict::Note, "unknown: the recording does not contain the exposure"};
   return {"blur", blurred ? StageVerdict::Failed : StageVerdict::Passed,
-          print("the board moves %.2f px while the frame is exposed (largest_blur_px is %.1f)", frame.blur_px,
+          print("the board moves %.2f px during the exposure (largest_blur_px is %.1f)", frame.blur_px,
                 options.largest_blur_px)};
 }
 
@@ -71,8 +72,8 @@ std::vector<StageReport> describeFrame(const WindowAnalysis& analysis, const Fra
   const FrameFinding& frame = *analysis.frame;
   std::vector<StageReport> stages{{"frame", StageVerdict::Note, whichText(frame)}};
   if (!frame.due)
-    stages.push_back({"rate", StageVerdict::Note,
-                      print("a run leaves this frame out (frames.rate_hz is %g)", options.rate_hz)});
+    stages.push_back(
+        {"rate", StageVerdict::Note, print("not used by a run (frames.rate_hz is %g)", options.rate_hz)});
   if (!frame.problem.empty()) {
     stages.push_back({frame.size_px.known() ? "board" : "picture", StageVerdict::Failed, frame.problem});
     return stages;

@@ -40,11 +40,11 @@ QPointF toSensor(const Eigen::Vector2d& ideal_pixel, const BoardScene& scene) {
   return toPoint(scene.camera ? pixelFromIdeal(*scene.camera, ideal_pixel) : ideal_pixel);
 }
 
-// Of the same width at every zoom, and on displays of every density.
+// Same width at every zoom and display density.
 void usePen(QPainter& painter, const QColor& colour, double width_px = 1.5,
             Qt::PenStyle style = Qt::SolidLine) {
   QPen pen(colour, width_px * painter.device()->devicePixelRatioF(), style);
-  pen.setCosmetic(true);  // Qt takes the width for device pixels
+  pen.setCosmetic(true);  // the width is in device pixels
   painter.setPen(pen);
 }
 
@@ -69,7 +69,7 @@ void paintBoard(QPainter& painter, const BoardMotion& motion, const BoardScene& 
     painter.drawPolygon(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene));
 }
 
-// Each circle's own, as the picture shows it; corners have none.
+// Measured ellipses of the circles, in the picture; corners have none.
 void paintImages(QPainter& painter, const std::vector<CircleObservation>& points) {
   usePen(painter, layerColour(Layer::Ellipses), 2.0);
   painter.setBrush(Qt::NoBrush);
@@ -83,7 +83,7 @@ void paintImages(QPainter& painter, const std::vector<CircleObservation>& points
   }
 }
 
-// As far as the edge moves in the window.
+// Motion of the edge over the window.
 QLineF flowLine(const NormalFlow& flow, double half_width_s) {
   const QPointF from(flow.x_px, flow.y_px);
   const Eigen::Vector2d step = half_width_s * flow.velocity_px_s.cast<double>();
@@ -97,7 +97,7 @@ void paintFlow(QPainter& painter, const WindowAnalysis& analysis) {
   painter.drawLines(lines);
 }
 
-// By kind: leading, following, others.
+// By kind: leading, trailing, others.
 std::array<QColor, 3> clusterColours() {
   return {theme().good, theme().warning, theme().faint_text};
 }
@@ -148,7 +148,7 @@ void paintSearch(QPainter& painter, const BoardSearch& search) {
   }
 }
 
-// A fit that did not hold is told from one that did: by colour, and by its broken line.
+// A failed fit differs by colour and by a dashed line.
 void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
   const bool missed = windowClass(analysis.outcome) == WindowClass::Missed;
   QColor colour = missed ? theme().bad : layerColour(Layer::Ellipses);
@@ -176,7 +176,7 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
   }
 }
 
-// From a point to the nearest other one, as the median of some fifty.
+// Distance to the nearest other point: the median of about fifty.
 double usualGap(const QPolygonF& points) {
   std::vector<double> gaps;
   const qsizetype step = std::max<qsizetype>(1, points.size() / 50);
@@ -189,8 +189,8 @@ double usualGap(const QPolygonF& points) {
   return medianOf(std::move(gaps));
 }
 
-// Along the rows from the first point to the last, as calibrators are used to, and each one's number where there is
-// room. Only points that follow each other are joined, and none in a window in which the board was not found.
+// Points connected along the rows, as usual in calibration tools, with their numbers if there is space. Only
+// consecutive points are connected, and none if the board was not found.
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const Board& board = analysis.scene->board;
   const bool missed = windowClass(analysis.outcome) == WindowClass::Missed;
@@ -225,7 +225,7 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
   painter.restore();
 }
 
-// Image of a circle's outline through the camera, distortion and all; nothing if part of it is not seen.
+// Image of a circle's outline through the camera with distortion; none if part of it is not visible.
 std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_world,
                                  const CameraIntrinsics& intrinsics, const Board& board) {
   QPolygonF outline;
@@ -239,7 +239,7 @@ std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_w
   return outline;
 }
 
-// When the rows that show it were exposed, of a sensor whose middle row was at this time.
+// Image at the exposure time of its rows, for a sensor whose middle row was exposed at this time.
 std::optional<QPolygonF> imageInRows(int circle, const CalibrationState& state, const CameraState& camera,
                                      const SeenBoard& seen, double time_s) {
   const CameraIntrinsics& lens = *camera.lens.inUse();
@@ -253,7 +253,7 @@ std::optional<QPolygonF> imageInRows(int circle, const CalibrationState& state, 
   return imageAt(rowTime_s(camera, time_s, outline->boundingRect().center().y()));
 }
 
-// By circle, in ideal pixels; only of those that were measured.
+// By circle, in ideal pixels; only for measured circles.
 std::map<int, Eigen::Vector2d> idealLeads(const CameraState& camera, const CameraIntrinsics& intrinsics,
                                           const BoardView& view, double slow_edge_speed_px_s) {
   std::map<int, Eigen::Vector2d> leads;
@@ -279,28 +279,27 @@ QPolygonF moved(const QPolygonF& outline, const Eigen::Vector2d& by_ideal_px,
 LayerWords layerWords(Layer layer) {
   switch (layer) {
     case Layer::Flow:
-      return {tr("Flow vectors"), tr("Normal flow of edges, as far as they move in the window")};
+      return {tr("Flow vectors"), tr("Normal flow of edges: their motion over the window")};
     case Layer::Clusters:
       return {tr("Clusters"),
-              tr("Connected flow: arcs that lead (green), follow (yellow), and others (grey)")};
+              tr("Connected flow: leading arcs (green), trailing arcs (yellow), others (grey)")};
     case Layer::Pairs:
-      return {tr("Pairs"), tr("A leading and a following arc that make a circle")};
+      return {tr("Pairs"), tr("A leading and a trailing arc of the same circle")};
     case Layer::Circles:
-      return {tr("Search"), tr("Candidates (dotted), circles that move, and the lattice found among them")};
+      return {tr("Search"), tr("Candidates (dotted), moving circles, and the lattice formed by them")};
     case Layer::Ellipses:
-      return {tr("Ellipses"), tr("The board's fit, and the edge bursts that lie on it")};
+      return {tr("Ellipses"), tr("The fitted board, and the edge bursts on it")};
     case Layer::Centres:
-      return {tr("Centres"),
-              tr("Measured centres, and their covariance as ellipses of %1 sigma").arg(kShownSigmas)};
+      return {tr("Centres"), tr("Measured centres, with covariance ellipses of %1 sigma").arg(kShownSigmas)};
     case Layer::Grid:
       return {tr("Grid"), tr("Measured circles in the board's order, with their numbers")};
     case Layer::Prediction:
-      return {tr("Prediction"), tr("Where the tracker expects the board, from the view before")};
+      return {tr("Prediction"), tr("Board predicted by the tracker from the previous view")};
     case Layer::Reprojection:
       break;
   }
   return {tr("Reprojection"),
-          tr("Where the calibration's trajectory puts the board, and its edge lead the edges")};
+          tr("Board projected with the calibration's trajectory, and its edges with the edge lead")};
 }
 
 QColor layerColour(Layer layer) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What can be drawn over the events: one layer a stage, in the sensor's pixels.
+// Layers drawn over the events: one per stage, in sensor pixels.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -23,23 +23,23 @@ enum class Layer { Flow, Clusters, Pairs, Circles, Ellipses, Centres, Grid, Pred
 inline constexpr std::size_t kLayerCount = 9;
 using LayerSet = std::bitset<kLayerCount>;
 
-inline constexpr double kShownSigmas = 30.0;  // of centres: honest ellipses are too small to see
+inline constexpr double kShownSigmas = 30.0;  // of centres: ellipses of one sigma are too small to see
 
 struct LayerWords {
   QString name, help;
 };
 LayerWords layerWords(Layer layer);
-QColor layerColour(Layer layer);  // of the theme; the first, where a layer has several
+QColor layerColour(Layer layer);  // of the theme; the first if a layer has several
 std::vector<QColor> layerColours(Layer layer);
 LayerSet defaultLayers();
-bool isOfFrames(Layer layer);  // says something of frames, too, not only of events
+bool isOfFrames(Layer layer);  // applies to frames as well as to events
 
-// Outlines of the board's circles where a calibration's trajectory puts them, of corners a point each; empty outside
-// the trajectory.
+// Outlines of the board's circles, projected with a calibration's trajectory; for corners one point each;
+// empty outside the trajectory.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const SeenBoard& seen, double time_s);
-// Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way, and of
-// frames when their rows were exposed.
+// Expected measurements: shifted by the camera's edge lead, in the direction from the view, and for frames at
+// the exposure time of their rows.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const SeenBoard& seen, double time_s, const BoardView& view,
                                       double slow_edge_speed_px_s);

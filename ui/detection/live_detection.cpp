@@ -17,7 +17,7 @@ namespace evical::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// What a person follows; pictures cost the run its time.
+// Fast enough for the eye; pictures cost the run computing time.
 constexpr auto kLeastInterval = std::chrono::milliseconds(60);
 constexpr auto kReportInterval = std::chrono::milliseconds(200);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the front end at work: turns the windows it looks at into pictures' material, forty times a second
-// at most, from whatever thread it runs in.
+// Shows the running front end: sends its windows for display, at most forty times a second, from any thread.
 #pragma once
 
 #include "core/data/calibration_observer.h"
@@ -18,14 +17,14 @@ namespace evical::ui {
 
 struct WindowAnalysis;
 
-// A window as the front end just left it.
+// A window that the front end has just processed.
 struct LiveWindow {
   std::size_t camera = 0;
-  std::optional<double> time_s;  // unknown until something was tracked
+  std::optional<double> time_s;  // unknown before the first tracked window
   std::int64_t middle_ns = 0;
-  std::vector<Event> bursts;  // one event an edge burst
+  std::vector<Event> bursts;  // one event per edge burst
   std::shared_ptr<const WindowAnalysis> analysis;
-  std::shared_ptr<const std::vector<WindowReport>> windows;  // all so far, in any order
+  std::shared_ptr<const std::vector<WindowReport>> windows;  // all until now, in any order
 };
 
 class LiveDetection : public QObject {
@@ -41,7 +40,7 @@ class LiveDetection : public QObject {
   std::shared_ptr<const LiveWindow> take();
 
  signals:
-  void windowReady();  // in this object's thread: take it
+  void windowReady();  // emitted in this object's thread; then fetch the window
 
  private:
   class CameraObserver;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers in sentences, from threads that have no translator.
+// Numbers in sentences, for threads without a translator.
 #pragma once
 
 #include <cstdio>

@@ -63,7 +63,7 @@ void SecondCamera::showLive(std::shared_ptr<const LiveWindow> window, const Surf
   engine_->showLive(std::move(window), style);
 }
 
-// More of the recording is there to be looked at.
+// More of the recording has been read.
 void SecondCamera::takeOverview() {
   const RecordingOverview overview = engine_->overview();
   if (!overview.error.empty())

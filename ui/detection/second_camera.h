@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Another camera of the same kind beside the one that is looked at, at the same moment and with the same layers. It
-// reads the recording for itself, and only once it is asked for.
+// View of another camera of the same kind next to the shown one, at the same time and with the same layers.
+// It reads the recording separately, on first use.
 #pragma once
 
 #include "ui/detection/detection_engine.h"
@@ -27,16 +27,16 @@ class SecondCamera : public QObject {
   ~SecondCamera() override;
 
   bool isOf(std::size_t camera) const { return engine_ && camera_ == camera; }
-  void open(const Session& session, std::size_t camera);  // what was open is forgotten
+  void open(const Session& session, std::size_t camera);  // replaces the open camera
   void close();
-  // What the next wishes are answered with; nothing happens where none is open.
+  // Context for the next requests; no effect if no camera is open.
   void know(const Session& session, const DetectionSetup& sight,
             std::shared_ptr<const BoardObservations> seen);
   void show(const DetectionRequest& wish, const LayerSet& layers);
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
 
  signals:
-  void frameReady();  // is in the view, with its layers
+  void frameReady();  // the view has it, with its layers
 
  private:
   void refresh();
@@ -45,7 +45,7 @@ class SecondCamera : public QObject {
   EventView& view_;
   Reprojection reprojection_;
   std::size_t camera_ = 0;
-  std::optional<DetectionRequest> wish_;  // the last one, before the recording was open perhaps
+  std::optional<DetectionRequest> wish_;  // the last one, possibly before the recording was open
   LayerSet layers_;
   std::shared_ptr<const WindowAnalysis> analysis_;
   std::unique_ptr<DetectionEngine> engine_;

@@ -26,8 +26,8 @@ std::string candidateText(const BoardSearch& search, const NormalFlowStages& arc
 }
 
 std::string placementText(const BoardSearch& search) {
-  if (search.placements.empty()) return "no way to lay the lattice on the board that a camera could see";
-  return print("%zu ways to lay the lattice on the board, the best with %zu circles",
+  if (search.placements.empty()) return "no placement of the lattice on the board is geometrically possible";
+  return print("%zu placements of the lattice on the board, the best with %zu circles",
                search.placements.size(), search.placements.front().circles.size());
 }
 
@@ -38,10 +38,10 @@ std::string jointText(const BoardSearch& search, const WindowAnalysis& analysis,
       return print("another placement explains nearly as many circles (ambiguity_margin is %d)",
                    options.ambiguity_margin);
     case WindowOutcome::RefinementFailed:
-      return "no placement holds when all circles are fitted together";
+      return "no placement passes the joint fit of all circles";
     case WindowOutcome::TooFewInGrid:
       return print(
-          "too few of the %d circles are confirmed, or too many that should be seen are not (%.0f %% "
+          "too few of the %d circles are confirmed, or too many visible ones are missing (%.0f %% "
           "needed, most_missing is %.2f)",
           count, 100.0 * options.least_partial, options.most_missing);
     default:
@@ -65,7 +65,7 @@ void addSearchStages(const BoardSearch& search, const WindowAnalysis& analysis,
             options.detection.least_window_bursts));
   add(SearchStage::Candidates, "candidates", candidateText(search, analysis.flow.arcs));
   add(SearchStage::Circles, "moving circles",
-      print("%zu of %zu candidates are circles that move (at least %d needed)", search.circles.size(),
+      print("%zu of %zu candidates are moving circles (at least %d needed)", search.circles.size(),
             search.candidates.size(), options.grid.least_circles));
   add(SearchStage::Lattice, "lattice",
       print("%zu circles in one lattice (at least %d needed)", search.lattice.size(),
@@ -77,23 +77,23 @@ void addSearchStages(const BoardSearch& search, const WindowAnalysis& analysis,
 std::string trackingText(const WindowTrace& trace, const FrontEndOptions& options) {
   switch (trace.ended) {
     case TrackingEnd::NoFit:
-      return "too few bursts where it says that edges are";
+      return "too few bursts at the predicted edges";
     case TrackingEnd::TooFewCircles:
-      return print("too few circles where it says: %zu (at least %d needed)", trace.circles.size(),
+      return print("too few circles at the predicted places: %zu (at least %d needed)", trace.circles.size(),
                    options.grid.least_circles);
     case TrackingEnd::TooFewOfExpected:
-      return print("too few circles where it says: %zu of %d that should be seen (%.0f %% needed)",
+      return print("too few circles at the predicted places: %zu of %d visible ones (%.0f %% needed)",
                    trace.circles.size(), trace.expected, 100.0 * kLeastExpected);
     case TrackingEnd::Held:
       break;
   }
-  return print("holds, %.2f px RMS over %d bursts", trace.motion->residual_rms_px, trace.motion->bursts);
+  return print("confirmed, %.2f px RMS over %d bursts", trace.motion->residual_rms_px, trace.motion->bursts);
 }
 
 void addTracking(const WindowAnalysis& analysis, const FrontEndOptions& options,
                  std::vector<StageReport>& stages) {
   if (!analysis.tracked) {
-    stages.push_back({"prediction", StageVerdict::Note, "none: no view of the board shortly before"});
+    stages.push_back({"prediction", StageVerdict::Note, "none: no recent view of the board"});
     return;
   }
   const WindowTrace& trace = *analysis.tracked;
@@ -105,7 +105,7 @@ void addTracking(const WindowAnalysis& analysis, const FrontEndOptions& options,
                     from + trackingText(trace, options)});
 }
 
-// The numbers of circles without a centre, and why they have none, as long as they are few.
+// Numbers of the circles without a centre, and the reasons, unless they are many.
 std::string missingText(const WindowTrace& trace, int count) {
   constexpr int kMostNamed = 10;
   const int missing = count - static_cast<int>(trace.circles.size());
@@ -122,7 +122,7 @@ std::string missingText(const WindowTrace& trace, int count) {
   return text;
 }
 
-// So many make a view.
+// Minimum number of circles of a view.
 int leastCircles(const WindowAnalysis& analysis, const GridOptions& options) {
   int least = 0;
   while (outcomeOf(least, *analysis.scene, options) == WindowOutcome::TooFewInGrid) ++least;
@@ -159,7 +159,7 @@ std::vector<StageReport> describeStages(const WindowAnalysis& analysis, const Fr
   for (const BoardSearch& search : analysis.searches) {
     if (&search == best) continue;
     stages.push_back({sourceName(search.source), StageVerdict::Note,
-                      std::string("tried too: ") + windowOutcomeName(search.outcome)});
+                      std::string("also tried: ") + windowOutcomeName(search.outcome)});
   }
   addCentres(analysis, options.grid, stages);
   return stages;

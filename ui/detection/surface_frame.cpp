@@ -40,7 +40,7 @@ void noteNewest(EventSpan events, std::int64_t time_ns, SurfaceFrame& frame) {
   frame.events = events.size();
 }
 
-// A pixel's colour says which polarity it fired, and its strength how often, against what is usual here.
+// Colour: polarity of a pixel; strength: its number of events relative to the usual number.
 void paintAccumulated(EventSpan events, const SurfaceStyle& style, double strength, SurfaceFrame& frame) {
   const auto width = static_cast<std::size_t>(frame.image.width());
   std::vector<std::array<std::uint16_t, 2>> counts(frame.newest.size(), {0, 0});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events or a frame as a picture with one point a sensor pixel, and what hovering over it tells. Pure functions of their
-// inputs, for worker threads: colours come with the style, since theme() belongs to the GUI thread.
+// Picture of events or of a frame, with one point per sensor pixel, and the data for the pixel under the
+// mouse. Pure functions of their inputs, for worker threads: the style contains the colours, since theme() is
+// for the GUI thread.
 #pragma once
 
 #include "core/data/event.h"
@@ -21,9 +22,9 @@ struct NormalFlow;
 namespace evical::ui {
 
 enum class SurfaceMode {
-  Decayed,      // newest event of each pixel, fading with its age
+  Decayed,      // newest event of each pixel, fading with age
   Accumulated,  // all events of the window, by number
-  NormalFlow,   // edges of the window, coloured by the direction they move in
+  NormalFlow,   // edges of the window, coloured by their direction of motion
 };
 
 struct SurfaceStyle {
@@ -37,21 +38,21 @@ inline double fadedAfter_s(const SurfaceStyle& style) {
   return 5.0 * style.decay_s;
 }
 
-// Which frame of a camera it is.
+// Position of a frame in its camera's sequence.
 struct FrameLabel {
-  std::size_t number = 0, count = 0;  // from 1 on; of the frames read so far
+  std::size_t number = 0, count = 0;  // number from 1 on; count of the frames read until now
 };
 
 struct SurfaceFrame {
   static constexpr std::int32_t kNoEvent = std::numeric_limits<std::int32_t>::min();
 
-  double time_s = 0.0;  // of the cursor, or of the frame, since the recording's start
+  double time_s = 0.0;  // cursor or frame, since the recording's start
   QImage image;         // RGB32
   std::vector<std::int32_t>
-      newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent; empty of frames
-  std::size_t events = 0;                    // that are drawn
-  std::optional<std::size_t> window_events;  // that the window at the cursor has
-  std::optional<FrameLabel> photograph;      // where this is a frame
+      newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent; empty for frames
+  std::size_t events = 0;                    // drawn events
+  std::optional<std::size_t> window_events;  // events in the window at the cursor
+  std::optional<FrameLabel> photograph;      // for a frame
 
   Resolution resolution_px() const { return {image.width(), image.height()}; }
 
@@ -59,7 +60,7 @@ struct SurfaceFrame {
     double time_s;  // since the cursor
     bool brighter;
   };
-  std::optional<Hit> newestAt(int x_px, int y_px) const;  // nothing outside, too
+  std::optional<Hit> newestAt(int x_px, int y_px) const;  // none also outside the sensor
 };
 
 // Events in any order, inside the resolution. time_ns is the cursor's.
@@ -71,10 +72,10 @@ QImage emptyImage(Resolution resolution_px, const SurfaceStyle& style);
 // Paints frame.newest, which is relative to the cursor, into frame.image, which is empty.
 void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame);
 
-// The same events faintly, and over them the flow: hue by direction, red to the right, turning as on a clock.
+// Dimmed events with the flow on top: hue by direction, red to the right, clockwise.
 SurfaceFrame renderFlow(EventSpan events, const std::vector<NormalFlow>& flow, std::int64_t time_ns,
                         Resolution resolution_px, const SurfaceStyle& style);
 
-QRgb flowColour(double x, double y);  // of a direction
+QRgb flowColour(double x, double y);  // colour of a direction
 
 }  // namespace evical::ui

@@ -20,7 +20,7 @@ constexpr double kTimeZoomStep = 1.3;
 constexpr double kShortestVisible_s = 0.05;
 constexpr double kBlindStep_s = 0.01;
 
-// A round number, not below.
+// Rounded up to a round number.
 double niceAbove(double value) {
   if (!(value > 0.0)) return 1.0;
   const double power = std::pow(10.0, std::floor(std::log10(value)));

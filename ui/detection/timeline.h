@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole recording on one line: what became of each window, how many events there were and how fast the
-// camera turned. Click or drag to a time; wheel to zoom, shift+wheel or the middle button to move; left and
-// right for windows, Home and End, double click for all of it.
+// Timeline of the whole recording: outcome of each window, event rate and angular rate of the camera. Click
+// or drag sets the time; wheel zooms, shift+wheel or the middle button pans; left and right step by windows;
+// Home and End; a double click shows everything.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -35,7 +35,7 @@ class Timeline : public QWidget {
   explicit Timeline(QWidget* parent = nullptr);
 
   void setRange(double begin_s, double end_s);  // of the whole recording
-  // What is used of it, where that is not all.
+  // Used part of the recording, if it is not the whole.
   void setUsedRange(const std::optional<std::array<double, 2>>& range_s);
   void setWindows(std::vector<WindowReport> windows);  // in any order
   void setEventRate(RateCurve events_s);
@@ -46,11 +46,11 @@ class Timeline : public QWidget {
   const std::optional<std::array<double, 2>>& usedRange_s() const { return used_s_; }
   double time_s() const { return time_s_; }
   const std::vector<WindowReport>& windows() const { return windows_; }
-  // The window that holds a time.
+  // Window that contains a time.
   std::optional<WindowReport> windowAt(double time_s) const;
-  // Middle of the next window (+1) or the one before (-1); where none are known, 10 ms on.
+  // Middle of the next window (+1) or the previous one (-1); without windows, 10 ms further.
   double stepFrom(double time_s, int direction) const;
-  // Middle of the next missed window or the one before; nothing where there is none.
+  // Middle of the next or previous missed window; none if there is none.
   std::optional<double> missedFrom(double time_s, int direction) const;
 
   void showAll();
@@ -64,7 +64,7 @@ class Timeline : public QWidget {
   QSize minimumSizeHint() const override { return {300, 100}; }
 
  public slots:
-  void setTime(double time_s);  // moves the cursor, says nothing
+  void setTime(double time_s);  // moves the cursor without a signal
 
  signals:
   void timeSelected(double time_s);  // by the user
@@ -103,8 +103,9 @@ class Timeline : public QWidget {
   std::optional<std::array<double, 2>> used_s_;
   std::vector<WindowReport> windows_;  // by time
   RateCurve event_rate_, rotation_rate_;
-  double event_top_ = 1.0, rotation_top_ = 1.0;  // of the curves' axes
-  // As they were last drawn: a run moves the cursor and adds windows many times a second, the curves stay.
+  double event_top_ = 1.0, rotation_top_ = 1.0;  // ends of the curves' axes
+  // Cache of the last drawing: a run moves the cursor and adds windows many times a second, while the curves
+  // stay.
   struct CurvePicture {
     QPixmap picture;
     QSize size;

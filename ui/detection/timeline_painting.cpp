@@ -104,7 +104,7 @@ void Timeline::paintEvent(QPaintEvent*) {
   }
 }
 
-// Left: the curves' values at the cursor. Right: how many windows of each kind.
+// Left: values of the curves at the cursor. Right: number of windows of each kind.
 void Timeline::paintHeader(QPainter& painter) const {
   const QFontMetrics metrics = painter.fontMetrics();
   double x = curveArea().left();
@@ -165,7 +165,7 @@ void Timeline::paintAxis(QPainter& painter) const {
                    Qt::AlignRight | Qt::AlignVCenter, tr("windows"));
 }
 
-// Of the bins that fall into one pixel column, the largest: peaks stay however far one looks from.
+// Maximum of the bins in each pixel column, so that peaks remain visible at any zoom.
 void Timeline::paintCurve(QPainter& painter, const RateCurve& curve, double top, const QColor& colour,
                           bool filled) const {
   const QRectF area = curveArea();
@@ -227,7 +227,7 @@ std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
     if (window->time_s - window->half_width_s > visible_end_s_) break;
     const double from = xOf(window->time_s - window->half_width_s) - area.left();
     const double to = xOf(endOfWindow(*window)) - area.left();
-    // Wide windows are set apart by a pixel.
+    // Wide windows are separated by one pixel.
     const double gap = to - from > 4.0 ? 1.0 : 0.0;
     const auto begin = static_cast<std::size_t>(std::max(0.0, std::round(from)));
     const auto end =
@@ -238,8 +238,8 @@ std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
   return columns;
 }
 
-// A column that several windows share is divided among them, missed ones on top. Those stick out, for those who see one
-// colour in good and bad.
+// A column with several windows is divided among them, with missed ones on top. Those are taller, to be
+// visible without colour vision.
 void Timeline::paintTicks(QPainter& painter) const {
   const QRectF area = tickArea();
   const std::vector<ColumnCounts> columns = countColumns();
@@ -258,7 +258,7 @@ void Timeline::paintTicks(QPainter& painter) const {
   }
 }
 
-// What the session's time range leaves out is faded, and the range has brackets.
+// Parts outside the session's time range are faded, and the range has brackets.
 void Timeline::paintUnused(QPainter& painter) const {
   if (!used_s_) return;
   const QRectF area(curveArea().topLeft(), tickArea().bottomRight());

@@ -22,9 +22,9 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kWholeTable_px = 400;  // below, numbers that tooltips have go
+constexpr int kWholeTable_px = 400;  // below, hides numbers that tooltips contain
 
-// Of times that are left out, with those of these rows or without them.
+// Excluded times, with those of the rows added or removed.
 std::vector<double> changed(std::vector<double> times_s, const WindowListModel& model,
                             const std::vector<int>& rows, bool reject) {
   for (const int row : rows) {
@@ -72,8 +72,8 @@ QWidget* WindowList::makeFilterBar() {
   row->setContentsMargins(0, 0, 0, 0);
   filter_box_ = new QComboBox;
   filter_box_->addItems({tr("All windows"), tr("Missed"), tr("Partial"), tr("Rejected"), tr("Worst RMS")});
-  filter_box_->setAccessibleName(tr("Which windows are listed"));
-  filter_box_->setToolTip(tr("Which windows are listed. Worst: the tenth with the largest RMS"));
+  filter_box_->setAccessibleName(tr("Filter of the windows"));
+  filter_box_->setToolTip(tr("Filter of the windows. Worst: the tenth with the largest RMS"));
   count_ = new QLabel;
   row->addWidget(filter_box_);
   row->addWidget(count_, 1);
@@ -146,11 +146,11 @@ QWidget* WindowList::makeActions() {
   auto* const row = new QHBoxLayout;
   row->setSpacing(4);
   reject_ = addAction(row, "remove", tr("Reject"),
-                      tr("Leave the chosen windows out of the next calibration (Delete)"));
-  keep_ = addAction(row, "check", tr("Keep"), tr("Use the chosen windows again (Shift+Delete)"));
-  recalibrate_ =
-      addAction(row, "calibrate", tr("Recalibrate"),
-                tr("From what was found of the board, without the rejected windows; undone with Ctrl+Z"));
+                      tr("Exclude the selected windows from the next calibration (Delete)"));
+  keep_ = addAction(row, "check", tr("Keep"), tr("Include the selected windows again (Shift+Delete)"));
+  recalibrate_ = addAction(
+      row, "calibrate", tr("Recalibrate"),
+      tr("Calibrate again from the existing detections without the rejected windows; undo with Ctrl+Z"));
   pending_ = new QLabel;
   pending_->setWordWrap(true);
   column->addWidget(pending_);
@@ -219,7 +219,7 @@ void WindowList::setFilter(WindowFilter filter) {
   filter_box_->setCurrentIndex(static_cast<int>(filter));
 }
 
-// Several chosen rows stay chosen while the cursor goes elsewhere.
+// A selection of several rows stays when the cursor moves.
 void WindowList::followTime() {
   const auto row = model_->rowAt(time_s_);
   const QModelIndex now = row ? filter_->mapFromSource(model_->index(*row, 0)) : QModelIndex();
@@ -267,7 +267,7 @@ void WindowList::showMenu(const QPoint& at) {
 }
 
 void WindowList::wantPictures() {
-  constexpr int kSoon_ms = 30;  // while it is scrolled, where it comes to rest
+  constexpr int kSoon_ms = 30;  // while scrolling, only the final position counts
   if (!soon_.isActive()) soon_.start(kSoon_ms);
 }
 
@@ -308,7 +308,7 @@ void WindowList::refresh() {
   recalibrate_->setEnabled(rejectable_ && !busy_ && to_reject_ + to_keep_ > 0);
   QStringList parts;
   if (to_reject_ > 0) parts << tr("%1 to be rejected").arg(to_reject_);
-  if (to_keep_ > 0) parts << tr("%1 to be used again").arg(to_keep_);
+  if (to_keep_ > 0) parts << tr("%1 to be included again").arg(to_keep_);
   pending_->setText(parts.isEmpty() ? QString() : tr("In the next run: %1").arg(parts.join(tr(", "))));
   pending_->setVisible(!parts.isEmpty());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All windows of a camera with a picture of each: sorted, filtered, chosen, and rejected or kept for the next
-// calibration. What is rejected is said by a signal, and comes back by setRejected().
+// List of a camera's windows with a picture of each: sorts, filters, selects, and rejects or keeps windows
+// for the next calibration. Rejections are emitted as a signal, and return by setRejected().
 #pragma once
 
 #include "ui/detection/window_list_model.h"
@@ -28,14 +28,14 @@ class WindowList : public QWidget {
  public:
   explicit WindowList(QWidget* parent = nullptr);
 
-  // Null: none, and `note` says why. The list is filled when it has been made in a thread.
+  // Null: none, and `note` is the reason. The list is filled after its preparation in a thread.
   void setRun(std::shared_ptr<const CalibrationRun> run, std::size_t camera, const QString& note);
-  // Whether windows can be rejected, and what is to be left out of this camera's.
+  // Permission to reject windows, and the excluded times of this camera.
   void setRejectable(bool rejectable);
   void setRejected(std::vector<double> times_s);
-  // Of all cameras, against the last run.
+  // Numbers of changes for all cameras, compared with the last run.
   void setPending(int to_reject, int to_keep);
-  void setBusy(bool busy);  // something runs: no calibration can be started
+  void setBusy(bool busy);  // a running job blocks calibrations
   void setSource(const PictureSource& source, const SurfaceStyle& style);
 
   const WindowListModel& model() const { return *model_; }
@@ -45,15 +45,16 @@ class WindowList : public QWidget {
   std::vector<int> selectedWindows() const;  // rows of the model, ascending
 
  public slots:
-  void setTime(double time_s);  // the row follows, and nothing is said
+  void setTime(double time_s);  // selects the row without a signal
   void setFilter(evical::ui::WindowFilter filter);
-  void wantPictures();  // of the rows in view, soon
+  void wantPictures();  // for the visible rows, soon
   void rejectSelected() { changeSelected(true); }
   void keepSelected() { changeSelected(false); }
 
  signals:
-  void windowChosen(double time_s);                                               // its middle
-  void rejectionWanted(const std::vector<double>& times_s, const QString& what);  // of this camera, all
+  void windowChosen(double time_s);  // middle of the window
+  void rejectionWanted(const std::vector<double>& times_s,
+                       const QString& what);  // all rejections of this camera
   void recalibrationWanted();
   void filled();
 

@@ -16,7 +16,7 @@ QString numberOrDash(double value, int decimals) {
   return std::isfinite(value) ? QString::number(value, 'f', decimals) : QStringLiteral("\u2013");
 }
 
-// From which RMS on it is one of the worst; infinite where none has one.
+// Smallest RMS of the worst windows; infinite if none has an RMS.
 double worstFrom(const std::vector<WindowRow>& rows) {
   std::vector<double> rms_px;
   for (const WindowRow& row : rows)
@@ -71,7 +71,7 @@ void WindowListModel::pictureWasMade(int row) {
   if (row < rowCount()) emit dataChanged(index(row, Picture), index(row, Picture), {Qt::DecorationRole});
 }
 
-// What has no view stays as the run has it.
+// Windows without a view keep their state of the run.
 bool WindowListModel::isRejected(int row) const {
   const WindowRow& each = window(row);
   if (!each.has_view) return each.report.outcome == WindowOutcome::RejectedByHand;
@@ -87,7 +87,7 @@ WindowClass WindowListModel::classOf(int row) const {
 }
 
 QString WindowListModel::secondLine(int row) const {
-  if (isPending(row)) return isRejected(row) ? tr("in the next run") : tr("used again next");
+  if (isPending(row)) return isRejected(row) ? tr("in the next run") : tr("included in the next run");
   if (classOf(row) == WindowClass::Missed)
     return windowOutcomeWords(window(row).report.outcome, kind_ == CameraKind::Frames);
   if (classOf(row) == WindowClass::Rejected) return tr("by hand");
@@ -137,7 +137,7 @@ QString WindowListModel::textOf(int row, int column) const {
   }
 }
 
-// What is not known comes before all that is.
+// Unknown values come first.
 QVariant WindowListModel::sortKeyOf(int row, int column) const {
   const WindowRow& each = window(row);
   const auto known = [](double value) { return std::isfinite(value) ? value : -1.0; };
@@ -199,10 +199,10 @@ QVariant WindowListModel::headerData(int section, Qt::Orientation orientation, i
   const QString helps[] = {
       tr("Events of the window, or the frame"),
       tr("Middle of the window, in seconds since the recording's start"),
-      tr("What became of the window, and why it was missed"),
-      tr("Found of the board"),
-      tr("How far the board's points are from where the last run puts them, in pixels"),
-      tr("Speed of the board in the image, in pixels a second: the median of its points")};
+      tr("Outcome of the window, and the reason of a miss"),
+      tr("Detected points of the board"),
+      tr("Distance of the board's points from their predictions by the last run, in pixels"),
+      tr("Speed of the board in the image, in pixels per second: the median of its points")};
   if (role == Qt::DisplayRole) return titles[section];
   if (role == Qt::ToolTipRole || role == Qt::AccessibleTextRole) return helps[section];
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The windows of a camera as a table, and those of them that are asked for in the order that is asked for.
+// Table model of a camera's windows, filtered and sorted.
 #pragma once
 
 #include "ui/detection/timeline.h"
@@ -21,22 +21,22 @@ class WindowListModel : public QAbstractTableModel {
  public:
   enum Column { Picture, Time, State, Circles, Rms, Speed, ColumnCount };
   static constexpr int kSortRole = Qt::UserRole;
-  static constexpr int kSecondLineRole = Qt::UserRole + 1;  // why, below the state
+  static constexpr int kSecondLineRole = Qt::UserRole + 1;  // reason, below the state
 
   explicit WindowListModel(const WindowPictures& pictures, QObject* parent = nullptr);
 
   void setWindows(std::vector<WindowRow> rows, CameraKind kind);  // in time order
-  void setRejected(std::vector<double> times_s);  // what is to be left out: middles, ascending
+  void setRejected(std::vector<double> times_s);                  // middles of excluded windows, ascending
   void pictureWasMade(int row);
 
   const std::vector<WindowRow>& windows() const { return rows_; }
   const WindowRow& window(int row) const { return rows_.at(static_cast<std::size_t>(row)); }
   bool isRejected(int row) const;
-  bool isPending(int row) const;  // the run did otherwise
+  bool isPending(int row) const;  // differs from the last run
   WindowClass classOf(int row) const;
   QString secondLine(int row) const;
-  double worstFrom_px() const { return worst_from_px_; }  // the tenth of the windows with the largest RMS
-  std::optional<int> rowAt(double time_s) const;          // of those that hold the time, the nearest
+  double worstFrom_px() const { return worst_from_px_; }  // smallest RMS of the worst tenth
+  std::optional<int> rowAt(double time_s) const;          // nearest of the windows that contain the time
 
   int rowCount(const QModelIndex& parent = {}) const override;
   int columnCount(const QModelIndex& parent = {}) const override;
@@ -75,7 +75,7 @@ class WindowListFilter : public QSortFilterProxyModel {
 };
 
 QString windowClassName(WindowClass window_class);
-// Outcomes are named as windows of events have them.
+// Outcomes have the names for event windows.
 QString windowOutcomeWords(WindowOutcome outcome, bool of_frame);
 
 }  // namespace evical::ui

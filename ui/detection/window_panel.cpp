@@ -31,7 +31,7 @@ QColor colourOf(StageVerdict verdict) {
   return theme().faint_text;
 }
 
-// For those who see no difference between the colours.
+// Shapes, for readers who cannot distinguish the colours.
 QString markOf(StageVerdict verdict) {
   switch (verdict) {
     case StageVerdict::Passed:
@@ -67,7 +67,7 @@ QString headline(const WindowAnalysis& analysis, bool searching) {
       .arg(coloured(colour, words), coloured(theme().faint_text, timeText(analysis)));
 }
 
-// The last stage that failed, up where it is seen at once.
+// Last failed stage, at the top.
 QString lostLine(const WindowAnalysis& analysis) {
   if (windowClass(analysis.outcome) != WindowClass::Missed) return {};
   const auto lost =
@@ -75,7 +75,7 @@ QString lostLine(const WindowAnalysis& analysis) {
                    [](const StageReport& stage) { return stage.verdict == StageVerdict::Failed; });
   if (lost == analysis.stages.rend()) return {};
   return QStringLiteral("<p style='margin:4px 0 0 0'>%1</p>")
-      .arg(WindowPanel::tr("Lost at %1: %2")
+      .arg(WindowPanel::tr("Failed at %1: %2")
                .arg(QStringLiteral("<b>%1</b>").arg(QString::fromStdString(lost->stage)),
                     QString::fromStdString(lost->text).toHtmlEscaped()));
 }
@@ -91,11 +91,11 @@ QString stageRow(const StageReport& stage) {
            faint ? coloured(theme().faint_text, text) : text);
 }
 
-// A window that was missed then and is now has one reason, that of now: what is looked at is one window with today's
-// options, a run has lenses and views before that this one may lack.
+// If a window was missed before and now, only the present reason is shown: it is analysed with the current
+// options, while the run had lenses and previous views that may be missing here.
 QString passLine(const WindowReport& report, bool of_frame, bool missed_now) {
   if (missed_now && windowClass(report.outcome) == WindowClass::Missed)
-    return WindowPanel::tr("Missed in the last run, too");
+    return WindowPanel::tr("Also missed in the last run");
   const QString found = of_frame ? WindowPanel::tr(", %1 points%2") : WindowPanel::tr(", %1 circles%2");
   const QString how =
       report.circles > 0
@@ -106,7 +106,7 @@ QString passLine(const WindowReport& report, bool of_frame, bool missed_now) {
 
 }  // namespace
 
-// One layout of the text a window: labels of rich text in a scroll area make four.
+// One text layout for the panel: labels of rich text in a scroll area would need four.
 WindowPanel::WindowPanel(QWidget* parent) : QTextBrowser(parent) {
   constexpr double kMargin_px = 8.0;
   document()->setDocumentMargin(kMargin_px);
@@ -114,7 +114,7 @@ WindowPanel::WindowPanel(QWidget* parent) : QTextBrowser(parent) {
   setUndoRedoEnabled(false);
   setOpenLinks(false);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  setAccessibleName(tr("This window: why"));
+  setAccessibleName(tr("Outcome of this window"));
 }
 
 void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<WindowReport>& report,
@@ -134,7 +134,7 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
       html += coloured(theme().faint_text, tr("Computed in %1 ms").arg(1e3 * analysis->took_s, 0, 'f', 0));
   } else {
     html = coloured(theme().faint_text,
-                    tr("What the front end makes of the window at the cursor is told here."));
+                    tr("The front end's stages for the window at the cursor are shown here."));
   }
   if (html == html_) return;
   html_ = html;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// "This window: why": what became of the window at the cursor, stage by stage, in words.
+// Outcome of the window at the cursor, stage by stage, as text.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -18,10 +18,9 @@ class WindowPanel : public QTextBrowser {
  public:
   explicit WindowPanel(QWidget* parent = nullptr);
 
-  // Either may be missing: what the front end makes of the window now, and what it made of
-  // it in the last pass.
+  // Either may be missing: the current analysis of the window, and its report from the last run.
   void show(const WindowAnalysis* analysis, const std::optional<WindowReport>& report, bool searching);
-  QString text() const;  // as it is read, without markup
+  QString text() const;  // plain text, without markup
 
  private:
   QString html_;

@@ -13,10 +13,10 @@
 namespace evical::ui {
 namespace {
 
-constexpr std::size_t kAtOnce = 6;             // then they are shown, and others may be wanted
-constexpr std::int64_t kSlice_ns = 2'000'000;  // of a window's events in memory together
-constexpr std::int64_t kRounding_ns = 1000;    // of times in seconds
-constexpr double kStrongShare = 0.5;           // of the usual number of events: half the colour
+constexpr std::size_t kAtOnce = 6;             // then they are shown, and requests may change
+constexpr std::int64_t kSlice_ns = 2'000'000;  // span of a window's events in memory at once
+constexpr std::int64_t kRounding_ns = 1000;    // error of times in seconds
+constexpr double kStrongShare = 0.5;  // number of events for half the colour, relative to the usual one
 
 struct Cell {
   int brighter = 0, darker = 0;
@@ -94,7 +94,7 @@ QImage pictureOfFrame(const PictureSource& source, const PictureWish& wish, cons
         pictureOf(decodeFrame(source.frames->frame(*source.frames->nearest(time_ns)), "frame"));
     return whole.scaled(most_px, Qt::KeepAspectRatio, Qt::SmoothTransformation);
   } catch (const CalibrationError&) {
-    return emptyImage({most_px.width(), most_px.height()}, style);  // the list says that it is unreadable
+    return emptyImage({most_px.width(), most_px.height()}, style);  // the list reports that it is unreadable
   }
 }
 
@@ -143,7 +143,7 @@ void WindowPictures::makeNext() {
       try {
         made.push_back({wish.row, pictureOfWindow(source, wish, style, size_px)});
       } catch (const CalibrationError&) {
-        break;  // the cache cannot be read, as the main picture's reader says
+        break;  // the cache is unreadable, which the main picture's reader reports
       }
     }
     return [this, made = std::move(made)] { take(made); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small pictures of windows for a list: made in a thread, for the rows that are asked for last, from what Detection
-// has of the recording. Only so many are kept.
+// Thumbnails of windows for a list: made in a thread, for the most recently requested rows, from the caches
+// of Detection. Their number is limited.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -21,7 +21,7 @@
 
 namespace evical::ui {
 
-// A camera's events or frames, as far as they have been read.
+// A camera's events or frames, in the part that has been read.
 struct PictureSource {
   CameraKind kind = CameraKind::Events;
   std::shared_ptr<const EventCache> events;
@@ -37,8 +37,8 @@ struct PictureWish {
   double time_s = 0.0, half_width_s = 0.0;  // of the window
 };
 
-// Its events by number and polarity, or the frame that is nearest; null while they have not been read yet. Throws
-// CalibrationError where they cannot be read.
+// Events by number and polarity, or the nearest frame; null if they are not yet read. Throws
+// CalibrationError if they are unreadable.
 QImage pictureOfWindow(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
                        const QSize& most_px);
 
@@ -50,14 +50,14 @@ class WindowPictures : public QObject {
 
   explicit WindowPictures(QObject* parent = nullptr);
 
-  // Another one forgets all that were made; `size_px` in the screen's own pixels.
+  // A new source discards all pictures; `size_px` in device pixels.
   void setSource(const PictureSource& source, const SurfaceStyle& style, const QSize& size_px,
                  double pixel_ratio);
-  void forget();  // rows are others
-  // Of the rows in view, the first ones first; what was asked for before and is not made yet is dropped.
+  void forget();  // the rows have changed
+  // Requests the visible rows, the first ones first; pending earlier requests are dropped.
   void want(std::vector<PictureWish> wishes);
 
-  const QPixmap* of(int row) const { return made_.object(row); }  // null: not made
+  const QPixmap* of(int row) const { return made_.object(row); }  // null: not ready
   int count() const { return static_cast<int>(made_.count()); }
 
  signals:
@@ -77,7 +77,7 @@ class WindowPictures : public QObject {
   double pixel_ratio_ = 1.0;
   std::vector<PictureWish> wishes_;
   QCache<int, QPixmap> made_{kMostKept};
-  LatestJob job_{OutdatedWork::Dropped};  // last: its thread uses nothing of this object
+  LatestJob job_{OutdatedWork::Dropped};  // last member: its thread uses nothing of this object
 };
 
 }  // namespace evical::ui

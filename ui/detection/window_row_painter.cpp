@@ -12,7 +12,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kMark_px = 8, kGap_px = 8;
-constexpr double kFoundHeight = 0.7;  // of a missed one's mark, as on the timeline
+constexpr double kFoundHeight = 0.7;  // relative to a missed one's mark, as on the timeline
 
 }  // namespace
 

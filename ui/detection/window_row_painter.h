@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a row of the list of windows looks: the picture, and the state with its colour and shape on the timeline and a
-// word on why below it.
+// Paints a row of the list of windows: the picture, the state with its colour and shape of the timeline, and
+// a short reason below it.
 #pragma once
 
 #include <QSize>

@@ -30,7 +30,7 @@ double speedOf_px_s(const BoardView& view) {
   return medianOf(std::move(speeds), std::numeric_limits<double>::quiet_NaN());
 }
 
-// The row of the same middle; null where there is none.
+// Row with the same middle; null if there is none.
 WindowRow* rowOf(const BoardView& view, std::vector<WindowRow>& rows) {
   const auto row =
       std::lower_bound(rows.begin(), rows.end(), view.time_s,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is calibrated: all of a rig, or one camera's lens alone.
+// Aim of a calibration: a rig, or the lens of one camera alone.
 #pragma once
 
 namespace evical::ui {

@@ -23,7 +23,7 @@ RejectedTimes rejectionsOf(const RunRecord& record) {
   return record.run ? rejectedTimes_s(record.run->pass) : RejectedTimes{};
 }
 
-// Of a place in a session: "cameras.left.board" of "session: cameras.left.board".
+// Key of a place in a session: "cameras.left.board" of "session: cameras.left.board".
 QString keyIn(const std::string& place) {
   const std::size_t end = place.find(": ");
   return QString::fromStdString(end == std::string::npos ? place : place.substr(end + 2));
@@ -99,7 +99,7 @@ CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
   connect(&undo_stack_, &QUndoStack::cleanChanged, this, &CalibrationDocument::fileChanged);
 }
 
-// The stack speaks at its end, when those who listen may be gone.
+// The undo stack emits signals when it is destroyed, when the receivers may be gone.
 CalibrationDocument::~CalibrationDocument() {
   undo_stack_.blockSignals(true);
   undo_stack_.clear();
@@ -131,7 +131,7 @@ void CalibrationDocument::openRun(RunRecord record, const QString& session_file)
 void CalibrationDocument::replace(Session session, const QString& session_file, RunRecord run) {
   session_ = std::move(session);
   file_ = session_file;
-  board_confirmed_ = !session_file.isEmpty();  // who saved it knew it
+  board_confirmed_ = !session_file.isEmpty();  // saved sessions count as confirmed
   undo_stack_.clear();
   saved_edition_ = edition_;
   last_ = std::move(run);
@@ -183,7 +183,7 @@ void CalibrationDocument::moveRecording(const std::filesystem::path& from, const
   const bool has_file = !file_.isEmpty();
   const Session session = moved(session_);
   if (has_file) {
-    edit(session, tr("Look for the recording"));
+    edit(session, tr("Find the recording"));
   } else {
     set(session, edition_);
   }
@@ -250,7 +250,7 @@ void CalibrationDocument::setRejections(RejectedTimes rejected_s, const QString&
   undo_stack_.push(new RejectionCommand(*this, std::move(rejected_s), what));
 }
 
-// Beside steps that bring back runs it is a step as well: else undoing them would lose it.
+// If the stack has steps that restore runs, a run is a step, too: otherwise undo would lose it.
 void CalibrationDocument::addRun(RunRecord record) {
   if (!run_commands_.empty()) return addUndoableRun(record, tr("Calibrate"));
   RejectedTimes rejections = rejectionsOf(record);
@@ -271,12 +271,11 @@ std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationA
   std::vector<SessionProblem> problems;
   if (session.recording.empty()) return {{"recording", QObject::tr("Open a recording first")}};
   if (!isThere(session.recording)) {
-    problems.push_back(
-        {"recording",
-         QObject::tr("%1 is not there any more").arg(QString::fromStdString(session.recording.string()))});
+    problems.push_back({"recording", QObject::tr("%1 is missing. Find the recording or restore it")
+                                         .arg(QString::fromStdString(session.recording.string()))});
   }
   if (session.cameras.empty())
-    problems.push_back({"cameras", QObject::tr("Choose at least one event stream as camera")});
+    problems.push_back({"cameras", QObject::tr("Choose at least one stream as camera")});
   if (aim == CalibrationAim::Rig && session.imus.empty() && session.cameras.size() < 2)
     problems.push_back(
         {"imus",
@@ -284,7 +283,7 @@ std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationA
   if (aim == CalibrationAim::Rig && session.board_blinks)
     problems.push_back(
         {"board",
-         QObject::tr("A board that flashes tells of one camera's lens: calibrate the camera alone")});
+         QObject::tr("A flashing board determines only one camera's lens: calibrate the camera alone")});
   const auto check = [&](const QString& field, auto&& checked) {
     try {
       checked();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All state of a calibration: the session with its file and its undo, the last run, the one before, and what
-// they are compared with. GUI thread only; knows no widgets.
+// State of a calibration: the session with its file and undo stack, the last run, the previous one, and the
+// reference for comparisons. GUI thread only; without widgets.
 #pragma once
 
 #include "core/pipeline/pass/view_rejection.h"
@@ -19,17 +19,17 @@
 
 namespace evical::ui {
 
-// A run, and what it was made from.
+// A run with its session and log.
 struct RunRecord {
   std::shared_ptr<const CalibrationRun> run;
   Session session;
   QString log;
 };
 
-// What runs are compared with: a truth, or a result of another time.
+// Reference for the comparison of runs: a truth, or an older result.
 struct ReferenceResult {
   NamedResult named;
-  QString title;  // its file's name, or the run's
+  QString title;  // name of its file, or title of the run
 };
 
 class CalibrationDocument : public QObject {
@@ -43,60 +43,60 @@ class CalibrationDocument : public QObject {
   bool hasSession() const { return !session_.recording.empty(); }
   QString file() const { return file_; }  // empty: never saved
   QString title() const;                  // the file's name, or the recording's
-  // Runs are undone with the same keys, but are nothing to be saved with the session.
+  // Runs are undone with the same keys, but do not modify the session.
   bool modified() const { return edition_ != saved_edition_; }
   QUndoStack& undoStack() { return undo_stack_; }
 
-  // These throw CalibrationError and leave everything as it was.
+  // These throw CalibrationError and leave everything unchanged.
   void open(const QString& session_file);
   void save(const QString& session_file);
   void loadReference(const QString& result_or_truth_file);
 
-  void startSession(const Session& session);  // new, of no file: unsaved
-  // A run of another time, with the session that it was made from; of no file, but nothing is unsaved.
+  void startSession(const Session& session);  // new, without a file: unsaved
+  // An older run with its session; without a file, but nothing is unsaved.
   void openRun(RunRecord record);
-  // The same beside its session's file; throws CalibrationError as open() does.
+  // The same with the session's file; throws CalibrationError like open().
   void openRun(RunRecord record, const QString& session_file);
   void setReference(ReferenceResult reference);
   void forgetReference();
-  // The recording is elsewhere: session and runs name that place.
+  // Changes the place of a recording in session and runs.
   void moveRecording(const std::filesystem::path& from, const std::filesystem::path& to);
 
-  // One step for undo; steps in a row with the same non-empty `merge_key` become one.
+  // One step of undo; consecutive steps with the same non-empty `merge_key` are merged.
   void edit(const Session& session, const QString& what, const QString& merge_key = {});
-  // By full name; throws CalibrationError for what is no value of this option, OptionConflict where
-  // another option excludes it.
+  // By full name; throws CalibrationError for an invalid value, OptionConflict if another option excludes it.
   void setOption(const QString& name, const QString& value);
   void resetOptions();
 
-  // Whether a person has said that the board is this one: a guessed one nobody has looked at.
+  // False for a guessed board that the user must still confirm.
   bool boardConfirmed() const { return board_confirmed_; }
   void confirmBoard();
 
-  // The latest one; null before the first, and when another session comes.
+  // The latest run; null before the first one and in a new session.
   const RunRecord& last() const { return last_; }
   const RunRecord& previous() const { return previous_; }
   void addRun(RunRecord record);
-  // The same as a step for undo, which brings the runs back that were here before. What follows it is one, too.
+  // Like addRun(), as a step of undo that restores the previous runs. The following runs are steps as well.
   void addUndoableRun(const RunRecord& record, const QString& what);
-  // The session is not as it was when the last run was made.
+  // The session has changed since the last run.
   bool runIsOutdated() const;
 
-  // What the next calibration from the last run's detections is to leave out: at first what that run left out.
+  // Times that the next calibration from the last run's detections excludes; initially those that the run
+  // excluded.
   const RejectedTimes& rejections() const { return rejections_; }
-  bool rejectionsArePending() const;  // they are not the last run's
-  // One step for undo.
+  bool rejectionsArePending() const;  // they differ from the last run's
+  // One step of undo.
   void setRejections(RejectedTimes rejected_s, const QString& what);
 
   const std::optional<ReferenceResult>& reference() const { return reference_; }
 
  signals:
-  void sessionReplaced();  // another one: open, new
-  void sessionChanged();   // in anything, also by undo
+  void sessionReplaced();  // opened or new
+  void sessionChanged();   // any change, also by undo
   void fileChanged();      // name or modified flag
   void boardConfirmationChanged();
   void runsChanged();
-  void rejectionsChanged();  // also with the runs
+  void rejectionsChanged();  // also emitted with new runs
   void referenceChanged();
 
  private:
@@ -117,14 +117,14 @@ class CalibrationDocument : public QObject {
   QString file_;
   bool board_confirmed_ = false;
   QUndoStack undo_stack_;
-  int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own
+  int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit has a new number
   RunRecord last_, previous_;
   RejectedTimes rejections_;
-  std::vector<const QUndoCommand*> run_commands_;  // on the stack: of runs, and of what they leave out
+  std::vector<const QUndoCommand*> run_commands_;  // commands on the stack for runs and rejections
   std::optional<ReferenceResult> reference_;
 };
 
-// What the program knows of a session that cannot be calibrated, by field: "cameras.left.intrinsics", ...
+// A reason why the session cannot be calibrated, by field: "cameras.left.intrinsics", ...
 struct SessionProblem {
   QString field, text;
 };

@@ -61,7 +61,7 @@ void LensDocument::addRun(LensRecord record) {
 
 bool LensDocument::runIsOutdated() const {
   if (!last_.run) return false;
-  // A lens that is put into the session changes nothing of how it was found.
+  // Copying a lens into the session does not change its inputs.
   const auto without_lens = [this](Session session) {
     if (last_.camera < session.cameras.size()) {
       SessionCamera& camera = session.cameras[last_.camera];
@@ -80,7 +80,7 @@ std::vector<OtherLens> LensDocument::others() const {
     const SessionCamera& camera = last_.session.sensor(last_.camera);
     if (camera.intrinsics)
       others.push_back(
-          {tr("the session's lens, as it was"), {*camera.intrinsics, camera.intrinsics_uncertainty}});
+          {tr("the session's previous lens"), {*camera.intrinsics, camera.intrinsics_uncertainty}});
   }
   if (file_) others.push_back(*file_);
   return others;
@@ -103,7 +103,7 @@ void LensDocument::useInSession() {
   const auto found = std::find_if(changed.cameras.begin(), changed.cameras.end(),
                                   [&](const SessionCamera& camera) { return camera.name == name; });
   if (found == changed.cameras.end()) return;
-  // Another camera's sensor has that camera's lens.
+  // A camera on another camera's sensor shares its lens.
   const auto index = static_cast<std::size_t>(found - changed.cameras.begin());
   SessionCamera& camera = changed.cameras[changed.sensorOf(index)];
   camera.intrinsics = last_.run->result.intrinsics;

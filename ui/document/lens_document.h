@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera's lens alone: whether that is what is calibrated, of which camera, what the last run found, and what it is
-// compared with. GUI thread only; knows no widgets. The session is the other document's.
+// Calibration of a camera's lens alone: whether it is the aim, the camera, the last run, and the lenses to
+// compare with. GUI thread only; without widgets. The session belongs to the other document.
 #pragma once
 
 #include "core/format/intrinsics_yaml.h"
@@ -17,10 +17,10 @@
 
 namespace evical::ui {
 
-// A run, and what it was made from.
+// A run with its inputs.
 struct LensRecord {
   std::shared_ptr<const IntrinsicsRun> run;
-  // Where the board was seen, in the session's own time and with an entry for each of its cameras; no poses.
+  // Views of the board, in the session's time, with an entry for each of its cameras; no poses.
   std::shared_ptr<const CalibrationRun> seen;
   Session session;
   std::size_t camera = 0;
@@ -38,30 +38,31 @@ class LensDocument : public QObject {
  public:
   explicit LensDocument(CalibrationDocument& document, QObject* parent = nullptr);
 
-  // Stays when another session comes: who calibrates one camera after the other says so once.
+  // Kept in a new session, for the calibration of one camera after another.
   CalibrationAim aim() const { return aim_; }
   void setAim(CalibrationAim aim);
-  std::size_t camera() const;  // of the session's, 0 while it has none of the name
+  std::size_t camera() const;  // index in the session, 0 if it has no camera of the name
   void setCamera(const QString& name);
 
-  // A session of one camera and no IMU, whose aim is a rig all the same.
+  // The session has one camera and no IMU, but the aim is a rig.
   bool offersCameraOnly() const;
-  std::vector<SessionProblem> problems() const;          // that stand in the way of the aim
-  std::vector<SessionProblem> problemsOfCamera() const;  // were the camera alone the aim
+  std::vector<SessionProblem> problems() const;          // problems of the current aim
+  std::vector<SessionProblem> problemsOfCamera() const;  // problems if the camera alone were the aim
 
-  const LensRecord& last() const { return last_; }  // none: before the first, and when another session comes
+  const LensRecord& last() const { return last_; }  // none before the first and in a new session
   void addRun(LensRecord record);
-  bool runIsOutdated() const;  // the session is not as it was when it was made
+  bool runIsOutdated() const;  // the session has changed since the last run
 
-  // The session's lens of that camera, and the one of a file.
+  // The session's lens of that camera, and the one from a file.
   std::vector<OtherLens> others() const;
-  void loadOther(const QString& file);  // throws CalibrationError, and leaves everything as it was
+  void loadOther(const QString& file);  // throws CalibrationError and leaves everything unchanged
 
-  // Puts the lens into the session's camera: without its sigmas, since the same recording would count twice.
+  // Copies the lens into the session's camera, without its sigmas, since the same recording would count
+  // twice.
   void useInSession();
 
  signals:
-  void aimChanged();  // or the camera
+  void aimChanged();  // aim or camera
   void runChanged();
   void othersChanged();
 

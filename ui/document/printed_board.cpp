@@ -54,7 +54,7 @@ std::optional<PrintedBoard> lastPrintedBoard() {
     validate(printed.board);
     if (printed.measured) validate(*printed.measured, printed.board);
   } catch (const CalibrationError&) {
-    return std::nullopt;  // somebody else wrote into the settings
+    return std::nullopt;  // the settings were changed outside of the program
   }
   return printed;
 }

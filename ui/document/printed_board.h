@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board that was printed last, with what was measured of it: recordings that are opened afterwards show it, most
-// likely. Kept with the program's settings.
+// The last printed board and its measured length: default for recordings that are opened afterwards. Stored
+// in the program's settings.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -20,9 +20,9 @@ struct PrintedBoard {
 };
 
 void rememberPrintedBoard(const PrintedBoard& printed);
-std::optional<PrintedBoard> lastPrintedBoard();  // nothing where none was, or what is kept makes no board
+std::optional<PrintedBoard> lastPrintedBoard();  // none if none was printed, or the stored one is invalid
 
-// As the first of the session's boards.
+// Sets the first of the session's boards.
 void setPrintedBoard(const PrintedBoard& printed, Session& session);
 
 }  // namespace evical::ui

@@ -28,7 +28,7 @@ int FlowLayout::heightForWidth(int width) const {
   return place({0, 0, width, 0}, false);
 }
 
-// In one row.
+// Width in one row.
 QSize FlowLayout::sizeHint() const {
   const QMargins margins = contentsMargins();
   int width = 0, height = 0;

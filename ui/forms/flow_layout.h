@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Widgets beside each other, and in a further row where one has no room for them: nothing is cut or hidden.
+// Layout in a row that continues in further rows if space is short: nothing is cut or hidden.
 #pragma once
 
 #include <QLayout>
@@ -26,7 +26,7 @@ class FlowLayout : public QLayout {
   void setGeometry(const QRect& area) override;
 
  private:
-  int place(const QRect& area, bool move) const;  // returns the height that is needed
+  int place(const QRect& area, bool move) const;  // returns the required height
 
   std::vector<std::unique_ptr<QLayoutItem>> items_;
 };

@@ -11,7 +11,7 @@ namespace evical::ui {
 namespace {
 
 QString numberText(double value) {
-  constexpr int kDigits = 12;  // hides what conversions of units leave behind
+  constexpr int kDigits = 12;  // hides rounding errors of unit conversions
   return QLocale::c().toString(value, 'g', kDigits);
 }
 
@@ -43,7 +43,7 @@ void NumberField::take() {
   const double typed = QLocale::c().toDouble(text().trimmed().replace(',', '.'), &is_number);
   if (!is_number) return refuse(tr("%1 is not a number").arg(text()));
   if (typed < minimum_ || typed > maximum_) {
-    return refuse(tr("%1 is not from %2 to %3").arg(text(), numberText(minimum_), numberText(maximum_)));
+    return refuse(tr("%1 is not between %2 and %3").arg(text(), numberText(minimum_), numberText(maximum_)));
   }
   const bool other = typed != value_;
   setValue(typed);
@@ -51,7 +51,7 @@ void NumberField::take() {
 }
 
 void NumberField::refuse(const QString& why) {
-  const QString text = tr("%1: it stays %2").arg(why, numberText(value_));
+  const QString text = tr("%1. The value is still %2").arg(why, numberText(value_));
   setText(numberText(value_));
   refused_->setToolTip(text);
   refused_->setVisible(true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A line for one number, in plain or scientific notation. What is none, or out of range, gives way to the value that
-// holds, with a mark that says why.
+// Input field for one number, in plain or scientific notation. Invalid input is replaced by the current
+// value, with a mark that gives the reason.
 #pragma once
 
 #include <QLineEdit>
@@ -15,17 +15,17 @@ class NumberField : public QLineEdit {
 
   void setValue(double value);  // does not signal
   double value() const { return value_; }
-  bool hasRefused() const;  // what was typed last
+  bool hasRefused() const;  // the last input
 
  signals:
-  void valueEdited(double value);  // by hand, within the range, and different
+  void valueEdited(double value);  // by the user, within the range, and different
 
  private:
   void take();
   void refuse(const QString& why);
 
   double minimum_, maximum_, value_ = 0.0;
-  QAction* refused_;  // the mark
+  QAction* refused_;  // mark of refused input
 };
 
 }  // namespace evical::ui

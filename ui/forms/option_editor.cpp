@@ -47,7 +47,7 @@ QLabel* smallText(const QString& content, const char* role, QWidget* parent) {
   return label;
 }
 
-// Rich text in which what was searched for stands out.
+// Rich text in which the search text is highlighted.
 QString marked(const QString& plain, const QString& search, const QColor& colour) {
   const qsizetype at = search.isEmpty() ? -1 : plain.indexOf(search, 0, Qt::CaseInsensitive);
   if (at < 0) return plain.toHtmlEscaped();
@@ -94,8 +94,8 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   input->setAccessibleName(shownName(row));
   input->setAccessibleDescription(text(row.help));
   reset_->setIcon(icon("reset"));
-  reset_->setAccessibleName(tr("%1, back to its default").arg(shownName(row)));
-  reset_->setToolTip(tr("Back to the default, %1").arg(text(row.default_value)));
+  reset_->setAccessibleName(tr("Reset %1 to its default").arg(shownName(row)));
+  reset_->setToolTip(tr("Reset to the default, %1").arg(text(row.default_value)));
   connect(reset_, &QToolButton::clicked, this,
           [this] { emit edited(text(row_.name), text(row_.default_value)); });
   dot_->setFixedWidth(kDot_px);
@@ -109,7 +109,7 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   grid->addWidget(name_, 0, 1);
   grid->addWidget(input, 0, 2, Qt::AlignRight);
   auto* const unit = new QLabel(text(row.unit), this);
-  unit->setFixedWidth(std::max(kUnit_px, unit->sizeHint().width()));  // most fields are in one column
+  unit->setFixedWidth(std::max(kUnit_px, unit->sizeHint().width()));  // keeps most fields in one column
   grid->addWidget(unit, 0, 3);
   grid->addWidget(reset_, 0, 4);
   if (OptionSlider::fits(row)) makeSlider(*grid, 1);
@@ -133,7 +133,7 @@ void OptionEditor::makeSlider(QGridLayout& grid, int row) {
 
 QString OptionEditor::helpText() const {
   const QString range = rangeText(row_);
-  return text(row_.help) + (range.isEmpty() ? "" : " " + tr("From %1.").arg(range));
+  return text(row_.help) + (range.isEmpty() ? "" : " " + tr("Range: %1.").arg(range));
 }
 
 void OptionEditor::highlight(const QString& search) {
@@ -203,7 +203,7 @@ void OptionEditor::refuse(const QString& why) {
 
 void OptionEditor::showChanged() {
   dot_->setPixmap(isChanged() ? dotPixmap(theme().accent, devicePixelRatioF()) : QPixmap());
-  dot_->setToolTip(isChanged() ? tr("Differs from its default, %1").arg(text(row_.default_value))
+  dot_->setToolTip(isChanged() ? tr("Differs from the default, %1").arg(text(row_.default_value))
                                : QString());
   QSizePolicy policy = reset_->sizePolicy();
   policy.setRetainSizeWhenHidden(true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One option of a form: name, value, unit, help, reset; a dot where it differs from its default.
+// Editor of one option: name, value, unit, help, reset; a dot if it differs from its default.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -26,11 +26,11 @@ class OptionEditor : public QWidget {
   const OptionRow& row() const { return row_; }
   bool isChanged() const { return row_.value != row_.default_value; }
   bool matches(const QString& search) const;  // in name or help
-  void highlight(const QString& search);      // where it occurs
-  void showIdle(const QString& why);          // it has no effect here; empty: it has
-  void setRow(const OptionRow& row);          // the value that holds
-  void refuse(const QString& why);        // the value that holds is shown again, and why the other one is not
-  void showProblem(const QString& text);  // empty: there is none
+  void highlight(const QString& search);      // highlights the occurrences
+  void showIdle(const QString& why);          // reason why the option has no effect; empty: it has
+  void setRow(const OptionRow& row);          // the current value
+  void refuse(const QString& why);            // shows the current value again, and the reason
+  void showProblem(const QString& text);      // empty: none
 
   // "normal_flow.plane_radius_px" in px gives "plane radius".
   static QString shownName(const OptionRow& row);
@@ -38,7 +38,7 @@ class OptionEditor : public QWidget {
 
  signals:
   void edited(const QString& name, const QString& value);
-  void takenBack();  // what holds was typed again
+  void takenBack();  // the current value was typed again
 
  protected:
   void changeEvent(QEvent* event) override;
@@ -51,10 +51,10 @@ class OptionEditor : public QWidget {
   void showChanged();
 
   OptionRow row_;
-  QLineEdit* number_ = nullptr;  // one of these three
+  QLineEdit* number_ = nullptr;  // one of these three is used
   QCheckBox* toggle_ = nullptr;
   QComboBox* choice_ = nullptr;
-  OptionSlider* slider_ = nullptr;  // of numbers
+  OptionSlider* slider_ = nullptr;  // for numbers
   QLabel *dot_, *name_, *help_, *idle_, *problem_;
   QToolButton* reset_;
 };

@@ -64,11 +64,11 @@ void OptionForm::fillBar(QHBoxLayout& bar) {
   only_changed_->setIcon(icon("filter"));
   only_changed_->setCheckable(true);
   search_->setAccessibleName(tr("Search parameters"));
-  only_changed_->setAccessibleName(tr("Only what differs from its default"));
-  reset_all_->setAccessibleName(tr("All parameters back to their defaults"));
-  only_changed_->setToolTip(tr("Show only what differs from its default"));
+  only_changed_->setAccessibleName(tr("Show changed parameters only"));
+  reset_all_->setAccessibleName(tr("Reset all parameters to their defaults"));
+  only_changed_->setToolTip(tr("Show changed parameters only"));
   reset_all_->setIcon(icon("reset"));
-  reset_all_->setToolTip(tr("All parameters back to their defaults"));
+  reset_all_->setToolTip(tr("Reset all parameters to their defaults"));
   connect(search_, &QLineEdit::textChanged, this, &OptionForm::filter);
   connect(only_changed_, &QToolButton::toggled, this, &OptionForm::filter);
   connect(reset_all_, &QToolButton::clicked, this, &OptionForm::resetAllRequested);
@@ -147,7 +147,7 @@ void OptionForm::showRefusal(const QString& name, const CalibrationError& error)
   }
 }
 
-// They go with the next attempt, wherever it is.
+// Problems are cleared by the next edit of any option.
 void OptionForm::forgetProblems() {
   for (const auto& [name, option] : editors_) option->showProblem({});
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All options as a form, made from the option tables: groups, search, help, reset, and a badge on what
-// differs. What people usually turn comes first; a button shows the expert options. The form holds no values:
-// it shows rows, and says what the person wants.
+// Form of all options, made from the option tables: groups, search, help, reset, and a badge on changed ones.
+// Common options are first; a button shows the expert options. The form stores no values: it shows rows and
+// emits edits.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -30,13 +30,13 @@ class OptionForm : public QWidget {
   explicit OptionForm(QWidget* parent = nullptr);
 
   void setRows(const std::vector<OptionRow>& rows);
-  // Next to the field: why what was typed there was refused; where another option excludes it, there, too.
-  // Options that have no effect here, by name, and why; the others have.
+  // Shows next to the field why the typed value was refused; also at another option that excludes it.
+  // Options without effect, by name, with the reasons; the others have an effect.
   void setIdle(const std::map<QString, QString>& reasons);
   void showRefusal(const QString& name, const CalibrationError& error);
 
-  OptionEditor* editor(const QString& name) const;  // null: no such option
-  QStringList shownOptions() const;                 // that search and level leave
+  OptionEditor* editor(const QString& name) const;  // null: unknown option
+  QStringList shownOptions() const;                 // options that match search and level
   void showExpert(bool shown);
 
  signals:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The options of one stage under a heading that folds them away.
+// Options of one stage under a heading that collapses them.
 #pragma once
 
 #include "ui/forms/option_editor.h"
@@ -21,8 +21,8 @@ class OptionGroup : public QWidget {
   OptionGroup(const QString& title, QWidget* parent);
 
   void add(OptionEditor* editor);
-  // Shows those that match; unfolds while something is searched for. Expert options that are at their default
-  // are shown if `with_expert` says so, or a search finds them.
+  // Shows the matching options; expands during a search. Expert options at their defaults are shown with
+  // `with_expert`, or if a search finds them.
   void filter(const QString& search, bool only_changed, bool with_expert);
   void showChangedCount();
   bool anyShown() const { return any_shown_; }

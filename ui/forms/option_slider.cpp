@@ -12,7 +12,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kPositions = 200;
-constexpr double kPowersFrom = 50.0;  // of the maximum to the minimum
+constexpr double kPowersFrom = 50.0;  // ratio of maximum and minimum
 constexpr int kDigits = 3;
 
 QString sliderText(const std::string& utf8) {
@@ -65,7 +65,7 @@ QString OptionSlider::numberAt(int position) const {
       powers_ ? minimum_ * std::pow(maximum_ / minimum_, share) : minimum_ + share * (maximum_ - minimum_);
   if (whole_) return QString::number(std::llround(value));
   const QString rounded = QString::number(value, 'g', kDigits);
-  const double shown = std::clamp(rounded.toDouble(), minimum_, maximum_);  // rounding may lead out
+  const double shown = std::clamp(rounded.toDouble(), minimum_, maximum_);  // rounding may exceed the range
   return QLocale::c().toString(shown, 'g', shown == rounded.toDouble() ? kDigits : 12);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns a number over its range, beside the field in which it is typed: in powers where the range spans several, and in
-// whole numbers where the option has no others.
+// Slider for a number over its range, next to its input field: logarithmic if the range spans several powers
+// of ten, and in integers if the option is one.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -13,7 +13,7 @@ class OptionSlider : public QSlider {
   Q_OBJECT
 
  public:
-  // False of choices, and of ranges that don't end.
+  // False for choices and for unbounded ranges.
   static bool fits(const OptionRow& row);
 
   OptionSlider(const OptionRow& row, QWidget* parent);
@@ -21,8 +21,8 @@ class OptionSlider : public QSlider {
   void setShown(const QString& number);  // does not signal
 
  signals:
-  void turning(const QString& number);  // while the mouse holds it
-  void turned(const QString& number);   // let go, or moved by keys
+  void turning(const QString& number);  // during a drag
+  void turned(const QString& number);   // at the end of a drag, or by keys
 
  protected:
   void wheelEvent(QWheelEvent* event) override;  // the form scrolls

@@ -10,7 +10,7 @@
 namespace evical::ui {
 
 void addPageKey(QWidget* page, const QKeySequence& key, std::function<void()> act) {
-  auto* const shortcut = new QShortcut(key, page);  // of the window: hidden pages' shortcuts are asleep
+  auto* const shortcut = new QShortcut(key, page);  // window-wide; shortcuts of hidden pages are inactive
   const bool presses_buttons = key == QKeySequence(Qt::Key_Space);
   QObject::connect(shortcut, &QShortcut::activated, page, [act = std::move(act), presses_buttons] {
     auto* const button = qobject_cast<QAbstractButton*>(QApplication::focusWidget());

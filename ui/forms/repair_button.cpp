@@ -7,7 +7,7 @@ namespace evical::ui {
 
 RepairButton::RepairButton(QWidget* parent) : QPushButton(evical::ui::icon("calibrate"), {}, parent) {
   setObjectName("repair");
-  setAccessibleName(tr("Set what may mend it, and calibrate again"));
+  setAccessibleName(tr("Apply the proposed setting, and calibrate again"));
   setRepair({});
   connect(this, &QPushButton::clicked, this, [this] {
     if (repair_) emit repairRequested(Repair(*repair_));
@@ -20,7 +20,7 @@ void RepairButton::setRepair(const std::optional<Repair>& repair) {
   if (!repair) return;
   const QString key = QString::fromStdString(repair->key), value = QString::fromStdString(repair->value);
   setText(tr("Set %1 to %2 and calibrate again").arg(key.section('.', -1), value));
-  setToolTip(tr("%1: %2 in the session; Ctrl+Z takes it back").arg(key, value));
+  setToolTip(tr("Sets %1: %2 in the session; Ctrl+Z undoes it").arg(key, value));
 }
 
 }  // namespace evical::ui

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Offers what would mend a result or a failure: to be set in the session, and calibrated again.
+// Button for the setting that would repair a result or a failure: sets it in the session and calibrates
+// again.
 #pragma once
 
 #include "core/base/repair.h"

@@ -8,7 +8,7 @@
 namespace evical::ui {
 namespace {
 
-// Of spin boxes, the one inside.
+// Input field of a spin box.
 const QLineEdit* fieldOf(QObject* widget) {
   if (const auto* const field = qobject_cast<const QLineEdit*>(widget)) return field;
   const auto* const box = qobject_cast<const QAbstractSpinBox*>(widget);
@@ -25,7 +25,7 @@ bool SessionUndoKeys::eventFilter(QObject* watched, QEvent* event) {
   const bool undo = key->matches(QKeySequence::Undo) && !field->isUndoAvailable();
   const bool redo = key->matches(QKeySequence::Redo) && !field->isRedoAvailable();
   if (!undo && !redo) return false;
-  event->ignore();  // it is a shortcut, then
+  event->ignore();  // so it becomes a shortcut
   return true;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ctrl+Z in a field of text takes back what is being typed. Where nothing is, fields swallow the key all the same; with
-// this filter on the application the window's own undo has it then.
+// Ctrl+Z in a text field undoes typing. Without typed text, fields would still consume the key; this filter
+// on the application passes it to the window's undo instead.
 #pragma once
 
 #include <QObject>

@@ -11,14 +11,14 @@
 namespace evical::ui {
 namespace {
 
-// Those of a calibration, each with `part` before its name.
+// Stages of a calibration, each with the part `part`.
 void addStages(RunStart start, const std::string& part, double weight, std::vector<JobStage>& stages) {
   for (const StageRow& row : kCalibrationStages)
     if (const double share = shareOf(row, start); share > 0.0)
       stages.push_back({{row.name, part}, weight * share});
 }
 
-// The lens is given by the old result; the second run starts from what the first one detected.
+// The lens is fixed by the old result; the second run starts from the detections of the first one.
 std::vector<JobStage> resultCheckStages() {
   constexpr double kTogether = 0.4;  // of the first run's time
   std::vector<JobStage> stages;
@@ -68,7 +68,7 @@ bool startMaintain(MaintainJob& job, std::function<MaintainInput()> read, const 
 }
 
 bool startRepeat(RepeatJob& job, const RepeatInput& input, const QString& folder, const QString& version) {
-  // The runner waits for its work, so that it is there as long as anybody asks for the log.
+  // The runner outlives its work, so it is valid when the log is requested.
   return job.start(QObject::tr("Several recordings"), repeatStages(input),
                    [&runner = job.runner(), input, folder, version = version.toStdString()](
                        RepeatedRecordings& found, const RunContext& context) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `evical check`, `evical maintain` and `evical repeat` do, as jobs.
+// `evical check`, `evical maintain` and `evical repeat` as jobs.
 #pragma once
 
 #include "core/pipeline/check/check_calibration.h"
@@ -9,7 +9,7 @@
 
 namespace evical::ui {
 
-// With what its files are written from.
+// Result with the inputs of its files.
 struct CheckedResult {
   CheckInput input;
   CheckRun run;
@@ -18,7 +18,7 @@ struct CheckedResult {
 struct RepeatedRecordings {
   RepeatInput input;
   RepeatRun run;
-  QString folder;  // where its files are
+  QString folder;  // folder of its files
 };
 
 using ResultCheckJob = TaskJobOf<CheckedResult>;

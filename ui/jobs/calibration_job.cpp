@@ -61,7 +61,7 @@ bool CalibrationJob::run(const Session& session, RunStart start, std::shared_ptr
 void CalibrationJob::deliver() {
   if (!live_) return;
   const std::shared_ptr<LiveView> live = live_;
-  // The last kind first: what came before it is there by then, and is told before it.
+  // Taken in reverse order, so that everything earlier has arrived; delivered in order.
   const auto iterations = live->iterations.takeNew();
   const auto notes = live->notes.takeNew();
   const bool done = live->detection_done;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A calibration as a job: what the front end and the optimiser find is shown while they run.
+// A calibration as a job that shows intermediate results of the front end and the optimiser.
 #pragma once
 
 #include "core/data/calibration_stage.h"
@@ -19,24 +19,24 @@ class CalibrationJob : public QObject {
  public:
   explicit CalibrationJob(JobRunner& runner, QObject* parent = nullptr);
 
-  // Asked at each start from the recording for somebody who sees the front end's windows; may be empty.
+  // Called at each start from the recording, for an observer of the front end's windows; may be empty.
   using ObserverMaker = std::function<std::shared_ptr<CalibrationObserver>()>;
   void observeWith(ObserverMaker maker) { make_observer_ = std::move(maker); }
 
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
-  // From detections that are there already.
+  // Starts from existing detections.
   bool startAgain(const Session& session, DetectionResult pass,
                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
   bool running() const { return live_ != nullptr; }
-  // What the latest one started from.
+  // Start of the latest run.
   RunStart startedFrom() const { return started_from_; }
 
  signals:
   void started();
   void detecting();  // started, from the recording
-  void ended();      // in whatever way
-  // While it runs; only the newest of each kind is handed out, a few times a second.
+  void ended();      // with any outcome
+  // During a run; only the newest of each kind is emitted, a few times a second.
   void detectionsChanged(std::shared_ptr<const evical::ui::LiveDetections> detections);
   void detectionDone();
   void initialisationStepDone(const evical::ui::InitialisationNote& note);
@@ -54,7 +54,7 @@ class CalibrationJob : public QObject {
   JobRunner& runner_;
   ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
-  std::shared_ptr<CalibrationRun> run_;  // written by the work, read once it has ended
+  std::shared_ptr<CalibrationRun> run_;  // written by the work, read after its end
   Session session_;
   RunStart started_from_ = RunStart::KnownIntrinsics;
 };

@@ -24,7 +24,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kDotsPerInch = 96;  // so that a font has the screen's size
+constexpr int kDotsPerInch = 96;  // gives fonts the same size as on the screen
 constexpr double kPictureScale = 2.0;
 const char* const kFolderKey = "pictures_folder";
 
@@ -148,8 +148,8 @@ void FileSaver::save(const QString& path, const SavedForm& form) {
 void FileSaver::complain(const QString& path) {
   auto* const message =
       new QMessageBox(QMessageBox::Warning, tr("Not saved"),
-                      tr("%1 could not be written. Check that the folder exists, that you may "
-                         "write there and that the disk is not full.")
+                      tr("%1 could not be written. Check that the folder exists and is writable, and "
+                         "that the disk is not full.")
                           .arg(path),
                       QMessageBox::Ok, over_);
   message->setAttribute(Qt::WA_DeleteOnClose);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of what a screen shows: asks where, takes what is shown in the GUI thread, makes and writes the file in
-// another, and says where that failed.
+// Saves the content of a screen: asks for the file, collects the content in the GUI thread, formats and
+// writes it in another, and reports failures.
 #pragma once
 
 #include <QByteArray>
@@ -17,9 +17,9 @@ class QWidget;
 
 namespace evical::ui {
 
-// One format that something can be saved in.
+// A file format for saving.
 struct SavedForm {
-  // Makes the file's content in a thread of its own: owns all that it needs. Empty: it could not be made.
+  // Makes the file's content in a separate thread: owns all its inputs. Empty: failed.
   using Content = std::function<QByteArray()>;
 
   QString title;                     // "Picture"
@@ -27,9 +27,9 @@ struct SavedForm {
   std::function<Content()> prepare;  // in the GUI thread
 };
 
-QByteArray pngOf(const QImage& image);  // in any thread; empty of a null image
+QByteArray pngOf(const QImage& image);  // thread-safe; empty for a null image
 
-// Something painted as PNG, with `scale` pixels to one of the screen's, SVG and PDF. `paint` brings its own painter.
+// A painting as PNG, with `scale` pixels per screen pixel, SVG and PDF. `paint` creates its own painter.
 std::vector<SavedForm> pictureForms(const QSize& size, double scale,
                                     const std::function<void(QPaintDevice&)>& paint);
 // A widget that paints itself.
@@ -39,9 +39,9 @@ class FileSaver : public QObject {
   Q_OBJECT
 
  public:
-  explicit FileSaver(QWidget* parent);  // messages appear over it
+  explicit FileSaver(QWidget* parent);  // parent of messages
 
-  // Proposes `name` in the folder that was chosen last. The format is that of the suffix that is typed, else the one chosen.
+  // Proposes `name` in the last used folder. The format is that of the typed suffix, else the selected one.
   void askAndSave(const QString& title, const QString& name, const std::vector<SavedForm>& forms);
   void save(const QString& path, const SavedForm& form);
 

@@ -8,7 +8,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kPoll_ms = 1000;
-constexpr int kWorthALook_ms = 3000;  // of growth
+constexpr int kWorthALook_ms = 3000;  // duration of growth before a check
 constexpr int kEnded_ms = 5000;       // without growth
 
 }  // namespace
@@ -104,7 +104,7 @@ void GrowingRecording::take(std::uintmax_t size) {
     return;
   }
   if (!ended) return;
-  // It may go on again some day.
+  // The recording may continue later.
   opened_size_ = size_;
   grown_ = false;
   setFollowing(false);

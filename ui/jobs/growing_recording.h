@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that another program is still writing: looks at their size once a second, says when there is enough more to look
-// through, and when the end has come. Looking through is somebody else's, who says when it begins and ends.
+// Files that another program is still writing: checks their size once a second, signals when there is enough
+// new data for a check, and when the end is reached. The check itself is done elsewhere, which reports its
+// start and end.
 #pragma once
 
 #include "ui/jobs/latest_job.h"
@@ -15,7 +16,7 @@
 
 namespace evical::ui {
 
-// Of files, and of all that is in folders; what is not there has none.
+// Total size of files and of all files in folders; 0 for missing ones.
 std::uintmax_t bytesOf(const std::vector<std::filesystem::path>& files);
 
 class GrowingRecording : public QObject {
@@ -24,11 +25,11 @@ class GrowingRecording : public QObject {
  public:
   explicit GrowingRecording(QObject* parent = nullptr);
 
-  // Other ones than before end the following.
+  // A change of files ends the following.
   void setFiles(const std::vector<std::filesystem::path>& files);
   void setFollowing(bool following);
   bool following() const { return following_; }
-  // They have grown since they were set.
+  // They have grown since setFiles().
   bool grown() const { return grown_; }
   // They were followed to their end.
   bool followedToEnd() const { return followed_to_end_; }
@@ -37,10 +38,10 @@ class GrowingRecording : public QObject {
   void lookEnded();
 
  signals:
-  void growthNoticed();  // they are larger than when they were set
+  void growthNoticed();  // larger than at setFiles()
   void followingChanged(bool following);
   void lookWanted();
-  void endReached();  // for a while nothing has come, and the last look has seen all
+  void endReached();  // no growth for a while, and the last check has covered everything
 
  private:
   void poll();
@@ -51,7 +52,7 @@ class GrowingRecording : public QObject {
   bool known_ = false, grown_ = false, following_ = false, followed_to_end_ = false, looking_ = false;
   QElapsedTimer since_growth_, since_look_;
   QTimer timer_;
-  LatestJob size_job_{OutdatedWork::Dropped};  // file systems may let one wait
+  LatestJob size_job_{OutdatedWork::Dropped};  // file systems may block
 };
 
 }  // namespace evical::ui

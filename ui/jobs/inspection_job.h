@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks through recordings in the background, one after the other: which streams they have, and
-// what is wrong with them.
+// Inspects recordings in the background, one after the other: their streams and faults.
 #pragma once
 
 #include "core/recording/inspection.h"
@@ -18,14 +17,14 @@ class InspectionJob : public QObject {
  public:
   explicit InspectionJob(QObject* parent = nullptr);
 
-  // Takes the place of inspections that still run or wait.
+  // Replaces running and waiting inspections.
   void start(const QStringList& recordings);
-  // After those that run or wait.
+  // Queued after the running and waiting ones.
   void add(const QString& recording);
   bool running() const { return runner_.running(); }
 
  signals:
-  void restarted();  // whatever was inspected before is of no more interest
+  void restarted();  // earlier inspections are obsolete
   void started(const QString& recording);
   void progressed(double fraction);
   void inspected(const QString& recording, std::shared_ptr<const evical::Inspection> inspection);
@@ -36,7 +35,7 @@ class InspectionJob : public QObject {
   void finish(JobOutcome outcome);
 
   JobRunner runner_;
-  QString recording_;  // that is looked through; none once it is of no more interest
+  QString recording_;  // being inspected; empty if obsolete
   QStringList waiting_;
   std::shared_ptr<Inspection> inspection_;
 };

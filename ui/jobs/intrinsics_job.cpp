@@ -10,7 +10,8 @@
 namespace evical::ui {
 namespace {
 
-// Of an everyday recording's time. Nobody knows how many passes there will be: most lenses settle in one or two.
+// Shares of the time for a typical recording. The number of passes is unknown: most lenses settle in one or
+// two.
 std::vector<JobStage> lensStages(int most_passes) {
   constexpr double kFirstLook = 0.1, kFirstPass = 0.7, kNext = 0.3;
   std::vector<JobStage> stages = {{nameOf(CalibrationStage::FirstLook), kFirstLook}};
@@ -20,7 +21,7 @@ std::vector<JobStage> lensStages(int most_passes) {
   return stages;
 }
 
-// Core names every pass alike.
+// In core, all passes have the same name.
 class PassNames final : public ProgressSink {
  public:
   explicit PassNames(ProgressSink& sink) : sink_(sink) {}
@@ -37,7 +38,7 @@ class PassNames final : public ProgressSink {
   int passes_ = 0;
 };
 
-// The camera was seen alone, in time from its own start.
+// The camera was detected alone, in time since its own start.
 DetectionResult inSession(const Session& session, std::size_t camera, const DetectionResult& alone) {
   DetectionResult all;
   all.start_ns = session.cameras.size() == 1 && session.imus.empty() ? alone.start_ns

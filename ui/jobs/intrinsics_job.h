@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The calibration of one camera's lens as a job: the front end is seen at work, and each pass tells what it left.
+// Calibration of one camera's lens as a job, which shows the front end's windows and the result of each pass.
 #pragma once
 
 #include "core/pipeline/lens/intrinsics_calibration.h"
@@ -13,7 +13,7 @@
 
 namespace evical::ui {
 
-// What a run found: the lens; and where the board was seen, in the session's time, with an entry for each of its
+// Result of a run: the lens; and the views of the board, in the session's time, with an entry for each of its
 // cameras, for screens that show runs.
 struct FoundLens {
   std::shared_ptr<const IntrinsicsRun> run;
@@ -26,19 +26,19 @@ class IntrinsicsJob : public QObject {
  public:
   explicit IntrinsicsJob(JobRunner& runner, QObject* parent = nullptr);
 
-  // As CalibrationJob's.
+  // Like in CalibrationJob.
   void observeWith(CalibrationJob::ObserverMaker maker) { make_observer_ = std::move(maker); }
 
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session, std::size_t camera);
   bool running() const { return live_ != nullptr; }
 
-  // Stages, as the runner tells them: "first look", then "pass 1", "pass 2", ...
+  // Names of stages: "first look", then "pass 1", "pass 2", ...
   static QString passName(int number) { return QString("pass %1").arg(number); }
 
  signals:
   void started();
-  void ended();  // in whatever way
+  void ended();  // with any outcome
   void detectionsChanged(std::shared_ptr<const evical::ui::LiveDetections> detections);
   void passDone(const evical::ui::LensPass& pass);
   void calibrated(const evical::ui::FoundLens& found, const evical::Session& session, std::size_t camera,
@@ -51,7 +51,7 @@ class IntrinsicsJob : public QObject {
   JobRunner& runner_;
   CalibrationJob::ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
-  std::shared_ptr<FoundLens> found_;  // written by the work, read once it has ended
+  std::shared_ptr<FoundLens> found_;  // written by the work, read after its end
   Session session_;
   std::size_t camera_ = 0;
 };

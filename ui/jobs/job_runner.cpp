@@ -30,10 +30,10 @@ QString textOf(std::string_view text) {
 
 JobError internalError(const QString& what) {
   return {false, QObject::tr("internal error"), what,
-          QObject::tr("Please report this, with the log and the session file")};
+          QObject::tr("Report this error, with the log and the session file")};
 }
 
-// The C library keeps what a job has freed, which is more than all that stays, for the next one.
+// The C library keeps a job's freed memory, which is more than all the rest, for the next job.
 void returnFreeMemory() {
 #ifdef __GLIBC__
   malloc_trim(0);
@@ -54,9 +54,8 @@ Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
   } catch (const CalibrationError& error) {
     return {JobOutcome::Failed, errorOf(error)};
   } catch (const std::bad_alloc&) {
-    return {JobOutcome::Failed,
-            JobError{false, QObject::tr("memory"), QObject::tr("there is not enough of it"),
-                     QObject::tr("Close other programs, or calibrate a part: give a time range")}};
+    return {JobOutcome::Failed, JobError{false, QObject::tr("memory"), QObject::tr("not enough is available"),
+                                         QObject::tr("Close other programs, or limit the time range")}};
   } catch (const std::exception& error) {
     return {JobOutcome::Failed, internalError(QString::fromUtf8(error.what()))};
   } catch (...) {
@@ -77,8 +76,7 @@ QString JobError::text() const {
   return text;
 }
 
-// What the worker has said and the GUI thread has not read yet. The worker's
-// side outlives the runner's interest.
+// Unread messages of the worker to the GUI thread. The worker's side may outlive the runner's.
 struct JobRunner::Reports final : ProgressSink {
   explicit Reports(std::vector<JobStage> given) : stages(std::move(given)) {}
 
@@ -100,7 +98,7 @@ struct JobRunner::Reports final : ProgressSink {
         QString::asprintf("%9.3f s  %-7s  ", stopwatch.elapsed_s(), levelName(level)) + textOf(text) + "\n";
   }
 
-  // Stages that nobody announced count for nothing.
+  // Stages that were not announced do not count.
   void setFraction(double of_stage) {
     stage_fraction = std::clamp(of_stage, 0.0, 1.0);
     double before = 0.0, total = 0.0, own = 0.0;
@@ -116,7 +114,7 @@ struct JobRunner::Reports final : ProgressSink {
     if (passed && total > 0.0) fraction = std::max(fraction, (before + own * stage_fraction) / total);
   }
 
-  // Time goes on at the mean pace so far; too little done says nothing.
+  // Extrapolates the mean pace; negative at the beginning.
   double remaining_s() const {
     constexpr double kEnough = 0.03;
     return fraction < kEnough ? -1.0 : stopwatch.elapsed_s() * (1.0 - fraction) / fraction;
@@ -166,7 +164,7 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
       std::jthread([this, reports = reports_, stop = stop_.get_token(), job = std::move(work)]() mutable {
         makeThreadModest();
         Ending ending = runToEnd(job, RunContext{*reports, stop});
-        job = nullptr;  // what it holds goes before anybody hears of its end
+        job = nullptr;  // its data are released before its end is signalled
         returnFreeMemory();
         {
           const std::lock_guard lock(reports->mutex);

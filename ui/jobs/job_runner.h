@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs one piece of long work at a time in a thread of its own. The work owns copies of its inputs; what it
-// says of its progress reaches the GUI thread a few times a second, its outcome always, exactly once.
+// Runs one long job at a time in a separate thread. The job owns copies of its inputs; its progress reaches
+// the GUI thread a few times a second, its outcome always and exactly once.
 #pragma once
 
 #include "core/base/error.h"
@@ -20,9 +20,9 @@
 
 namespace evical::ui {
 
-// What went wrong, where, and what to do.
+// Problem, place and advice.
 struct JobError {
-  bool bad_input = false;  // the person can mend it: session, recording, options
+  bool bad_input = false;  // the user can correct it: session, recording, options
   QString place, problem, advice;
   std::optional<Repair> repair = {};
 
@@ -33,8 +33,7 @@ JobError errorOf(const CalibrationError& error);
 
 enum class JobOutcome { Done, Cancelled, Failed };
 
-// A stage as the work names it (ProgressSink::stageStarted), and the share of the whole
-// time that it will take.
+// A stage by its name (ProgressSink::stageStarted), and its share of the total time.
 struct JobStage {
   ProgressStage stage;
   double share = 1.0;
@@ -44,7 +43,7 @@ struct JobProgress {
   QString stage, part;                          // ProgressStage's name and part
   double stage_fraction = 0.0, fraction = 0.0;  // 0..1, never falling
   double elapsed_s = 0.0;
-  double remaining_s = -1.0;  // negative: nobody can tell yet
+  double remaining_s = -1.0;  // negative: not yet known
 };
 
 struct LogLine {
@@ -60,14 +59,14 @@ class JobRunner : public QObject {
   using Work = std::function<void(const RunContext&)>;
 
   explicit JobRunner(QObject* parent = nullptr);
-  ~JobRunner() override;  // asks the work to stop and waits for it; nothing is signalled any more
+  ~JobRunner() override;  // requests a stop and waits; emits no further signals
 
   bool running() const { return running_; }
   bool cancelling() const { return running_ && stop_.stop_requested(); }
   QString title() const { return title_; }
-  QString logText() const;  // of the job that runs or ran last, as log.txt has it
+  QString logText() const;  // of the running or last job, like log.txt
 
-  // False, and nothing happens, while another job runs.
+  // False, without effect, while another job runs.
   bool start(const QString& title, std::vector<JobStage> stages, Work work);
   void cancel();
 
@@ -76,9 +75,9 @@ class JobRunner : public QObject {
   void stageStarted(const QString& stage);
   void progressed(const evical::ui::JobProgress& progress);
   void logged(const evical::ui::LogLine& line);
-  void ticked();  // while running, and once more before finished: time to look into mailboxes
+  void ticked();  // while running, and once before finished: poll the mailboxes
   void failed(const evical::ui::JobError& error);
-  void finished(evical::ui::JobOutcome outcome);  // last of all; running() is false
+  void finished(evical::ui::JobOutcome outcome);  // last signal; running() is false
 
  private:
   struct Reports;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Work for a screen in a thread of its own, one piece at a time, whose outcome comes back in the GUI thread.
-// What is asked for while it runs waits, and only the latest of that is done.
+// Runs work for a screen in a separate thread, one piece at a time, and delivers its outcome in the GUI
+// thread. Of the pieces that are requested meanwhile, only the latest is run.
 #pragma once
 
 #include <QObject>
@@ -13,28 +13,27 @@
 
 namespace evical::ui {
 
-// What becomes of work that runs when newer work comes.
+// Treatment of running work when newer work is requested.
 enum class OutdatedWork {
-  Dropped,   // told to stop, and not delivered: it would show what nobody asks for any more
-  Delivered  // goes on to its end: while wishes come faster than work is done, something is shown
+  Dropped,   // stopped and not delivered, since it is obsolete
+  Delivered  // completed: something is shown even if requests come faster than results
 };
 
 class LatestJob : public QObject {
   Q_OBJECT
 
  public:
-  // Runs in the thread, owns its inputs, and returns what is to be done in the GUI thread afterwards;
-  // nothing, if there is nothing. May throw.
+  // Runs in the thread, owns its inputs, and returns an action for the GUI thread; may be empty. May throw.
   using Work = std::function<std::function<void()>(const std::stop_token& stop)>;
 
   explicit LatestJob(OutdatedWork outdated, QObject* parent = nullptr);
-  ~LatestJob() override;  // waits for what runs, after telling it to stop; nothing is delivered any more
+  ~LatestJob() override;  // requests a stop and waits; delivers nothing more
 
   void start(Work work);
-  void discard();  // what runs is told to stop; neither that nor what waits is delivered
+  void discard();  // stops running work; neither that nor waiting work is delivered
   bool busy() const { return settled_ != newest_; }
 
-  // For work under way, from its thread: is there something better to do?
+  // For running work, from its thread: whether newer work waits.
   bool hasNewer() const;
 
  signals:
@@ -42,23 +41,23 @@ class LatestJob : public QObject {
 
  private:
   struct Piece {
-    Work work;  // none: nothing waits
+    Work work;  // none: no piece waits
     int number = 0;
   };
   void run(const std::stop_token& end);
   void perform(const Piece& piece, const std::stop_token& stop);
   void deliver(int number, const std::function<void()>& done, const QString& error);
 
-  // The GUI thread's: pieces are numbered as they come.
+  // Used by the GUI thread: pieces are numbered in order.
   OutdatedWork outdated_;
-  int newest_ = 0;   // asked for
-  int settled_ = 0;  // no piece up to this one is delivered any more
+  int newest_ = 0;   // last requested piece
+  int settled_ = 0;  // no piece up to this one will be delivered
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   Piece waiting_;
-  std::stop_source stop_;  // of what runs
-  std::jthread thread_;    // from the first piece on
+  std::stop_source stop_;  // of the running piece
+  std::jthread thread_;    // started with the first piece
 };
 
 }  // namespace evical::ui

@@ -14,12 +14,12 @@ QString liveText(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-// A board that is tracked backwards puts views before others, and finds more of its circles in some.
+// Tracking backwards inserts views before others, and finds more circles in some.
 bool isCopyOf(const BoardView& copy, const BoardView& view) {
   return copy.time_s == view.time_s && copy.circles.size() == view.circles.size();
 }
 
-// Copies those only that `before` does not have.
+// Copies only views that `before` does not contain.
 SharedViews viewsSoFar(const std::vector<BoardView>& views, const SharedViews& before) {
   SharedViews now;
   now.reserve(views.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a calibration has found so far, between core's threads and the GUI.
+// Intermediate results of a calibration, between core's threads and the GUI.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -21,7 +21,7 @@
 
 namespace evical::ui {
 
-// Views are copied once and never changed; a list of them costs a pointer a view.
+// Views are copied once and never changed; a list of them needs one pointer per view.
 using SharedViews = std::vector<std::shared_ptr<const BoardView>>;
 SharedViews sharedViews(const std::shared_ptr<const BoardObservations>& observations);
 
@@ -32,7 +32,7 @@ struct LiveCamera {
 using LiveDetections = std::vector<LiveCamera>;  // by camera
 
 struct LiveIterations {
-  std::vector<IterationRecord> records;  // all so far
+  std::vector<IterationRecord> records;  // all until now
   CalibrationState state;                // after the last of them
 };
 
@@ -41,7 +41,7 @@ struct InitialisationNote {
   double duration_s = 0.0;
 };
 
-// A pass over the recording, and the lens that it left.
+// A pass over the recording, and the resulting lens.
 struct LensPass {
   int number = 0;
   int views = 0;
@@ -50,8 +50,8 @@ struct LensPass {
 
 class LiveView final : public CalibrationObserver {
  public:
-  // `windows`: sees the front end's windows; may be null. `only`: the camera of the session that core has as its first;
-  // none: core has all of them.
+  // `windows`: observer of the front end's windows; may be null. `only`: the session's camera that core has
+  // as its first one; none: core has all of them.
   LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows,
            std::optional<std::size_t> only = {})
       : windows_(std::move(windows)), only_(only), detected_(cameras) {}
@@ -66,11 +66,11 @@ class LiveView final : public CalibrationObserver {
 
   Mailbox<LiveDetections> detections;
   std::atomic<bool> detection_done = false;
-  Mailbox<std::vector<LensPass>> passes;           // all so far
-  Mailbox<std::vector<InitialisationNote>> notes;  // all so far
+  Mailbox<std::vector<LensPass>> passes;           // all until now
+  Mailbox<std::vector<InitialisationNote>> notes;  // all until now
   Mailbox<LiveIterations> iterations;
 
-  // The GUI thread's.
+  // Used by the GUI thread.
   bool said_done = false;
   std::size_t said_notes = 0, said_passes = 0;
 

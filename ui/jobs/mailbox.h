@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands the newest value of a worker to the GUI thread. Older ones that nobody took are dropped, so that a
-// slow window never has a queue in front of it.
+// Passes the newest value of a worker to the GUI thread. Older values that were not taken are dropped, so
+// that a slow window never builds up a queue.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ namespace evical::ui {
 template <class Value>
 class Mailbox {
  public:
-  // For receivers that look into it by themselves.
+  // For receivers that poll.
   Mailbox() = default;
-  // `tell` is called when there is something new, once until that is taken, from whatever thread put it
-  // there; it does no more than hand on the message.
+  // `tell` is called from the sending thread when there is a new value, once until it is taken; it must only
+  // forward the message.
   explicit Mailbox(std::function<void()> tell) : tell_(std::move(tell)) {}
 
   void put(std::shared_ptr<const Value> value) {
@@ -25,13 +25,13 @@ class Mailbox {
     if (!std::exchange(pending_, true) && tell_) tell_();
   }
 
-  // The newest, also if it was taken before; null if there was none.
+  // The newest value, even if it was taken before; null if there was none.
   std::shared_ptr<const Value> take() {
     const std::lock_guard lock(mutex_);
     pending_ = false;
     return newest_;
   }
-  // Null where the newest was taken before.
+  // Null if the newest value was taken before.
   std::shared_ptr<const Value> takeNew() {
     const std::lock_guard lock(mutex_);
     return std::exchange(pending_, false) ? newest_ : nullptr;
@@ -42,7 +42,7 @@ class Mailbox {
     newest_ = nullptr;
     pending_ = false;
   }
-  // The receiver goes: nobody is told any more, whoever may still put something.
+  // Ends the notifications: the receiver is about to be destroyed.
   void close() {
     const std::lock_guard lock(mutex_);
     tell_ = nullptr;

@@ -9,14 +9,14 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kPause_ms = 800;  // between two key strokes it is not worth while
+constexpr int kPause_ms = 800;  // avoids checks between key strokes
 
 bool isSame(const Session& one, const Session& other) {
   const std::filesystem::path folder = "/";
   return sessionYaml(one, folder) == sessionYaml(other, folder);
 }
 
-// By core's names; shares are those of an everyday recording.
+// By core's names, with shares of the time for a typical recording.
 std::vector<JobStage> checkStages() {
   return {{nameOf(CalibrationStage::FirstLook), 0.05},
           {nameOf(CalibrationStage::Intrinsics), 0.25},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks by itself whether the recording is good enough, behind all that people ask for: it stops where a job of theirs
-// begins, and starts anew afterwards. What it detects is kept, so that a calibration need not detect it again.
+// Automatic check whether the recording is good enough, with lower priority than the user's jobs: it stops
+// when one of them starts, and restarts afterwards. Its detections are kept for a calibration.
 #pragma once
 
 #include "core/pipeline/rig/recording_assessment.h"
@@ -20,29 +20,30 @@ class RecordingCheckJob : public QObject {
  public:
   explicit RecordingCheckJob(QObject* parent = nullptr);
 
-  // Off: nothing starts by itself, and what runs stops.
+  // Off: nothing starts automatically, and a running check stops.
   void setAutomatic(bool automatic);
   bool automatic() const { return automatic_; }
 
-  // What is to be checked from now on, once it has not changed for a moment; nothing: there is nothing that could be.
+  // Session to check from now on, after a moment without changes; none: nothing to check.
   void setSession(std::optional<Session> session);
-  // The recording has grown: once more, all of it, also where nothing starts by itself. What was found stays until then.
+  // The recording has grown: checks all of it again, even if automatic checks are disabled. The last
+  // assessment stays until then.
   void lookAgain();
-  // Somebody waits for other work.
+  // Another job is waiting or running.
   void giveWay(bool busy);
 
   bool running() const { return runner_.running(); }
-  // It runs, or will; somebody who waits for it will hear.
+  // A check is running or due; its end will be signalled.
   bool awaited() const { return mayStart() && session_ && (due_ || (runner_.running() && !checked_)); }
-  // Of the session as it was set last; null while it is not known.
+  // For the session that was set last; null while unknown.
   const std::shared_ptr<const CheckedRecording>& checked() const { return checked_; }
-  // What a calibration of this session may start from.
+  // Detections from which a calibration of this session may start.
   std::optional<DetectedRecording> detectedFor(const Session& session) const;
 
  signals:
-  void outdated();  // what was checked is of no more interest
+  void outdated();  // the last check is obsolete
   void started();
-  void interrupted();  // it stopped, and will start anew
+  void interrupted();  // stopped, and will restart
   void progressed(double fraction);
   void checkedAnew(std::shared_ptr<const evical::CheckedRecording> checked);
   void failed(const evical::ui::JobError& error);
@@ -56,14 +57,14 @@ class RecordingCheckJob : public QObject {
   JobRunner runner_;
   QTimer pause_;
   bool automatic_ = true, busy_ = false;
-  bool asked_ = false;              // for a look at this session
-  std::optional<Session> session_;  // to be checked
-  bool due_ = false;                // it has changed since what runs began, or nothing has run
-  // What was found, and for which session; written by the work, read once it has ended.
+  bool asked_ = false;              // lookAgain() was called for this session
+  std::optional<Session> session_;  // session to check
+  bool due_ = false;                // changed since the running check started, or never checked
+  // Result and its session; written by the work, read after its end.
   std::shared_ptr<CheckedRecording> found_;
   Session found_for_;
   std::shared_ptr<const CheckedRecording> checked_,
-      detected_;  // the second: the last one that has detections
+      detected_;  // the second: the last one with detections
   Session detected_for_;
 };
 

@@ -28,7 +28,7 @@ std::filesystem::path placeOfSessionsWithoutFile() {
   return pathOf(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)) / "runs";
 }
 
-// Recordings of one name lie in many folders.
+// Recordings in different folders may have the same name.
 std::filesystem::path placeOfRecording(const std::filesystem::path& recording) {
   const auto path = QString::fromStdString(std::filesystem::absolute(recording).string());
   const QByteArray sum = QCryptographicHash::hash(path.toUtf8(), QCryptographicHash::Sha1).toHex().left(8);
@@ -40,7 +40,7 @@ bool canBeWritten(const std::filesystem::path& place) {
   return parent.isDir() && parent.isWritable();
 }
 
-// Made at once: another window may keep a run of the same second.
+// Created immediately: another window may store a run in the same second.
 std::filesystem::path newFolder(const std::filesystem::path& place, std::int64_t made_s) {
   std::filesystem::create_directories(place);
   const QString date = QDateTime::fromSecsSinceEpoch(made_s).toString("yyyy-MM-dd_hh-mm-ss");
@@ -127,7 +127,7 @@ void RunHistory::moveTo(const QString& session_file) {
 void RunHistory::listAnew() {
   work(tr("The runs cannot be listed"), [this, place = place_]() -> Done {
     return [this, place, runs = listRuns(place)] {
-      if (place != place_) return;  // another session has come since
+      if (place != place_) return;  // the session has changed meanwhile
       runs_ = runs;
       emit changed();
     };
@@ -138,7 +138,7 @@ void RunHistory::keep(std::shared_ptr<const CalibrationRun> run, const Session& 
                       const QString& version, const QString& log) {
   if (place_.empty()) return;
   const std::int64_t made_s = QDateTime::currentSecsSinceEpoch();
-  work(tr("The run was not kept"),
+  work(tr("The run was not stored"),
        [this, run, session, version, log, made_s, place = place_, has_file = has_file_]() -> Done {
          const std::filesystem::path folder = newFolder(place, made_s);
          keepRun(folder, session, run, version.toStdString(), log.toStdString(), made_s);
@@ -188,7 +188,7 @@ void RunHistory::open(const std::filesystem::path& path, const std::function<voi
 
 void RunHistory::openNumbers(const std::filesystem::path& folder,
                              const std::function<void(const NamedResult&)>& done) {
-  work(tr("This run cannot be compared with"), [folder, done]() -> Done {
+  work(tr("The run cannot be used for the comparison"), [folder, done]() -> Done {
     return [done, named = readResultYaml(resultFileOf(folder))] { done(named); };
   });
 }

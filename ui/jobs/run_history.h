@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of a session, kept as folders: beside its file in NAME.runs, or with the user's data while it has none. Reads
-// and writes in a thread of its own, one after the other; GUI thread only.
+// Runs of a session, stored as folders: next to its file in NAME.runs, or with the user's data if it has no
+// file. Reads and writes in order in a separate thread; GUI thread only.
 #pragma once
 
 #include "core/pipeline/runs/saved_run.h"
@@ -23,16 +23,16 @@ class RunHistory : public QObject {
   Q_OBJECT
 
  public:
-  // What is kept of one session; and of all sessions together that have no file.
+  // Limits for one session, and for all sessions without a file together.
   static constexpr std::size_t kMostRuns = 20, kMostRunsWithoutFile = 60;
   static constexpr std::uintmax_t kMostBytes = 500'000'000, kMostBytesWithoutFile = 1'000'000'000;
 
   explicit RunHistory(QObject* parent = nullptr);
-  ~RunHistory() override;  // what is to be written is written first
+  ~RunHistory() override;  // completes pending writes
 
-  // Lists the runs of another session. No file: it goes by its recording; neither: there are none.
+  // Lists the runs of another session. Without a file, by its recording; without both, none.
   void setSession(const QString& session_file, const std::filesystem::path& recording);
-  // The session that had no file has one now: its runs go there.
+  // Moves the runs of a session without a file to its new file.
   void moveTo(const QString& session_file);
   const std::filesystem::path& place() const { return place_; }
 
@@ -41,12 +41,12 @@ class RunHistory : public QObject {
   void rename(const std::filesystem::path& folder, const QString& name);
   void remove(const std::vector<std::filesystem::path>& folders);
 
-  // The oldest first.
+  // Oldest first.
   const std::vector<RunSummary>& runs() const { return runs_; }
-  // Where a run is kept, or was opened from; empty: nowhere yet.
+  // Folder where a run is stored or was opened from; empty: none yet.
   std::filesystem::path folderOf(const std::shared_ptr<const CalibrationRun>& run) const;
 
-  // A saved run, and the numbers of one; `done` is told in the GUI thread, unless it `failed`.
+  // A saved run, and the numbers of one; `done` is called in the GUI thread, unless it `failed`.
   void open(const std::filesystem::path& path, const std::function<void(const SavedRun&)>& done);
   void openNumbers(const std::filesystem::path& folder, const std::function<void(const NamedResult&)>& done);
 

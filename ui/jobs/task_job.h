@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page's own job: what it finds is there once it is done.
+// Job of a page, whose result is available when it is done.
 #pragma once
 
 #include "ui/jobs/job_runner.h"
@@ -20,14 +20,14 @@ class TaskJob : public QObject {
   explicit TaskJob(JobRunner& runner, QObject* parent = nullptr);
 
   bool running() const { return running_; }
-  QString log() const { return log_; }  // of the last one that was done
+  QString log() const { return log_; }  // of the last completed job
   const JobRunner& runner() const { return runner_; }
 
  signals:
-  void done();  // something new has been found
+  void done();  // a new result is available
 
  protected:
-  // False, and nothing happens, while the runner is busy. `keep` is called where the work was done.
+  // False, without effect, while the runner is busy. `keep` is called after success.
   bool startWork(const QString& title, std::vector<JobStage> stages, JobRunner::Work work,
                  std::function<void()> keep);
 
@@ -45,7 +45,7 @@ class TaskJobOf : public TaskJob {
  public:
   using TaskJob::TaskJob;
 
-  // `work` fills what is found, in the job's thread. False while the runner is busy.
+  // `work` fills the result, in the job's thread. False while the runner is busy.
   bool start(const QString& title, std::vector<JobStage> stages,
              std::function<void(Found&, const RunContext&)> work) {
     const auto found = std::make_shared<Found>();
@@ -54,7 +54,7 @@ class TaskJobOf : public TaskJob {
         [found, work = std::move(work)](const RunContext& context) { work(*found, context); },
         [this, found] { found_ = found; });
   }
-  // By the last job that was done; empty: none was.
+  // Result of the last completed job; empty: none.
   std::shared_ptr<const Found> found() const { return found_; }
 
  private:

@@ -17,9 +17,9 @@ const char* windowHowTo(HowTo way) {
     case HowTo::MakeFlashingPage:
       return "with 'Print a board'";
     case HowTo::SayThatBoardFlashes:
-      return "tick that it flashes in the Board form";
+      return "tick 'The board flashes' in the Board form";
     case HowTo::MakeSession:
-      return "Open the recording in its place";
+      return "Open the recording instead";
     case HowTo::GiveResolution:
       return "Give its resolution in the camera's form on the Recording page";
     case HowTo::NameSeparateStreams:

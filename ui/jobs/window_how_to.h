@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Core's messages in the window: of its forms and pages.
+// Advice of core's messages in terms of the window's forms and pages.
 #pragma once
 
 #include "core/base/how_to.h"

@@ -32,7 +32,7 @@ void fill(QMenu& menu, QWidget& page, const QString& name, FileSaver& saver) {
   menu.clear();
   const std::vector<PlotPanel*> panels = shownPanels(page);
   if (panels.empty()) {
-    menu.addAction(QObject::tr("No chart to save yet"))->setEnabled(false);
+    menu.addAction(QObject::tr("No chart to save"))->setEnabled(false);
     return;
   }
   menu.addAction(QObject::tr("&All charts as one picture..."), &saver, [panels, &page, name, &saver] {

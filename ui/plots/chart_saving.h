@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How charts are saved: the same entries in the context menu of each and in the menu of a page's button.
+// Saving of charts: the same entries in each chart's context menu and in the menu of a page's button.
 #pragma once
 
 #include <QString>
@@ -15,7 +15,7 @@ class PlotPanel;
 
 void addSaveActions(QMenu& menu, PlotPanel& panel, FileSaver& saver);
 
-// Offers the charts of `page` that can be seen now: all in one picture, and each by itself.
+// Offers the visible charts of `page`: all in one picture, and each separately.
 QToolButton* makeSaveButton(QWidget& page, const QString& name);
 
 }  // namespace evical::ui

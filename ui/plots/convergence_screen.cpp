@@ -27,7 +27,7 @@ const QString kAxisNames[] = {"x", "y", "z"};
 constexpr double kDot_px = 5.0;
 const char* const kUnits[] = {"deg", "mm", "ms"};
 
-// Only what a logarithm can take; the rest is a gap.
+// Positive values only, for the logarithm; others are gaps.
 double positive(double value) {
   return value > 0.0 ? value : std::numeric_limits<double>::quiet_NaN();
 }
@@ -52,14 +52,14 @@ QWidget* ConvergenceScreen::makeBar() {
   auto* const layout = new QHBoxLayout(bar);
   layout->setContentsMargins(2, 0, 2, 0);
   camera_ = new QComboBox;
-  camera_->setToolTip(tr("Whose rotation, translation and time offset are shown"));
+  camera_->setToolTip(tr("Camera whose rotation, translation and time offset are shown"));
   relative_ = new QComboBox;
   relative_->addItems({tr("the final value"), tr("the first value")});
   relative_->setToolTip(
-      tr("What is subtracted from the parameters. While a run goes on, final means latest."));
+      tr("Value that is subtracted from the parameters. During a run, the final value is the latest one."));
   shown_ = new QComboBox;
   shown_->addItems({tr("all iterations"), tr("the last stage")});
-  shown_->setToolTip(tr("The last stage is where the parameters should stay within their sigmas"));
+  shown_->setToolTip(tr("In the last stage, the parameters should stay within their sigmas"));
   summary_ = new QLabel;
   summary_->setForegroundRole(QPalette::PlaceholderText);
   camera_label_ = new QLabel(tr("&Camera"));
@@ -142,7 +142,7 @@ void ConvergenceScreen::setNeeded(const std::optional<NeededAccuracy>& needed) {
 }
 
 void ConvergenceScreen::appendIteration(const IterationRecord& record) {
-  if (run_) clear();  // the first of a new run
+  if (run_) clear();  // first iteration of a new run
   iterations_.push_back(record);
   drawSoon();
 }
@@ -198,7 +198,7 @@ void ConvergenceScreen::listCameras() {
   camera_label_->setVisible(count > 1);
 }
 
-// The weights change from stage to stage, and cost and gradient with them: no line across.
+// The weights, and with them cost and gradient, differ between stages: no line across the border.
 void ConvergenceScreen::drawProgress() {
   double IterationRecord::*const members[] = {&IterationRecord::cost, &IterationRecord::gradient,
                                               &IterationRecord::step};
@@ -279,7 +279,7 @@ void ConvergenceScreen::drawBands(std::size_t camera) {
   }
 }
 
-// About the final value; against the first one each axis would have lines of its own.
+// Around the final value; relative to the first one, each axis would have its own lines.
 void ConvergenceScreen::drawNeeds() {
   if (!needed_ || relative_->currentIndex() != static_cast<int>(Relative::ToFinal)) return;
   const double needs[] = {needed_->rotation_deg, needed_->translation_mm, needed_->time_offset_ms};

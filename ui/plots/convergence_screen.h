@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the optimiser came to its result: cost, gradient, step and each camera's parameters against the
-// iteration, with the stages' boundaries, what each of them frees, what accuracy is needed and, when the run is done, the
-// band of plus and minus one sigma.
+// Convergence of the optimiser: cost, gradient, step and each camera's parameters by iteration, with the
+// borders of stages, the parameters that each stage frees, the needed accuracy and, after the run, the band
+// of plus and minus one sigma.
 #pragma once
 
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -21,7 +21,7 @@ namespace evical::ui {
 
 class PlotPanel;
 
-// Within which the verdict asks parameters to be known.
+// Accuracy that the verdict requires.
 struct NeededAccuracy {
   double rotation_deg = 0.0, translation_mm = 0.0, time_offset_ms = 0.0;
 };
@@ -32,9 +32,9 @@ class ConvergenceScreen : public QWidget {
  public:
   explicit ConvergenceScreen(QWidget* parent = nullptr);
 
-  void setRun(std::shared_ptr<const CalibrationRun> run);  // null: as clear()
+  void setRun(std::shared_ptr<const CalibrationRun> run);  // null: like clear()
   void setNeeded(const std::optional<NeededAccuracy>& needed);
-  void appendIteration(const IterationRecord& record);  // of a run that goes on; drawn soon
+  void appendIteration(const IterationRecord& record);  // during a run; drawn soon
   void clear();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a screen shows while it has nothing to show: a sentence in its middle.
+// Sentence in the middle of a screen without content.
 #pragma once
 
 #include <QString>
@@ -9,7 +9,7 @@ class QWidget;
 
 namespace evical::ui {
 
-// Of a page that shows runs: there is none, or one is being made.
+// For a page that shows runs: there is none yet, or one is in progress.
 QString noRunNote(bool calibrating);
 
 // Stacks the note (index 0) and the content (index 1) in `screen`; the note is in front.

@@ -49,7 +49,7 @@ void addNumber(PlotPanel& panel, const MaintenanceTrack& track, const TrackedNum
   panel.setData(line, track.times_s, number.values);
 }
 
-// Without the moments of which hardly anything is known, at the start and after changes: they would squeeze all others.
+// Excludes moments with large sigmas, at the start and after changes, which would compress the scale.
 void fitToMost(PlotPanel& panel, const MaintenanceTrack& track, const TrackedQuantity& quantity) {
   constexpr double kLeftOut = 0.04, kMargin = 0.06;
   std::vector<double> low, high;
@@ -68,7 +68,7 @@ void fitToMost(PlotPanel& panel, const MaintenanceTrack& track, const TrackedQua
   if (top > bottom) panel.setYRange(bottom - margin, top + margin);
 }
 
-// Bars of one sigma to either side.
+// Error bars of one sigma to either side.
 struct StopBars {
   std::vector<double> middles_s, residuals, times_s, ends;
 
@@ -95,7 +95,7 @@ struct StopBars {
 MaintenanceCharts::MaintenanceCharts(QWidget* parent)
     : QWidget(parent), what_(new QComboBox(this)), grid_(new QGridLayout) {
   what_->setObjectName("maintained_over_time");
-  what_->setToolTip(tr("Two IMUs, the trajectory's pieces, or the stops of one IMU"));
+  what_->setToolTip(tr("Two IMUs, sections of the trajectory, or the stops of one IMU"));
   what_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   auto* const label = new QLabel(tr("Sho&w"), this);
   label->setBuddy(what_);
@@ -173,7 +173,7 @@ void MaintenanceCharts::showStops(const MaintainedImu& imu) {
   StopBars used, left_out;
   for (const MaintainedStop& stop : imu.stops) (stop.used ? used : left_out).add(stop);
   PlotPanel* const panel =
-      addPanel(tr("What stops leave of gravity's norm, %1").arg(text(imu.name)), "m/s\u00b2");
+      addPanel(tr("Residual of gravity's norm at stops, %1").arg(text(imu.name)), "m/s\u00b2");
   used.show(*panel, tr("used"), PlotColour::Good);
   if (!left_out.middles_s.empty()) left_out.show(*panel, tr("contradict the others"), PlotColour::Bad);
   panel->setLevels({0.0});

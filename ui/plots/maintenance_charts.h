@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How IMUs went over time: numbers of two of them, or of a trajectory's pieces, each with its sigma, and when something
-// changed; and what stops leave of gravity's norm.
+// IMUs over time: numbers of two of them, or of a trajectory's sections, each with its sigma and the changes;
+// and the residuals of gravity's norm at stops.
 #pragma once
 
 #include "core/data/maintenance.h"
@@ -23,7 +23,7 @@ class MaintenanceCharts : public QWidget {
   explicit MaintenanceCharts(QWidget* parent = nullptr);
 
   void setMaintenance(const Maintenance& maintenance);
-  const std::vector<PlotPanel*>& panels() const { return panels_; }  // of what is chosen
+  const std::vector<PlotPanel*>& panels() const { return panels_; }  // for the current choice
 
  private:
   void show(int choice);
@@ -34,7 +34,8 @@ class MaintenanceCharts : public QWidget {
   QComboBox* what_;
   QGridLayout* grid_;
   std::vector<PlotPanel*> panels_;
-  std::vector<const MaintainedImu*> stopped_;  // of the maintenance, as the box lists them behind the tracks
+  std::vector<const MaintainedImu*>
+      stopped_;  // of the maintenance, in the order of the box, after the tracks
   Maintenance maintenance_;
 };
 

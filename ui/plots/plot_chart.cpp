@@ -11,7 +11,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kSmallFont = 0.9;  // of tick labels, legend and readout against the widget's
+constexpr double kSmallFont = 0.9;  // of tick labels, legend and readout, relative to the widget's
 
 QFont scaled(const QFont& font, double factor) {
   QFont smaller = font;
@@ -27,7 +27,7 @@ QColor faded(QColor colour, double opacity) {
   return colour;
 }
 
-constexpr double kMargin = 0.06, kLabelMargin = 0.26;  // of what is shown; above, where marks have labels
+constexpr double kMargin = 0.06, kLabelMargin = 0.26;  // of the range; larger above, for labels of marks
 
 QCPRange withMargin(const QCPRange& range, bool logarithmic, double above = kMargin) {
   if (logarithmic) {
@@ -43,7 +43,7 @@ QCPRange withMargin(const QCPRange& range, bool logarithmic, double above = kMar
   return {range.lower - kMargin * range.size(), range.upper + above * range.size()};
 }
 
-// Thousands of small squares in one call of the painter, without outlines.
+// Draws thousands of small squares in one call of the painter, without outlines.
 class PointGraph : public QCPGraph {
  public:
   using QCPGraph::QCPGraph;
@@ -53,7 +53,8 @@ class PointGraph : public QCPGraph {
                        const QCPScatterStyle& style) const override {
     if (style.shape() != QCPScatterStyle::ssSquare) return QCPGraph::drawScatterPlot(painter, points, style);
     applyScattersAntialiasingHint(painter);
-    painter->setPen(Qt::NoPen);  // a style without a pen takes the graph's, and outlines cost most
+    painter->setPen(
+        Qt::NoPen);  // a style without a pen uses the graph's, and outlines are the most expensive
     painter->setBrush(style.brush());
     const QPointF corner(0.5 * style.size(), 0.5 * style.size());
     QVector<QRectF> squares;
@@ -64,7 +65,7 @@ class PointGraph : public QCPGraph {
   }
 };
 
-// Gives way to title and legend where there is no room for all three.
+// Hidden if there is no space next to title and legend.
 class NoteElement : public QCPTextElement {
  public:
   using QCPTextElement::QCPTextElement;
@@ -114,7 +115,7 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
     yAxis->setScaleType(QCPAxis::stLogarithmic);
     yAxis->setTicker(QSharedPointer<QCPAxisTickerLog>(new QCPAxisTickerLog));
     connect(yAxis, qOverload<const QCPRange&>(&QCPAxis::rangeChanged), this, [this](const QCPRange& range) {
-      constexpr double kSeveralDecades = 20.0;  // below, the ticks are no powers of ten
+      constexpr double kSeveralDecades = 20.0;  // below, ticks are not powers of ten
       const bool powers = range.upper > kSeveralDecades * range.lower;
       yAxis->setNumberFormat(powers ? "eb" : "gb");
       yAxis->setNumberPrecision(powers ? 0 : 4);
@@ -127,7 +128,7 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   }
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   axisRect()->setRangeDrag(Qt::Horizontal | Qt::Vertical);
-  constexpr int kLeftMargin_px = 62;  // so that charts of time below each other are in line
+  constexpr int kLeftMargin_px = 62;                        // aligns charts of time below each other
   constexpr int kLeastWidth_px = 50, kLeastHeight_px = 16;  // charts in rows are low
   axisRect()->setMinimumSize(kLeastWidth_px, kLeastHeight_px);
   if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 15, 15, 15});
@@ -145,7 +146,7 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   connect(this, &QCustomPlot::afterLayout, this, [this] { keepScale(); });
 }
 
-// No more labels than have room above each other.
+// Limits the labels to those that fit above each other.
 void PlotChart::resizeEvent(QResizeEvent* event) {
   constexpr int kAround_px = 56, kLabel_px = 20, kMost = 5;
   yAxis->ticker()->setTickCount(std::clamp((height() - kAround_px) / kLabel_px, 1, kMost));
@@ -335,7 +336,7 @@ void PlotChart::keepScale() {
   if (!axes_.equal_scale || pixels.isEmpty()) return;
   const bool as_left = xAxis->range() == kept_x_ && yAxis->range() == kept_y_;
   if (as_left && pixels == kept_pixels_) return;
-  // From what was chosen, not from what the last layout made of it: else each resizing would show more.
+  // Starts from the requested range, not from the last layout's: otherwise each resize would enlarge it.
   if (!as_left) std::tie(wanted_x_, wanted_y_) = std::pair{xAxis->range(), yAxis->range()};
   xAxis->setRange(wanted_x_);
   yAxis->setRange(wanted_y_);
@@ -346,7 +347,7 @@ void PlotChart::keepScale() {
   else
     xAxis->setScaleRatio(yAxis, 1.0);
   std::tie(kept_x_, kept_y_, kept_pixels_) = std::tuple{xAxis->range(), yAxis->range(), pixels};
-  axisRect()->update(QCPLayoutElement::upPreparation);  // the layout chose its ticks before
+  axisRect()->update(QCPLayoutElement::upPreparation);  // the layout has chosen its ticks already
 }
 
 void PlotChart::restyle(const QFont& font) {
@@ -405,7 +406,7 @@ void PlotChart::styleSeries(const SeriesItems& items) {
     case PlotPanel::SeriesKind::Points: {
       auto* const graph = static_cast<QCPGraph*>(items.plottable);
       graph->setLineStyle(QCPGraph::lsNone);
-      const bool small = style.width_px <= 3.5;  // a plain square is far cheaper than a disc
+      const bool small = style.width_px <= 3.5;  // a square is much faster than a disc
       graph->setPen(pen);
       graph->setAntialiasedScatters(!small);
       graph->setScatterStyle(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chart inside a PlotPanel: QCustomPlot with our colours, mouse and overlay. For plot_panel.cpp only.
+// Chart inside a PlotPanel: QCustomPlot with the program's colours, mouse and overlay. For plot_panel.cpp
+// only.
 #pragma once
 
 #include "ui/plots/plot_panel.h"
@@ -30,7 +31,7 @@ class PlotChart : public QCustomPlot {
     QCPGraph* low;  // a band's lower edge
   };
   std::vector<SeriesItems> series;
-  QRectF cells_extent;  // QCustomPlot only knows that of the cells' middles
+  QRectF cells_extent;  // QCustomPlot has only that of the cells' centres
   PlotColour cell_colour = PlotColour::Accent, arrow_colour = PlotColour::Text;
 
   const PlotAxes& axes() const { return axes_; }
@@ -48,7 +49,7 @@ class PlotChart : public QCustomPlot {
   std::optional<double> threshold() const;
   void restyle(const QFont& font);
   void fit(const QCPRange& x_within = QCPRange());  // empty: all data
-  void keepScale();                                 // makes a unit of x as long as one of y, if so asked
+  void keepScale();                                 // equal scale of x and y, if requested
   void zoomX(double factor);
   void panX(double share);
 
@@ -93,7 +94,7 @@ class PlotChart : public QCustomPlot {
   QCPItemStraightLine* hover_ = nullptr;
   QCPItemStraightLine* threshold_ = nullptr;
   QCPItemText* readout_ = nullptr;
-  // Of charts in which both axes have one scale: what is to be seen, and what keepScale() made of it.
+  // For charts with equal scales: the requested range, and the one adjusted by keepScale().
   QCPRange wanted_x_, wanted_y_, kept_x_, kept_y_;
   QSize kept_pixels_;
   QPointF pressed_at_;

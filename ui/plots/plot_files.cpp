@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a panel shows as files: points as a table, pictures of one chart or of several.
+// Content of a panel as files: points as a table, pictures of one chart or of several.
 #include "ui/plots/plot_chart.h"
 #include "ui/plots/plot_panel.h"
 
@@ -10,7 +10,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kPictureScale = 2.0;  // pixels of a saved picture to those of the screen
+constexpr double kPictureScale = 2.0;  // pixels of a saved picture per screen pixel
 
 QString quoted(const QString& name) {
   return name.contains(',') || name.contains('"') ? '"' + QString(name).replace('"', "\"\"") + '"' : name;
@@ -20,7 +20,7 @@ QString number(double value) {
   return QString::number(value, 'g', 12);
 }
 
-// Where a panel's chart lies on the page.
+// Position of a panel's chart on the page.
 QRect placeOn(const QWidget& page, const QWidget& chart) {
   return {chart.mapTo(&page, QPoint()), chart.size()};
 }
@@ -34,7 +34,7 @@ void paintChart(PlotChart& chart, QCPPainter& painter, const QPoint& at) {
 
 }  // namespace
 
-// All that is shown, taken in the GUI thread: text is made of it in another.
+// Shown data, copied in the GUI thread; the text is made in another.
 struct PlotPanel::Table {
   struct Points {
     QString name;

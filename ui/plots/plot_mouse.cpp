@@ -8,7 +8,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kGrab_px = 6.0;   // how near to a line the mouse takes hold of it
+constexpr double kGrab_px = 6.0;   // distance at which the mouse grabs a line
 constexpr double kClick_px = 4.0;  // movement up to which a press and release are a click
 
 }  // namespace
@@ -58,7 +58,7 @@ void PlotChart::mouseReleaseEvent(QMouseEvent* event) {
 
 void PlotChart::mouseDoubleClickEvent(QMouseEvent* event) {
   QCustomPlot::mouseDoubleClickEvent(event);
-  pressed_at_ = QPointF(-1e6, -1e6);  // its release is no click
+  pressed_at_ = QPointF(-1e6, -1e6);  // its release is not a click
   fit();
 }
 
@@ -93,7 +93,7 @@ void PlotChart::toggle(QCPAbstractLegendItem* item) {
   const auto owner = std::find_if(series.begin(), series.end(), [&](const SeriesItems& items) {
     return items.plottable == entry->plottable();
   });
-  for (SeriesItems& items : series) {  // what has its colour belongs to it
+  for (SeriesItems& items : series) {  // items of the same colour belong to it
     if (items.style.colour == owner->style.colour) items.plottable->setVisible(visible);
   }
   QFont font = entry->font();

@@ -16,7 +16,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kPan = 0.15, kZoom = 0.8;  // of the range, by one key press
+constexpr double kPan = 0.15, kZoom = 0.8;  // share of the range per key press
 
 QVector<double> toQVector(const std::vector<double>& values) {
   return QVector<double>(values.begin(), values.end());
@@ -102,14 +102,14 @@ void PlotPanel::setCells(const PlotCells& cells, PlotColour colour) {
   QCPColorMapData* const map = chart_->cells()->data();
   const double half_x = 0.5 * cells.extent.width() / cells.columns,
                half_y = 0.5 * cells.extent.height() / cells.rows;
-  map->setSize(cells.columns, cells.rows);  // its range is that of the cells' middles
+  map->setSize(cells.columns, cells.rows);  // its range is that of the cells' centres
   map->setRange({cells.extent.left() + half_x, cells.extent.right() - half_x},
                 {cells.extent.top() + half_y, cells.extent.bottom() - half_y});
   for (int row = 0; row < cells.rows; ++row) {
     for (int column = 0; column < cells.columns; ++column)
       map->setCell(column, row, cells.values[static_cast<std::size_t>(row * cells.columns + column)]);
   }
-  double largest = 0.0;  // not by QCustomPlot's own search, which NaN spoils
+  double largest = 0.0;  // QCustomPlot's own search fails with NaN
   for (const double value : cells.values) {
     if (value > largest) largest = value;
   }

@@ -27,11 +27,11 @@ namespace {
 
 using Kind = PlotPanel::SeriesKind;
 
-constexpr double kScatterReach = 4.5;          // sigmas that the scatter shows at first
-constexpr double kAboveAll = 1.1;              // first threshold against the largest RMS: nothing is rejected
+constexpr double kScatterReach = 4.5;  // initial range of the scatter in sigmas
+constexpr double kAboveAll = 1.1;      // initial threshold relative to the largest RMS: rejects nothing
 constexpr double kShareOfWindowSpacing = 0.8;  // a bar's width
-constexpr int kLeastForArrow = 10;             // circles in a cell, for their mean to mean something
-constexpr std::size_t kMostPoints = 15'000;    // more would only cost time; those marked are all drawn
+constexpr int kLeastForArrow = 10;             // circles in a cell, for a meaningful mean
+constexpr std::size_t kMostPoints = 15'000;    // limits the time of drawing; marked ones are all drawn
 constexpr int kFrame_ms = 30;
 
 template <class Wanted>
@@ -114,7 +114,7 @@ QWidget* ResidualsScreen::makeBar() {
   auto* const layout = new QHBoxLayout(bar);
   layout->setContentsMargins(2, 0, 2, 0);
   camera_ = new QComboBox;
-  camera_->setToolTip(tr("Whose residuals are shown"));
+  camera_->setToolTip(tr("Camera whose residuals are shown"));
   camera_label_ = new QLabel(tr("&Camera"));
   camera_label_->setBuddy(camera_);
   threshold_ = new QDoubleSpinBox;
@@ -123,8 +123,8 @@ QWidget* ResidualsScreen::makeBar() {
   threshold_->setSingleStep(0.005);
   threshold_->setSuffix(" px");
   threshold_->setToolTip(
-      tr("Windows whose circles have a larger RMS are marked. The line in the chart of windows "
-         "can be dragged, too."));
+      tr("Windows with a larger RMS of their circles are marked. The line in the chart of windows "
+         "can also be dragged."));
   auto* const threshold_label = new QLabel(tr("Reject &above"));
   threshold_label->setBuddy(threshold_);
   count_ = new QLabel;
@@ -137,8 +137,8 @@ QWidget* ResidualsScreen::makeBar() {
   layout->addStretch(1);
   show_window_ = new QToolButton;
   show_window_->setText(tr("Show window"));
-  show_window_->setToolTip(tr(
-      "What the camera saw in the window at the cursor, on Detection; click a point or a bar to choose one"));
+  show_window_->setToolTip(
+      tr("Shows the window at the cursor on Detection; click a point or a bar to choose one"));
   show_window_->setEnabled(false);
   layout->addWidget(show_window_);
   layout->addWidget(makeSaveButton(*this, "residuals"));
@@ -235,7 +235,7 @@ void ResidualsScreen::compute() {
 
 void ResidualsScreen::draw() {
   if (statistics_->used.empty()) {
-    setNote(*stack_, tr("The calibration used no circle of this camera."));
+    setNote(*stack_, tr("The calibration used no circles of this camera."));
     showPage(*stack_, StackPage::Note);
     return;
   }
@@ -404,7 +404,7 @@ void ResidualsScreen::markTime() {
                     }));
 }
 
-// Its circles have times of their own, which may lie in another window.
+// A view's circles have their own times, which may be in another window.
 double ResidualsScreen::viewTime_s(int view) const {
   return run_->pass.cameras.at(static_cast<std::size_t>(camera()))
       .views.at(static_cast<std::size_t>(view))

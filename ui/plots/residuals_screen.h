@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reprojection residuals: scatter with sigma ellipses, histogram against the normal distribution, RMS
-// of each window with a threshold that marks windows for rejection, and where on the sensor circles
-// were seen and residuals point.
+// Reprojection residuals: scatter with sigma ellipses, histogram with the normal distribution, RMS of each
+// window with a threshold that marks windows for rejection, and coverage and mean residuals over the sensor.
 #pragma once
 
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -37,11 +36,11 @@ class ResidualsScreen : public QWidget {
   explicit ResidualsScreen(QWidget* parent = nullptr);
   ~ResidualsScreen() override;
 
-  // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
+  // Null: empty. Charts are computed in a thread and shown when ready.
   void setRun(std::shared_ptr<const CalibrationRun> run);
-  void setCalibrating(bool calibrating);  // one is being made
+  void setCalibrating(bool calibrating);  // a calibration is running
 
-  int camera() const;                        // whose residuals are shown
+  int camera() const;                        // shown camera
   std::vector<int> rejectedWindows() const;  // views of that camera above the threshold, ascending
   double threshold_px() const;
   void setThreshold(double rms_px);
@@ -51,11 +50,11 @@ class ResidualsScreen : public QWidget {
 
  signals:
   void timeSelected(double time_s);              // the middle of a window
-  void windowWanted(int camera, double time_s);  // to be looked at
+  void windowWanted(int camera, double time_s);  // to be shown
   void thresholdChanged(double rms_px);
   void recalibrateWithout(
       const std::vector<int>& views);  // of camera(); see core/pipeline/pass/view_rejection.h
-  void ready();                        // all charts show the run that was set last
+  void ready();                        // all charts show the last set run
 
  private:
   void showNote();
@@ -74,7 +73,7 @@ class ResidualsScreen : public QWidget {
   void selectNearest(double x_px, double y_px);
   void selectView(int view);
   double viewTime_s(int view) const;
-  const WindowResidual* windowAtCursor() const;  // null: there is none
+  const WindowResidual* windowAtCursor() const;  // null: none
 
   std::shared_ptr<const CalibrationRun> run_;
   bool calibrating_ = false;

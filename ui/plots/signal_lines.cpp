@@ -6,7 +6,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kSegment = 1024, kShortestSegment = 64;  // samples of a spectrum's parts
+constexpr int kSegment = 1024, kShortestSegment = 64;  // samples of a spectrum's segments
 
 double component(const Eigen::Vector3d& v, std::size_t axis) {
   return v[static_cast<Eigen::Index>(axis)];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An IMU's signal as measured and as a trajectory predicts it, and what is left: made ready for drawing in any thread.
+// An IMU's measured signal, its prediction by a trajectory, and the residual: prepared for drawing in any
+// thread.
 #pragma once
 
 #include "core/numerics/spectrum.h"
@@ -14,7 +15,7 @@ namespace evical::ui {
 
 inline constexpr int kShownLags = 100;  // samples, of autocorrelations
 
-// Of one axis: how white what is left of it is.
+// Whiteness of one axis' residual.
 struct AxisStatistics {
   NoiseSpectrum spectrum;
   std::vector<double> correlation;
@@ -26,7 +27,7 @@ struct SignalLines {
   std::array<AxisStatistics, 3> statistics;
   std::size_t samples = 0;
   double begin_s = 0.0, end_s = 0.0;
-  double rate_hz = 0.0, density = 0.0;  // of the noise as given, unit per sqrt(Hz)
+  double rate_hz = 0.0, density = 0.0;  // given noise density, unit per sqrt(Hz)
 };
 
 SignalLines makeSignalLines(const SensorSignal& signal, double rate_hz, double density);

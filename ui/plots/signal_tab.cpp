@@ -18,7 +18,7 @@ const QString kSignalNames[] = {"x", "y", "z"};
 constexpr double kSignalMsPerS = 1e3;
 constexpr double kNineteenOfTwenty_sigmas = 1.96;
 
-// After a panel's own series: what the noise as given would leave.
+// After a panel's own series: the level of the given noise.
 void addBounds(PlotPanel& panel) {
   for (int edge = 0; edge < 2; ++edge)
     panel.addSeries(Kind::Line, {.colour = PlotColour::Text, .width_px = 1.4, .dashed = true});
@@ -31,7 +31,7 @@ void addAxes(PlotPanel& panel) {
   addBounds(panel);
 }
 
-// Of panels below each other, whose times are the same, the last has the label.
+// Panels below each other share the time axis: the last one has the label.
 PlotPanel* timePanel(const QString& title, const QString& unit, bool last) {
   return new PlotPanel(
       {.title = title, .x_label = last ? SignalTab::tr("time (s)") : "", .y_label = unit, .time = true});
@@ -56,7 +56,7 @@ void SignalTab::lookAt(int look) {
   below_->setCurrentIndex(look);
 }
 
-// Measured ones are broad and pale, so that they are seen under the predicted ones that they agree with.
+// Measured lines are broad and pale, so that they are visible under the predicted ones.
 void SignalTab::makeSignal(const QString& name) {
   signal_ = timePanel(name, unit_, false);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -72,10 +72,10 @@ void SignalTab::makeSignal(const QString& name) {
         {.name = kSignalNames[axis] + tr(" predicted"), .colour = kSignalColours[axis], .width_px = 1.2});
     signal_->setLegendText(predicted, kSignalNames[axis]);
   }
-  signal_->setNote(tr("broad: measured, thin: predicted by the trajectory"));
+  signal_->setNote(tr("broad: measured; thin: predicted by the trajectory"));
 }
 
-// Each axis in a row of its own: over each other only the last one would be seen.
+// Each axis has its own row: on top of each other only the last one would be visible.
 QWidget* SignalTab::makeResiduals() {
   auto* const rows = new QWidget;
   auto* const layout = new QVBoxLayout(rows);
@@ -105,7 +105,7 @@ QWidget* SignalTab::makeSpectrum() {
 
 QWidget* SignalTab::makeCorrelation() {
   correlation_ = new PlotPanel(
-      {.title = tr("Autocorrelation"), .x_label = tr("time apart (ms)"), .y_label = tr("correlation")});
+      {.title = tr("Autocorrelation"), .x_label = tr("lag (ms)"), .y_label = tr("correlation")});
   correlation_->setObjectName("autocorrelation");
   addAxes(*correlation_);
   return correlation_;
@@ -125,7 +125,7 @@ void SignalTab::setLines(const SignalLines& lines) {
     row.setLine(0, lines.residual[axis]);
     row.setData(1, span_s, {-sigma, -sigma});
     row.setData(2, span_s, {sigma, sigma});
-    row.setNote(tr("RMS %1 %3, noise as given %2 %3 (dashed)")
+    row.setNote(tr("RMS %1 %3, given noise %2 %3 (dashed)")
                     .arg(lines.statistics[axis].rms, 0, 'g', 3)
                     .arg(sigma, 0, 'g', 3)
                     .arg(unit_));
@@ -145,13 +145,13 @@ void SignalTab::showStatistics(const SignalLines& lines) {
   spectrum_->setData(3, {0.0, 0.5 * lines.rate_hz}, {lines.density, lines.density});
   spectrum_->setNote(lines.statistics[0].spectrum.density.empty()
                          ? tr("too few samples for a spectrum")
-                         : tr("of measured - predicted; dashed: noise density as given"));
+                         : tr("of measured - predicted; dashed: given noise density"));
   const double bound =
       lines.samples > 0 ? kNineteenOfTwenty_sigmas / std::sqrt(static_cast<double>(lines.samples)) : 0.0;
   const std::vector<double> ends_ms = {apart_ms.front(), apart_ms.back()};
   correlation_->setData(3, ends_ms, {-bound, -bound});
   correlation_->setData(4, ends_ms, {bound, bound});
-  correlation_->setNote(tr("of measured - predicted; dashed: 95 % of white noise's are within"));
+  correlation_->setNote(tr("of measured - predicted; dashed: 95 % limits of white noise"));
   for (PlotPanel* const panel : {spectrum_, correlation_}) panel->fit();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One sensor's signal, measured and predicted by axis, and below one of three looks at what is left: each axis over time,
-// the spectrum, the autocorrelation.
+// One sensor's signal, measured and predicted by axis, and below it one of three views of the residual: each
+// axis over time, the spectrum, the autocorrelation.
 #pragma once
 
 #include <QWidget>
@@ -26,7 +26,7 @@ class SignalTab : public QWidget {
   static QStringList looks();
 
   PlotPanel* signal() const { return signal_; }
-  std::vector<PlotPanel*> overTime() const;  // those whose x is time
+  std::vector<PlotPanel*> overTime() const;  // panels with time as x
 
  private:
   void makeSignal(const QString& name);

@@ -81,7 +81,7 @@ PlotPanel* SignalsScreen::addPanel(const QString& title, const QString& unit) {
   return panel;
 }
 
-// One cursor and one range for all.
+// All have the same cursor and range.
 void SignalsScreen::addToTime(PlotPanel* panel) {
   connect(panel, &PlotPanel::clicked, this, [this](double time_s) {
     setTime(time_s);
@@ -113,10 +113,10 @@ QWidget* SignalsScreen::makeBar() {
   auto* const layout = new QHBoxLayout(bar);
   layout->setContentsMargins(0, 0, 0, 2);
   camera_ =
-      addBox(*layout, camera_label_, tr("Ca&mera"), tr("Whose clock is shown, and whose rotation rate"));
-  imu_ = addBox(*layout, imu_label_, tr("&IMU"), tr("Whose signals are shown"));
+      addBox(*layout, camera_label_, tr("Ca&mera"), tr("Camera whose clock and rotation rate are shown"));
+  imu_ = addBox(*layout, imu_label_, tr("&IMU"), tr("IMU whose signals are shown"));
   QLabel* below_label = nullptr;
-  below_ = addBox(*layout, below_label, tr("&Below"), tr("What is shown of measured - predicted"));
+  below_ = addBox(*layout, below_label, tr("&Below"), tr("View of measured - predicted"));
   below_->setObjectName("below");
   below_->addItems(SignalTab::looks());
   connect(below_, &QComboBox::currentIndexChanged, this, [this](int look) {
@@ -149,7 +149,7 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
 
 void SignalsScreen::showNote() {
   setNote(*stack_, !run_                ? noRunNote(calibrating_)
-                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
+                   : imu_->count() == 0 ? tr("There is no IMU with signals to compare.")
                                         : tr("Computing the signals ..."));
 }
 

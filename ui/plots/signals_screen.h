@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the IMU measured against what the calibrated trajectory says it should have, with the
-// residuals below, by axis, as spectrum or as autocorrelation; and the camera's rotation rate against the IMU's, before and after the time
+// Measured IMU signals and their prediction by the calibrated trajectory, with the residuals below, by axis,
+// as spectrum or as autocorrelation; and the rotation rates of camera and IMU, before and after the time
 // offset. All on the camera's clock.
 #pragma once
 
@@ -29,16 +29,16 @@ class SignalsScreen : public QWidget {
  public:
   explicit SignalsScreen(QWidget* parent = nullptr);
 
-  // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
+  // Null: empty. Charts are computed in a thread and shown when ready.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
-  void setCalibrating(bool calibrating);  // one is being made
+  void setCalibrating(bool calibrating);  // a calibration is running
 
  public slots:
   void setTime(double time_s);  // seconds since the recording's start, camera clock
 
  signals:
   void timeSelected(double time_s);
-  void ready();  // all charts show the run that was set last
+  void ready();  // all charts show the last set run
 
  private:
   void showNote();

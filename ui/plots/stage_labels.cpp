@@ -12,7 +12,7 @@ QString tr(const char* text) {
   return QCoreApplication::translate("stages", text);
 }
 
-// What belongs to one sensor is said together: "camera: rotation vector, translation".
+// Groups the quantities by sensor: "camera: rotation vector, translation".
 QString grouped(const std::vector<std::string>& released) {
   const std::array<QString, 3> owners = {"camera", "IMU", "board"};
   std::array<QStringList, 3> of_owner;
@@ -48,23 +48,22 @@ QStringList stageLines(const std::vector<IterationRecord>& iterations) {
     else if (!freed.isEmpty())
       lines << tr("Stage %1: + %2").arg(stage).arg(freed);
     else
-      lines << tr("Stage %1: the same, weighted by the noise that was found, to the end").arg(stage);
+      lines << tr("Stage %1: the same, weighted by the estimated noise, until convergence").arg(stage);
   }
   return lines;
 }
 
 QString stagesHelp() {
   return tr(
-      "The optimiser frees parameters stage by stage. Before each stage it weighs the sensors anew by the\n"
-      "noise that it has found, and drops outliers: the cost then counts something else, and jumps.\n"
-      "Within a stage it must go down.");
+      "The optimiser frees parameters stage by stage. Before each stage it weights the sensors again by the\n"
+      "estimated noise and drops outliers: this changes the meaning of the cost, which jumps.\n"
+      "Within a stage the cost must decrease.");
 }
 
 QString neededHelp() {
   return tr(
-      "Shaded: the final value, plus and minus one sigma. Dash-dotted: within these lines the verdict asks "
-      "it\n"
-      "to be known (Parameters, needed accuracy); they may lie beyond what is shown.");
+      "Shaded: the final value plus and minus one sigma. Dash-dotted: the accuracy that the verdict needs\n"
+      "(Parameters, needed accuracy); the lines may be outside the shown range.");
 }
 
 }  // namespace evical::ui

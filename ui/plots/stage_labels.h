@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the stages of the optimisation do, in words.
+// Stages of the optimisation as text.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -11,10 +11,10 @@
 
 namespace evical::ui {
 
-// One a stage: "Stage 2: + gyroscope scale and misalignment".
+// One per stage: "Stage 2: + gyroscope scale and misalignment".
 QStringList stageLines(const std::vector<IterationRecord>& iterations);
 
-QString stagesHelp();  // why cost jumps where a stage begins
-QString neededHelp();  // lines and bands of parameters
+QString stagesHelp();  // reason for the jump of the cost between stages
+QString neededHelp();  // lines and bands in the charts of parameters
 
 }  // namespace evical::ui

@@ -15,8 +15,7 @@ Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Vector2d& pixel) {
   const Vector2d straight = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
   const auto ray = unprojectRay(camera, pixel);
   if (!ray) return {straight.x(), straight.y(), 1.0};
-  constexpr double kWidest =
-      3.0;  // x/z that can still be drawn: wider lenses are shown as if they saw so far
+  constexpr double kWidest = 3.0;  // largest x/z that is drawn: wider lenses are clipped to it
   const double length = ray->head<2>().norm(), reach = ray->z() > 0.0 ? length / ray->z() : kWidest;
   const Vector2d shown = ray->head<2>() * (std::min(reach, kWidest) / std::max(length, 1e-12));
   return {shown.x(), shown.y(), 1.0};

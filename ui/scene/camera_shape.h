@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a camera sees, as a pyramid.
+// Field of view of a camera as a pyramid.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
@@ -11,16 +11,16 @@
 
 namespace evical::ui {
 
-// The image's corners in the camera frame at z = 1, in order around it.
+// Corners of the image in the camera frame at z = 1, in order around it.
 struct CameraShape {
   std::array<Eigen::Vector3d, 4> corners;
   double vertical_view_rad = 0.0;
 };
 
-// Where a pixel's ray is at z = 1; of lenses that see very far aside, no further than can be drawn.
+// Point of a pixel's ray at z = 1; for wide-angle lenses clipped to what can be drawn.
 Eigen::Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 
-// Without intrinsics, a camera like any other.
+// Without intrinsics: a typical camera.
 CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics);
 
 }  // namespace evical::ui

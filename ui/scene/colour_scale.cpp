@@ -13,7 +13,7 @@
 namespace evical::ui {
 namespace {
 
-// Lightness goes one way, and away from the background's.
+// Lightness is monotonic, away from the background's.
 constexpr std::array<std::array<double, 3>, 5> kOnDark = {
     {{0.33, 0.36, 0.85}, {0.16, 0.60, 0.80}, {0.20, 0.76, 0.55}, {0.72, 0.85, 0.25}, {1.00, 0.93, 0.35}}};
 constexpr std::array<std::array<double, 3>, 5> kOnLight = {

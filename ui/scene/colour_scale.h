@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values as colours, and the bar that explains them.
+// Mapping of values to colours, and its colour bar.
 #pragma once
 
 #include <QColor>
@@ -17,11 +17,11 @@ struct ColourScale {
   double high = 1.0;
   bool dark = false;  // for a dark background
 
-  // 0 to high, what lies beyond is clamped; of no number, a faint colour that is not on the scale.
+  // Values outside 0 to high are clamped; NaN gets a faint colour that is not part of the scale.
   QColor colourOf(double value) const;
 };
 
-// From 0 to a round number that 98 of 100 values do not exceed; values that are no number do not count.
+// End of a scale from 0: a round number that 98 of 100 values do not exceed; NaN does not count.
 double scaleEnd(std::vector<double> values);
 
 void paintColourBar(QPainter& painter, const QRectF& area, const ColourScale& scale);

@@ -14,7 +14,7 @@
 namespace evical::ui {
 namespace {
 
-// Devices come first: a graphics card's own driver is listed before the software renderer.
+// Devices first: a graphics card's own driver precedes the software renderer.
 std::vector<EGLDisplay> candidateDisplays() {
   const auto get_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
@@ -68,7 +68,7 @@ std::shared_ptr<EglContext> EglContext::create(std::string& problem) {
   return nullptr;
 }
 
-// The display is never terminated: that would take the contexts of other views with it.
+// The display is never terminated: that would destroy the contexts of other views.
 EglContext::~EglContext() {
   if (isCurrent()) doneCurrent();
   eglDestroyContext(display_, context_);

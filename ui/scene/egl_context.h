@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An OpenGL context of our own that belongs to no window: the same with a desktop, under
-// Xvfb and without any display.
+// An OpenGL context without a window, which works on a desktop, under Xvfb and without any display.
 #pragma once
 
 #include <memory>
@@ -13,7 +12,7 @@ namespace evical::ui {
 
 class EglContext {
  public:
-  // Nothing where no EGL device gives OpenGL 3.2; then `problem` says why.
+  // Null if no EGL device provides OpenGL 3.2; `problem` is then the reason.
   static std::shared_ptr<EglContext> create(std::string& problem);
   ~EglContext();
   EglContext(const EglContext&) = delete;
@@ -23,8 +22,8 @@ class EglContext {
   void doneCurrent();
   bool isCurrent() const;
 
-  // Current for a scope. A context of Qt's is put aside and comes back: two kinds of context cannot be
-  // current in one thread.
+  // Current for a scope. A context of Qt is released and restored: two kinds of contexts cannot be current in
+  // one thread.
   class Scope {
    public:
     explicit Scope(EglContext& context);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 12000;
 
-// By pixel; of each the newest.
+// Newest event by pixel.
 std::vector<Event> newestByPixel(const std::vector<Event>& events, const Resolution& resolution_px) {
   const auto width = static_cast<std::size_t>(resolution_px.width_px);
   const auto height = static_cast<std::size_t>(resolution_px.height_px);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The events around an instant, as they lie on the image plane of the camera's frustum.
+// Events around the cursor's time on the image plane of the camera's frustum.
 #pragma once
 
 #include "core/data/event.h"
@@ -13,10 +13,10 @@
 
 namespace evical::ui {
 
-// A camera's events of any time; what it is asked in goes on in another thread.
+// Access to a camera's events by time, usable in another thread.
 struct EventLookup {
   std::size_t camera = 0;
-  std::function<std::vector<Event>(double begin_s, double end_s)> between = {};  // none: nothing is known
+  std::function<std::vector<Event>(double begin_s, double end_s)> between = {};  // none: no events
 };
 
 struct FrustumEvent {
@@ -29,7 +29,8 @@ struct FrustumEvents {
   std::vector<FrustumEvent> events;
 };
 
-// One a pixel, its newest; of very many every few, so that a frame stays fast. Empty without a lens.
+// The newest event of each pixel; thinned out if there are very many, to keep the frame rate. Empty without a
+// lens.
 std::vector<FrustumEvent> onImagePlane(const std::vector<Event>& events,
                                        const std::optional<CameraIntrinsics>& intrinsics);
 

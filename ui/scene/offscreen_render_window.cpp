@@ -15,10 +15,10 @@ vtkStandardNewMacro(OffscreenRenderWindow);
 OffscreenRenderWindow::OffscreenRenderWindow() {
   FrameBlitMode = NoBlit;
   OwnContext = 1;
-  MultiSamples = 0;  // in software it costs several times the whole frame
+  MultiSamples = 0;  // in software it takes several times the rest of the frame
 }
 
-// Here and not in the base class, which no longer reaches our MakeCurrent().
+// Here, since the base class's destructor cannot call our MakeCurrent().
 OffscreenRenderWindow::~OffscreenRenderWindow() {
   if (!context_) return;
   const EglContext::Scope scope(*context_);
@@ -38,8 +38,8 @@ void OffscreenRenderWindow::OpenGLInit() {
   if (Initialized) OpenGLInitState();
 }
 
-// The base class asks OpenGL for its version before its functions are loaded, and takes GLEW at its word when
-// that, built for GLX, misses a GLX display: by then all functions are there.
+// The base class asks OpenGL for its version before its functions are loaded, and accepts GLEW's result if
+// that, built for GLX, finds no GLX display: all functions are loaded by then.
 void OffscreenRenderWindow::OpenGLInitContext() {
   if (Initialized) return;
   ContextCreationTime.Modified();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A VTK window without a window: draws in an EglContext and hands out the picture. For sources that draw with
-// VTK; not for headers that Qt's moc reads.
+// VTK render window without a window: draws in an EglContext and returns the picture. For sources that draw
+// with VTK; not for headers that Qt's moc reads.
 #pragma once
 
 #include "ui/scene/egl_context.h"
@@ -20,7 +20,7 @@ class OffscreenRenderWindow : public vtkGenericOpenGLRenderWindow {
 
   void setContext(std::shared_ptr<EglContext> context) { context_ = std::move(context); }
 
-  // Draws the scene and reads it back; a null image where the context cannot be had.
+  // Draws the scene and reads it back; a null image if the context cannot be made current.
   QImage drawImage(const QSize& size_px);
 
   void MakeCurrent() override;

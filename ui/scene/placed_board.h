@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board in its place.
+// A board with its pose.
 #pragma once
 
 #include "core/geometry/board.h"

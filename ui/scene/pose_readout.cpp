@@ -35,7 +35,7 @@ PoseReadout::PoseReadout(QWidget* parent) : QWidget(parent) {
   const std::array<QString, 4> widest = {"-0.000, -0.000, -0.000 m", "00.00 m/s", "0000.0 \u00b0/s",
                                          "00.000 px"};
   for (std::size_t k = 0; k < names.size(); ++k) {
-    auto* const pair = new QWidget(this);  // stays together
+    auto* const pair = new QWidget(this);  // keeps caption and value together
     auto* const row = new QHBoxLayout(pair);
     row->setContentsMargins(0, 0, 0, 0);
     row->setSpacing(6);
@@ -49,7 +49,7 @@ PoseReadout::PoseReadout(QWidget* parent) : QWidget(parent) {
     all->addWidget(pair);
   }
   values_[0]->setToolTip(tr("In the board's frame: x along a row, y down the columns, z into the board"));
-  values_[3]->setToolTip(tr("Of the board view nearest in time, RMS over its circles"));
+  values_[3]->setToolTip(tr("RMS over the circles of the board view nearest in time"));
   setNumbers(PoseNumbers{});
 }
 

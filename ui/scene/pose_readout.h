@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers at the cursor's time, in a row.
+// Numbers at the cursor's time, in a row.
 #pragma once
 
 #include <QWidget>
@@ -14,7 +14,7 @@ class QLabel;
 namespace evical::ui {
 
 struct PoseNumbers {
-  bool of_camera = false;  // else of the IMU
+  bool of_camera = false;  // otherwise of the IMU
   std::optional<Eigen::Vector3d> position_m;
   std::optional<double> speed_m_s, rotation_rate_rad_s, residual_px;
 };

@@ -14,7 +14,7 @@ void addSampleScene(vtkRenderer* renderer) {
     track->speeds_m_s.push_back(time_s);
   }
   track->stations.push_back({0.0, {pose}});
-  TrajectoryScene scene(renderer);  // what it has added stays with the renderer
+  TrajectoryScene scene(renderer);  // its additions stay with the renderer
   scene.setBoard(Board{});
   scene.setTrack(track);
   scene.setGravity(Eigen::Vector3d(0.0, 9.81, 0.0));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A little of everything that the trajectory's scene draws: whoever has drawn it
-// once has compiled all shaders.
+// Contains every kind of object of the trajectory's scene: drawing it once compiles all shaders.
 #pragma once
 
 class vtkRenderer;

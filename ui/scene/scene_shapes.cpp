@@ -33,13 +33,13 @@ Corners paperAt(const Board& board, double z_m, double wider_m = 0.0) {
   return rectangle(first.array() - wider_m, last.array() + wider_m, z_m);
 }
 
-// So that ink, paper and back are told apart in depth.
+// Offset in depth between ink, paper and back.
 double lift(const Board& board) {
   constexpr double kOfRadius = 0.05, kOfSpacing = 0.0125;
   return board.hasCircles() ? kOfRadius * board.radius_m : kOfSpacing * board.spacing_m;
 }
 
-// None of a board that nobody can print.
+// Empty for a board that cannot be printed.
 std::vector<PaintedBox> squaresOf(const Board& board) {
   try {
     return boardSquares(board, {});
@@ -116,7 +116,7 @@ void addBoard(ShapeBuilder& shapes, const PlacedBoard& placed, const BoardColour
   shapes.polygon(inWorld(placed, paperAt(board, 0.0)));
   shapes.setColour(colours.back);
   shapes.polygon(inWorld(placed, paperAt(board, lift_m)));
-  // Tags are dark, and have bright bits on them.
+  // Tags are dark with bright bits on top.
   for (const PaintedBox& box : squaresOf(board)) {
     const Vector2d last = box.corner_m + box.size_m;
     shapes.setColour(box.bright ? paper : ink);
@@ -137,7 +137,7 @@ void addBoard(ShapeBuilder& shapes, const PlacedBoard& placed, const BoardColour
 }
 
 void addBoardEdge(ShapeBuilder& shapes, const PlacedBoard& placed) {
-  // Apart from the paper's own edge.
+  // Separate from the paper's edge.
   const auto corners = inWorld(placed, paperAt(placed.board, 0.0, 2.0 * lift(placed.board)));
   for (std::size_t k = 0; k < 4; ++k) shapes.line(corners[k], corners[(k + 1) % 4]);
 }

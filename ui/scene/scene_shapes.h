@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shapes of a calibration scene as coloured lines and polygons. For sources that draw with VTK.
+// Shapes of a calibration scene as coloured lines and polygons. For sources that draw with VTK.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -21,7 +21,7 @@ class vtkPolyData;
 
 namespace evical::ui {
 
-// One polydata of many shapes: an actor each would cost several times the frame.
+// Collects many shapes in one polydata: one actor each would take several times as long to draw.
 class ShapeBuilder {
  public:
   ShapeBuilder();
@@ -45,7 +45,7 @@ class ShapeBuilder {
 struct BoardColours {
   QColor paper, ink, back, edge;
 };
-// The paper's rectangle in the board frame: first and opposite corner.
+// Rectangle of the paper in the board frame: first and opposite corner.
 std::array<Eigen::Vector2d, 2> paperCorners_m(const Board& board);
 
 void addBoard(ShapeBuilder& shapes, const PlacedBoard& placed, const BoardColours& colours);
@@ -60,7 +60,8 @@ void addAxes(ShapeBuilder& shapes, const RigidTransform& world_from_axes, double
              const std::array<QColor, 3>& colours);
 void addArrow(ShapeBuilder& shapes, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-// Square, in the plane through `centre_m` across `up`, its lines at multiples of the spacing from there.
+// Square in the plane through `centre_m` perpendicular to `up`, with lines at multiples of the spacing from
+// there.
 void addGrid(ShapeBuilder& shapes, const Eigen::Vector3d& centre_m, const Eigen::Vector3d& up,
              const Eigen::Vector3d& along, double spacing_m, int half_count);
 

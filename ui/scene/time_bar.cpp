@@ -21,12 +21,12 @@ namespace evical::ui {
 namespace {
 
 constexpr int kFrame_ms = 33;
-constexpr double kStep_s = 0.02;  // where nothing says what to step to
+constexpr double kStep_s = 0.02;  // without stops
 constexpr double kSame_s = 1e-6;
 constexpr double kSteps_1_s = 1e3;  // of the slider
 constexpr int kRealSpeed = 3;       // in the list
 
-// A press anywhere on it goes there at once, as on Detection's timeline.
+// A press anywhere moves there immediately, like on Detection's timeline.
 class ScrubSlider : public QSlider {
  public:
   explicit ScrubSlider(QWidget* parent) : QSlider(Qt::Horizontal, parent) {}
@@ -55,7 +55,7 @@ TimeBar::TimeBar(QWidget* parent)
   row->setSpacing(4);
   connect(addButton("time_to_start", "to-start", tr("To the start (Home)")), &QToolButton::clicked, this,
           &TimeBar::toStart);
-  connect(addButton("time_step_back", "step-back", tr("Board view before (Left)")), &QToolButton::clicked,
+  connect(addButton("time_step_back", "step-back", tr("Previous board view (Left)")), &QToolButton::clicked,
           this, [this] { step(-1); });
   play_ = addButton("time_play", "play", tr("Play (Space)"));
   connect(play_, &QToolButton::clicked, this, &TimeBar::togglePlaying);
@@ -69,7 +69,7 @@ TimeBar::TimeBar(QWidget* parent)
   row->addWidget(label_);
   slider_->setObjectName("time_slider");
   slider_->setAccessibleName(tr("Time"));
-  slider_->setToolTip(tr("Drag to go through the recording's time; the other pages go along"));
+  slider_->setToolTip(tr("Drag to change the time; the other pages follow"));
   slider_->setFocusPolicy(Qt::TabFocus);
   label_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   label_->setMinimumWidth(label_->fontMetrics().horizontalAdvance("000.000 / 000.00 s") + 6);
@@ -99,8 +99,8 @@ void TimeBar::addSpeeds() {
                     speed);
   speed_->setCurrentIndex(kRealSpeed);
   speed_->setObjectName("time_speed");
-  speed_->setAccessibleName(tr("Speed of playing"));
-  speed_->setToolTip(tr("Speed of playing, against the recording's own"));
+  speed_->setAccessibleName(tr("Playback speed"));
+  speed_->setToolTip(tr("Playback speed, relative to the recording"));
 }
 
 void TimeBar::setTimes(double begin_s, double end_s, std::vector<double> stops_s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Below the 3D view: play, pause, scrub and step through the recording's time.
+// Controls below the 3D view: play, pause, scrub and step through the recording's time.
 #pragma once
 
 #include <QElapsedTimer>
@@ -21,7 +21,7 @@ class TimeBar : public QWidget {
  public:
   explicit TimeBar(QWidget* parent = nullptr);
 
-  // Steps go from one of these times to the next, by some hundredths of a second where there are none. Ascending.
+  // Steps go from one of these times to the next, or by a few hundredths of a second without any. Ascending.
   void setTimes(double begin_s, double end_s, std::vector<double> stops_s);
   void setNoTimes();  // nothing to play
   double begin_s() const { return begin_s_; }
@@ -30,7 +30,7 @@ class TimeBar : public QWidget {
   bool isPlaying() const { return timer_.isActive(); }
 
  public slots:
-  void setTime(double time_s);  // shows it, says nothing
+  void setTime(double time_s);  // without a signal
   void setPlaying(bool playing);
   void togglePlaying() { setPlaying(!isPlaying()); }
   void step(int direction);
@@ -38,7 +38,7 @@ class TimeBar : public QWidget {
   void toEnd();
 
  signals:
-  void timeSelected(double time_s);  // also while it plays
+  void timeSelected(double time_s);  // also during playback
   void playingChanged(bool playing);
 
  protected:

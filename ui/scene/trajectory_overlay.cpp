@@ -13,7 +13,7 @@ constexpr double kMargin_px = 12.0;
 constexpr double kBarWidth_px = 100.0, kBarHeight_px = 220.0;
 constexpr double kCursor_px = 6.0;
 
-// With a halo: it may lie on anything.
+// With a halo, for any background.
 void paintLabel(QPainter& painter, const QPointF& centre, const QString& text, const QColor& colour) {
   const QFontMetricsF metrics(painter.font());
   QPainterPath path;
@@ -46,7 +46,7 @@ void paintLegend(QPainter& painter, const std::vector<LegendEntry>& legend) {
   }
 }
 
-// Bottom left; cameras and their axes go by behind it.
+// Bottom left; cameras and their axes may pass behind it.
 void paintHint(QPainter& painter, const TrajectoryOverlay& overlay) {
   const QFontMetricsF metrics(painter.font());
   const QPointF centre(kMargin_px + 0.5 * metrics.horizontalAdvance(overlay.hint),

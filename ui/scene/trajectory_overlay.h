@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is painted over a trajectory's picture: names, cursor, colour bar, words.
+// Painted over a trajectory's picture: names, cursor, colour bar, texts.
 #pragma once
 
 #include "ui/scene/trajectory_scene.h"
@@ -19,7 +19,7 @@ struct TrajectoryOverlay {
   std::optional<Eigen::Vector3d> cursor_m;
   std::optional<ColourScale> scale;
   QString hint;     // small, in the corner
-  QString message;  // in the middle where `in_middle`, else below
+  QString message;  // in the middle if `in_middle`, else below
   bool in_middle = false;
 };
 

@@ -24,10 +24,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// In parts of the board's diagonal.
+// Relative to the board's diagonal.
 constexpr double kStationDepth = 0.07, kCurrentDepth = 0.13, kImuAxes = 0.16, kWorldAxes = 0.2, kArrow = 0.28;
 constexpr double kImagePlaneOpacity = 0.25;
-constexpr double kSnug = 0.85;  // a trajectory leaves much of the sphere around it empty
+constexpr double kSnug = 0.85;  // a trajectory fills little of the sphere around it
 constexpr double kGridCells = 14.0;
 
 class Part {
@@ -42,7 +42,7 @@ class Part {
   }
   void show(const ShapeBuilder& shapes) { shapes.writeTo(data_); }
   void setVisible(bool visible) { actor_->SetVisibility(visible); }
-  // Drawn like an opaque part, on what was drawn before: VTK's own pass for translucent parts costs more than
+  // Drawn like an opaque part, on top of earlier ones: VTK's own pass for translucent parts takes longer than
   // the rest of the frame.
   void setOpacity(double opacity) {
     actor_->GetProperty()->SetOpacity(opacity);
@@ -65,7 +65,7 @@ BoardColours boardColours() {
   return {QColor(0xff, 0xff, 0xff), QColor(0x2a, 0x2d, 0x33), QColor(0xc3, 0xc8, 0xd0), {}};
 }
 
-// One that the trajectory's colours do not hold.
+// A colour that is not among the trajectory's.
 QColor rawPoseColour() {
   return theme().dark ? theme().bad : theme().good;
 }
@@ -85,7 +85,7 @@ class Box {
   Vector3d least_ = Vector3d::Zero(), most_ = Vector3d::Zero();
 };
 
-// Against that of events.
+// Relative to that of events.
 double lengthOf(CameraKind kind) {
   constexpr double kShorter = 0.75;
   return kind == CameraKind::Events ? 1.0 : kind == CameraKind::Frames ? kShorter : kShorter * kShorter;
@@ -128,7 +128,7 @@ struct TrajectoryScene::Private {
   TrajectoryColour colour = TrajectoryColour::Speed;
   std::array<bool, kSceneLayerCount> visible;
 
-  // Drawn in this order.
+  // In the order of drawing.
   Part ground, board, board_edge, track, stations, current, imu_axes, raw_poses, gravity, axes, image_plane,
       events;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene a view.
+// Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene per view.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -43,7 +43,7 @@ struct SceneLabel {
   QColor colour;
 };
 
-// What a colour stands for.
+// Meaning of a colour.
 struct LegendEntry {
   QString text;
   QColor colour;
@@ -60,33 +60,33 @@ class TrajectoryScene {
   explicit TrajectoryScene(vtkRenderer* renderer);
   ~TrajectoryScene();
 
-  void setBoard(const std::optional<Board>& board);  // whose frame is the world
+  void setBoard(const std::optional<Board>& board);  // its frame is the world frame
   void setFurtherBoards(std::vector<PlacedBoard> boards);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
-  // By camera; those that are not told have events. Kinds differ in colour and in how long their frusta are, as the
-  // cameras of one sensor lie in each other.
+  // By camera; by default event cameras. Kinds differ in colour and in the length of their frustums, since
+  // cameras of one sensor coincide.
   void setCameraKinds(const std::vector<CameraKind>& kinds);
   void setTrack(std::shared_ptr<const TrajectoryTrack> track);
   void setGravity(const std::optional<Eigen::Vector3d>& gravity_in_world_m_s2);
-  // Poses from single views, of cameras or already of the IMU.
+  // Poses from single views, of cameras or converted to the IMU.
   void setRawPoses(const std::vector<RigidTransform>& world_from_bodies);
   void setInstant(const std::vector<RigidTransform>& world_from_cameras,
                   const std::vector<RigidTransform>& world_from_imus);
 
-  // They go with their camera.
+  // They move with their camera.
   void setEvents(FrustumEvents events);
 
   void setTrajectoryColour(TrajectoryColour colour);
   void setVisible(SceneLayer layer, bool visible);
   bool isVisible(SceneLayer layer) const;
   void setPixelRatio(double ratio);
-  void applyTheme();  // the one that is set now
+  void applyTheme();  // the current theme
 
-  // What the trajectory is coloured by; nothing without one.
+  // Quantity of the trajectory's colours; none without a trajectory.
   std::optional<ColourScale> colourScale() const;
   std::vector<SceneLabel> labels() const;
-  std::vector<LegendEntry> legend() const;  // of the kinds of cameras, where there are several
-  bool empty() const;                       // neither board nor poses
+  std::vector<LegendEntry> legend() const;  // for the kinds of cameras, if there are several
+  bool empty() const;                       // no board and no poses
   SceneExtent extent() const;
   double gridSpacing_m() const;
 
@@ -97,7 +97,7 @@ class TrajectoryScene {
   void buildRawPoses();
   void buildInstant();
   void buildEvents();
-  void buildSurroundings();  // all that depends on how large the rest is
+  void buildSurroundings();  // objects whose size depends on the others
 
   struct Private;
   std::unique_ptr<Private> d_;

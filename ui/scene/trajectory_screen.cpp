@@ -29,10 +29,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPick_px = 12.0;
-constexpr double kSameDistance_px = 2.0;  // then the nearer to the eye is meant
+constexpr double kSameDistance_px = 2.0;  // then the one nearer to the eye is chosen
 constexpr double kNearestRawPose_s = 0.1;
 constexpr double kEventsAround_s = 0.005;
-constexpr double kCameraViewMargin = 1.2;  // of its image, so that the frustum frames it
+constexpr double kCameraViewMargin = 1.2;  // around its image, so that the frustum frames it
 
 struct Track {
   std::shared_ptr<const CalibrationState> state;
@@ -44,7 +44,7 @@ struct TimedPoint {
   Vector3d at_m;
 };
 
-// The point under the mouse; several pass there more often than not.
+// Trajectory point under the mouse; often there are several.
 std::optional<double> timeUnder(const QPointF& position, const std::vector<TimedPoint>& points,
                                 const ViewPose& pose, const QSizeF& screen) {
   std::vector<double> distances_px;
@@ -92,20 +92,20 @@ struct TrajectoryScreen::Private {
   FileSaver* saver;
   TrajectoryScene scene;
 
-  std::optional<Board> board;          // whose frame is the world
-  std::vector<Board> further_boards;   // where they are, the state tells
+  std::optional<Board> board;          // its frame is the world frame
+  std::vector<Board> further_boards;   // their poses are in the state
   std::vector<SeenBoard> seen_boards;  // by camera
   std::vector<CameraShape> cameras;
   std::vector<std::optional<CameraIntrinsics>> lenses;  // by camera
   std::function<EventLookup()> event_source;
-  std::shared_ptr<const CalibrationState> state;  // that is drawn
+  std::shared_ptr<const CalibrationState> state;  // drawn state
   std::shared_ptr<const TrajectoryTrack> track = std::make_shared<TrajectoryTrack>();
   std::vector<ViewPoseInput> pose_inputs;  // by camera
   std::vector<ViewPoses> view_poses;
   std::optional<RigInstant> instant;
   std::vector<RigidTransform> current_cameras;
   double time_s = 0.0;
-  bool placed = false;  // the view looks at what there is
+  bool placed = false;  // the view has been fitted to the content
 
   LatestJob track_job{OutdatedWork::Delivered};
   LatestJob poses_job{OutdatedWork::Delivered};
@@ -172,7 +172,7 @@ void TrajectoryScreen::Private::addKeys() {
 
 void TrajectoryScreen::Private::connectTools() {
   connect(time_bar, &TimeBar::timeSelected, q, [this](double picked_s) { select(picked_s); });
-  // The other pages, none of which is in view, need not follow every frame.
+  // The other pages are hidden and need not follow every frame.
   connect(time_bar, &TimeBar::playingChanged, q, [this](bool playing) {
     if (!playing) emit q->timeSelected(time_s);
   });
@@ -243,7 +243,7 @@ void TrajectoryScreen::Private::placeFurtherBoards() {
   scene.setFurtherBoards(std::move(boards));
 }
 
-// Of the board that a camera sees; nothing where nobody knows it yet.
+// Pose of the board that a camera sees; none if it is not yet known.
 std::optional<RigidTransform> TrajectoryScreen::Private::worldFromBoardOf(std::size_t camera) const {
   const std::size_t index = camera < seen_boards.size() ? seen_boards[camera].index : 0;
   if (index == 0) return RigidTransform{};
@@ -322,7 +322,7 @@ void TrajectoryScreen::Private::estimatePoses() {
 void TrajectoryScreen::Private::showTrack(Track new_track) {
   state = std::move(new_track.state);
   track = std::move(new_track.samples);
-  const bool known = state && hasTrajectory(*state) && !state->imus.empty();  // cameras cannot tell
+  const bool known = state && hasTrajectory(*state) && !state->imus.empty();  // cameras do not measure it
   scene.setGravity(known ? std::optional(state->gravity_in_world_m_s2) : std::nullopt);
   placeFurtherBoards();
   scene.setTrack(track);
@@ -343,8 +343,8 @@ void TrajectoryScreen::Private::showViewPoses(std::vector<ViewPoses> poses) {
   placeWorld();
 }
 
-// From the trajectory's start to its end, with a stop at each view of the first camera; before there is a trajectory,
-// as far as there are views.
+// From the trajectory's start to its end, with a stop at each view of the first camera; before there is a
+// trajectory, the span of the views.
 void TrajectoryScreen::Private::offerTimes() {
   std::vector<double> stops_s;
   if (!view_poses.empty())
@@ -379,7 +379,7 @@ void TrajectoryScreen::Private::lookUpEvents() {
   });
 }
 
-// Those of the IMU, so that they ought to lie on the trajectory; of the cameras until their place is known.
+// Poses of the IMU, which should be on the trajectory; poses of the cameras until the extrinsics are known.
 void TrajectoryScreen::Private::showRawPoses() {
   std::vector<RigidTransform> bodies;
   for (std::size_t k = 0; k < view_poses.size(); ++k) {
@@ -422,7 +422,7 @@ void TrajectoryScreen::Private::showInstant() {
 void TrajectoryScreen::Private::showNumbers() {
   PoseNumbers numbers;
   if (instant) {
-    numbers.of_camera = state->imus.empty();  // the body is the reference camera then
+    numbers.of_camera = state->imus.empty();  // the body is then the reference camera
     numbers.position_m = instant->imu.world_from_imu.translation_m;
     numbers.speed_m_s = instant->imu.velocity_m_s.norm();
     numbers.rotation_rate_rad_s = instant->imu.angular_velocity_rad_s.norm();
@@ -443,7 +443,7 @@ void TrajectoryScreen::Private::moveView() {
   view->redraw();
 }
 
-// The view goes to what there is once; afterwards it is the user's.
+// The view is fitted to the content once; afterwards the user controls it.
 void TrajectoryScreen::Private::placeWorld() {
   const SceneExtent extent = scene.extent();
   view->setWorld(extent.up, extent.front, extent.centre_m, extent.radius_m);
@@ -484,7 +484,7 @@ void TrajectoryScreen::Private::saveTable() {
 
 QString TrajectoryScreen::Private::message() const {
   if (!track->empty()) return {};
-  if (!view_poses.empty()) return tr("Poses of single views. The trajectory comes with the calibration.");
+  if (!view_poses.empty()) return tr("Poses of single views. The trajectory is shown after the calibration.");
   return tr("No calibration yet: press Calibrate");
 }
 
@@ -500,7 +500,7 @@ void TrajectoryScreen::Private::paint(QPainter& painter) const {
   overlay.in_middle = scene.empty();
   if (!scene.empty()) {
     overlay.hint =
-        tr("Grid %1 m. Drag: orbit, right drag: pan, wheel: zoom, click the trajectory: go to that time")
+        tr("Grid %1 m. Drag: orbit, right drag: pan, wheel: zoom, click on the trajectory: go to that time")
             .arg(scene.gridSpacing_m());
   }
   paintOverlay(painter, overlay);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The calibrated motion in front of the board, in 3D. Knows no document: data come by setters, also while a
-// calibration runs; clicks on the trajectory and what is played go out as times. Times are seconds since the recording's start
-// on the first camera's clock.
+// 3D view of the calibrated motion in front of the board. Independent of documents: data are set, also during
+// a calibration; clicks on the trajectory and playback emit times. Times are seconds since the recording's
+// start on the first camera's clock.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -26,10 +26,10 @@ class TrajectoryScreen : public QWidget {
   explicit TrajectoryScreen(QWidget* parent = nullptr);
   ~TrajectoryScreen() override;
 
-  // Loads the graphics driver now and elsewhere, so that showing the screen for the first time stalls nobody.
+  // Loads the graphics driver in the background, so that the first display does not stall.
   void startInBackground();
 
-  // Forgets all that was set.
+  // Removes all data.
   void clear();
   void setBoards(const Session& session);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
@@ -37,17 +37,17 @@ class TrajectoryScreen : public QWidget {
   // A finished calibration: trajectory, residuals, and poses from its single views. Null: none.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
 
-  // While a calibration runs: the estimate so far, and before there is one the board views so far, from which
-  // poses are computed (again given with more views: only the new ones).
+  // During a calibration: the current estimate, and before there is one the current board views, from which
+  // poses are computed (only for views that are new since the last call).
   void setState(std::shared_ptr<const CalibrationState> state);
   void setDetections(SharedViews views, const CameraIntrinsics& intrinsics, std::size_t camera = 0);
 
-  // Asked in the GUI thread for what can be looked up now, whenever the cursor moves while the page is in view.
+  // Called in the GUI thread for the available events, whenever the cursor moves while the page is visible.
   void setEventSource(std::function<EventLookup()> source);
 
   double time_s() const;
   bool isPlaying() const;
-  // Work in the background is under way.
+  // True while background work is running.
   bool busy() const;
 
   View3D* view() const;

@@ -49,7 +49,7 @@ void TrajectoryTools::changeEvent(QEvent* event) {
 }
 
 void TrajectoryTools::addColours() {
-  auto* const pair = new QWidget(this);  // stays together
+  auto* const pair = new QWidget(this);  // keeps label and box together
   auto* const row = new QHBoxLayout(pair);
   row->setContentsMargins(2, 0, 2, 0);
   auto* const label = new QLabel(tr("&Colour by"), pair);
@@ -58,8 +58,8 @@ void TrajectoryTools::addColours() {
   colours_->setAccessibleName(tr("Colour by"));
   colours_->addItems({tr("Speed"), tr("Residual")});
   colours_->setToolTip(
-      tr("What the trajectory's colour says: the IMU's speed, or how far the board's circles lie from\n"
-         "where the calibration expects them (of the nearest view; known after a calibration)"));
+      tr("Quantity of the trajectory's colour: the IMU's speed, or the residual of the board's circles in\n"
+         "the nearest view (available after a calibration)"));
   connect(colours_, &QComboBox::activated, this,
           [this](int index) { emit colourChosen(static_cast<TrajectoryColour>(index)); });
   row->addWidget(label);
@@ -71,18 +71,18 @@ void TrajectoryTools::addColours() {
 void TrajectoryTools::addLayers() {
   const std::array<std::pair<QString, QString>, kSceneLayerCount> texts = {{
       {tr("Board"), tr("The board with its circles")},
-      {tr("Trajectory"), tr("The IMU's way through the world, from the spline")},
+      {tr("Trajectory"), tr("Trajectory of the IMU in the world, from the spline")},
       {tr("Cameras"), tr("The cameras at regular intervals")},
       {tr("Camera now"), tr("The cameras at the cursor's time")},
       {tr("IMU axes"), tr("The IMUs' axes at the cursor's time")},
       {tr("Poses of single views"),
-       tr("Computed from each board view by itself: they scatter about a trajectory that is right")},
-      {tr("Gravity"), tr("Its direction as estimated")},
+       tr("Computed from single board views: they should scatter around the trajectory")},
+      {tr("Gravity"), tr("Estimated direction of gravity")},
       {tr("Ground"), tr("A level grid below everything")},
-      {tr("Board axes"), tr("x, y and z of the board's frame, which is the world")},
+      {tr("Board axes"), tr("x, y and z of the board's frame, which is the world frame")},
       {tr("Events now"), tr("The camera's events at the cursor's time, on the image plane of its frustum")},
   }};
-  QToolButton* const button = addButton(tr("Layers"), "layers", tr("What is drawn"));
+  QToolButton* const button = addButton(tr("Layers"), "layers", tr("Visible layers"));
   button->setPopupMode(QToolButton::InstantPopup);
   auto* const menu = new QMenu(button);
   menu->setToolTipsVisible(true);
@@ -115,15 +115,15 @@ void TrajectoryTools::addViews() {
 void TrajectoryTools::addFollowing() {
   follow_ = new QAction(tr("Follow camera"), this);
   follow_->setObjectName("follow");
-  follow_->setToolTip(tr("Keep the camera in the middle as time goes on (F)"));
+  follow_->setToolTip(tr("Keep the camera in the middle (F)"));
   through_ = new QAction(tr("Through camera"), this);
   through_->setObjectName("through_camera");
-  through_->setToolTip(tr("See the board as the camera does; drag to leave (C)"));
+  through_->setToolTip(tr("View from the camera; drag to leave (C)"));
   follow_->setShortcut(QKeySequence("F"));
   through_->setShortcut(QKeySequence("C"));
   for (QAction* action : {follow_, through_}) {
     action->setShortcutContext(Qt::WidgetWithChildrenShortcut);
-    parentWidget()->addAction(action);  // works wherever the focus is on the screen
+    parentWidget()->addAction(action);  // works with any focus on the screen
     action->setCheckable(true);
     QToolButton* const button =
         addButton(action->text(), action == follow_ ? "follow" : "camera", action->toolTip());
@@ -141,7 +141,7 @@ void TrajectoryTools::addFollowing() {
 void TrajectoryTools::addSaving() {
   constexpr double kOnce = 1.0, kTwice = 2.0;
   QToolButton* const button =
-      addButton(tr("Save"), "save", tr("Save what is seen as a picture, or the trajectory as a table"));
+      addButton(tr("Save"), "save", tr("Save the view as a picture, or the trajectory as a table"));
   button->setObjectName("save_view");
   button->setPopupMode(QToolButton::InstantPopup);
   button->setFocusPolicy(Qt::StrongFocus);

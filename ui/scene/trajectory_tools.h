@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tool bar of the trajectory screen: colour, layers, views, following the camera. Where it has no room in one row it
-// takes another.
+// Tool bar of the trajectory screen: colour, layers, views, following the camera. Continues in a second row
+// if space is short.
 #pragma once
 
 #include "ui/scene/trajectory_scene.h"
@@ -24,8 +24,8 @@ class TrajectoryTools : public QWidget {
  public:
   explicit TrajectoryTools(QWidget* parent = nullptr);
 
-  bool following() const;      // the focus goes with the camera
-  bool throughCamera() const;  // the view is the camera's
+  bool following() const;      // the view's focus follows the camera
+  bool throughCamera() const;  // view from the camera
   void leaveCamera();
 
   void showColour(TrajectoryColour colour);
@@ -39,7 +39,7 @@ class TrajectoryTools : public QWidget {
   void layerToggled(evical::ui::SceneLayer layer, bool visible);
   void viewChosen(evical::ui::StandardView view);
   void followingChanged();
-  void pictureWanted(double scale);  // pixels of it to one of the screen's
+  void pictureWanted(double scale);  // pixels of the picture per screen pixel
   void tableWanted();
 
  protected:

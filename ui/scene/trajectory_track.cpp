@@ -12,10 +12,10 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kSamplesPerKnot = 4.0;  // finer than a pixel for what a hand can do
+constexpr double kSamplesPerKnot = 4.0;  // finer than a pixel for motion by hand
 constexpr double kMostSamples = 60000.0;
-constexpr double kStations = 25.0;      // about as many frusta as can be told apart
-constexpr double kNearestView_s = 0.1;  // further from a view, a sample has no residual
+constexpr double kStations = 25.0;      // about the number of distinguishable frustums
+constexpr double kNearestView_s = 0.1;  // at a larger distance from a view, a sample has no residual
 
 struct ViewError {
   double time_s = 0.0, rms_px = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A trajectory as it is drawn: sampled from the splines once, off the GUI thread. No VTK, no widgets.
+// Trajectory for drawing: sampled from the splines once, outside the GUI thread. Without VTK and widgets.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -24,7 +24,7 @@ struct TrajectoryTrack {
   std::vector<double> times_s;
   std::vector<Eigen::Vector3d> positions_m;  // of the reference IMU in the world
   std::vector<double> speeds_m_s;
-  std::vector<double> residuals_px;  // of the nearest board view, RMS; NaN where there is none near
+  std::vector<double> residuals_px;  // RMS of the nearest board view; NaN if none is near
   std::vector<CameraStation> stations;
 
   bool empty() const { return times_s.empty(); }
@@ -32,25 +32,26 @@ struct TrajectoryTrack {
   std::size_t nearest(double time_s) const;  // index; the track is not empty
 };
 
-// Nothing in it where the state has no splines yet.
+// Empty if the state has no splines yet.
 TrajectoryTrack sampleTrajectory(const CalibrationState& state, std::span<const CircleResidual> residuals);
 
-// A line a sample: time, position, speed and, where there are any, residuals.
+// One line per sample: time, position, speed and, if available, residuals.
 std::string trackCsv(const TrajectoryTrack& track);
 
-// The first camera's time of a time of the splines.
+// Time on the first camera's clock of a time of the splines.
 double firstCameraTime_s(const CalibrationState& state, double time_s);
 bool hasTrajectory(const CalibrationState& state);
 
-// The instant at the cursor.
+// Poses at the cursor's time.
 struct RigInstant {
   MotionSample imu;
   std::vector<RigidTransform> world_from_cameras, world_from_imus;  // the reference among the latter
 };
-// Nothing where the splines do not reach.
+// None outside the splines.
 std::optional<RigInstant> rigAt(const CalibrationState& state, double camera_time_s);
 
-// Round numbers for intervals, scales and grids: 1, 2 or 5 times a power of ten, `value` or the next above.
+// Smallest number of 1, 2 or 5 times a power of ten that is at least `value`; for intervals, scales and
+// grids.
 double roundedUp(double value);
 
 }  // namespace evical::ui

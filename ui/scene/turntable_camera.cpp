@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kVerticalView_rad = 0.52;  // a long lens: parallel lines stay nearly so
+constexpr double kVerticalView_rad = 0.52;  // a long lens: parallel lines stay nearly parallel
 constexpr double kHomeAzimuth_rad = -0.65, kHomeElevation_rad = 0.4;
-constexpr double kClosest = 0.02, kFurthest = 20.0;  // in distances at which everything fits
+constexpr double kClosest = 0.02, kFurthest = 20.0;  // relative to the distance at which everything fits
 
 }  // namespace
 

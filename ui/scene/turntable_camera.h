@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a 3D view is seen from: a turntable that keeps its axis upright on the screen. No
-// VTK and no Qt widgets.
+// Camera of a 3D view: a turntable whose axis stays upright on the screen. Without VTK and Qt widgets.
 #pragma once
 
 #include <QPointF>
@@ -16,7 +15,7 @@ struct ViewPose {
   Eigen::Vector3d eye_m, focus_m, up;
   double vertical_view_rad = 0.5;
 
-  // Where on the screen a point appears; nothing if it lies behind the eye.
+  // Position of a point on the screen; none if it is behind the eye.
   std::optional<QPointF> project(const Eigen::Vector3d& point_m, const QSizeF& screen) const;
   double depth_m(const Eigen::Vector3d& point_m) const;
 };
@@ -25,11 +24,11 @@ enum class StandardView { Home, Front, Side, Top };
 
 class TurntableCamera {
  public:
-  // `front` is where the front view looks; only its part across `up` counts.
+  // `front` is the direction of the front view; only its part perpendicular to `up` counts.
   void setAxes(const Eigen::Vector3d& up, const Eigen::Vector3d& front);
 
   void look(StandardView view);
-  // Goes as far away as it takes to see this sphere; `aspect` is width / height.
+  // Moves back until this sphere is visible; `aspect` is width / height.
   void fit(const Eigen::Vector3d& centre_m, double radius_m, double aspect);
 
   void orbit(double azimuth_rad, double elevation_rad);  // positive: eye to the left, eye up

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kOrbit_rad_per_px = 0.008;
 constexpr double kKeyOrbit_rad = 0.1, kKeyPan = 0.05, kKeyZoom = 1.15;
-constexpr double kWheelZoom = 1.15;  // a notch
+constexpr double kWheelZoom = 1.15;  // per notch
 constexpr double kNotch = 120.0;     // in Qt's units
 constexpr int kSample_px = 64;
 
@@ -48,9 +48,9 @@ struct View3D::Private {
   QPointF pressed_at, last_at;
   bool dragging = false;
 
-  std::future<std::string> starting;  // its problem; last: its thread uses the window
+  std::future<std::string> starting;  // its problem; last member: its thread uses the window
 
-  // Not before the first painting: the driver takes a fifth of a second to load.
+  // Deferred to the first painting: the driver takes a fifth of a second to load.
   void start() {
     started = true;
     if (const auto context = EglContext::create(problem)) {
@@ -77,7 +77,7 @@ void View3D::startInBackground(const std::function<void(vtkRenderer*)>& fill) {
   const vtkNew<vtkRenderer> sample;
   fill(sample);
   sample->ResetCamera();
-  // Nobody else touches the window until the thread has ended.
+  // Nothing else uses the window until the thread has ended.
   const auto load = [this, window = d_->window.Get(), sample = vtkSmartPointer<vtkRenderer>(sample)] {
     std::string problem;
     if (const auto context = EglContext::create(problem)) {
@@ -158,7 +158,7 @@ void View3D::look(StandardView view) {
   redraw();
 }
 
-// Put off to the first frame, when the widget has its size.
+// Deferred to the first frame, when the widget has its size.
 void View3D::fitWorld() {
   if (d_->fitted) return;
   d_->turntable.fit(d_->world_centre_m, d_->world_radius_m, static_cast<double>(width()) / height());
@@ -189,13 +189,13 @@ void View3D::refreshFrame() {
   if (!d_->dirty && d_->frame.size() == (QSizeF(size()) * ratio).toSize()) return;
   d_->frame = drawFrame(ratio);
   d_->dirty = false;
-  if (d_->frame.isNull()) d_->problem = "the graphics driver gave up its OpenGL context";
+  if (d_->frame.isNull()) d_->problem = "the graphics driver lost its OpenGL context";
 }
 
 QImage View3D::picture(double scale) {
   if (starting() || !d_->started || !d_->problem.empty()) return {};
   QImage image = drawFrame(scale);
-  d_->dirty = true;  // lines have the picture's widths now
+  d_->dirty = true;  // lines now have the picture's widths
   update();
   if (image.isNull()) return image;
   QPainter painter(&image);
@@ -216,14 +216,14 @@ void View3D::paintEvent(QPaintEvent*) {
   QPainter painter;
   if (starting()) {
     painter.begin(this);
-    drawText(painter, tr("The 3D view starts ..."));
+    drawText(painter, tr("The 3D view is starting ..."));
     return;
   }
   if (d_->problem.empty()) refreshFrame();
   painter.begin(this);
   if (!d_->problem.empty()) {
     drawText(painter, tr("The 3D view needs OpenGL 3.2, but %1.\nEverything else works without it.\n"
-                         "Installing Mesa's EGL driver brings a software renderer.")
+                         "Install Mesa's EGL driver for a software renderer.")
                           .arg(problem()));
     return;
   }
@@ -273,7 +273,7 @@ void View3D::keyPressEvent(QKeyEvent* event) {
   if (!turnByKey(event->key(), event->modifiers())) QWidget::keyPressEvent(event);
 }
 
-// Of the mouse it comes with the press already, when nobody knows yet whether a drag follows.
+// With the mouse, the menu event comes at the press, before it is known whether a drag follows.
 void View3D::contextMenuEvent(QContextMenuEvent* event) {
   if (event->reason() == QContextMenuEvent::Keyboard) emit menuRequested(mapToGlobal(rect().center()));
 }

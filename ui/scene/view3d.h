@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A widget that shows a VTK scene, with our own mouse and keyboard. Works without a display; where there is
-// no OpenGL at all it says so in place of the picture.
+// Widget with a VTK scene and its own mouse and keyboard. Works without a display; without OpenGL it shows a
+// message instead.
 //
 // Mouse: left orbits, right or middle (or shift and left) pans, the wheel zooms. Keys: arrows orbit, with
 // shift they pan, + and - zoom, 1 front, 2 side, 3 top, 0 everything.
@@ -27,37 +27,37 @@ class View3D : public QWidget {
   explicit View3D(QWidget* parent = nullptr);
   ~View3D() override;
 
-  // Loads the graphics driver, which takes a fifth of a second and more, in a thread of its own, and draws
-  // there what `fill` puts into a renderer, so that the first frame of the like finds its shaders compiled.
-  // The view says so in place of the picture until then. To be called before the first painting, at most
-  // once; without it the first painting does all that.
+  // Loads the graphics driver, which takes a fifth of a second and more, in a separate thread, and draws the
+  // objects there that `fill` adds to a renderer, so that the first similar frame finds its shaders compiled.
+  // Until then the view shows a message. Call before the first painting, at most once; without it the first
+  // painting does all that.
   void startInBackground(const std::function<void(vtkRenderer* renderer)>& fill);
   bool starting() const;
 
-  // For scenes to put their actors into; an actor belongs to one view only. It lives as long as the view.
+  // For the actors of scenes; an actor belongs to one view only. Lives as long as the view.
   vtkRenderer* renderer() const;
-  // To be called when the scene has changed: many changes make one frame.
+  // Call after changes of the scene: many changes make one frame.
   void redraw();
 
   void setBackground(const QColor& colour);
   // Painted over the picture, in widget coordinates.
   void setOverlay(std::function<void(QPainter&)> paint);
 
-  // What the standard views show: directions for the turntable, and a sphere around all that matters. Takes
-  // effect with the next look().
+  // World of the standard views: directions for the turntable, and a sphere around the content. Takes effect
+  // with the next look().
   void setWorld(const Eigen::Vector3d& up, const Eigen::Vector3d& front, const Eigen::Vector3d& centre_m,
                 double radius_m);
   void setFocus(const Eigen::Vector3d& focus_m);
-  // Overrides the turntable until the user turns it.
+  // Overrides the turntable until the user moves it.
   void lookThrough(const std::optional<ViewPose>& pose);
 
   ViewPose viewPose() const;
   std::optional<QPointF> project(const Eigen::Vector3d& point_m) const;
 
-  // What is seen now, overlay and all, with `scale` pixels to one of the screen's. Null where there is no picture.
+  // Current view with its overlay, with `scale` pixels per screen pixel. Null without a picture.
   QImage picture(double scale);
 
-  // Why there is no picture; empty where there is one. Known after the first painting.
+  // Reason why there is no picture; empty if there is one. Known after the first painting.
   QString problem() const;
 
   QSize sizeHint() const override { return {900, 600}; }

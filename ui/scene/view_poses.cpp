@@ -8,7 +8,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr std::size_t kViewsAtOnce = 32;  // some 20 ms, so that stopping is prompt
+constexpr std::size_t kViewsAtOnce = 32;  // about 20 ms, for a prompt stop
 
 bool continues(const ViewPoseInput& input, const ViewPoses& before) {
   if (before.views_done == 0) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera poses from single board views, computed once each while detection goes on. No VTK,
-// no widgets; for worker threads.
+// Camera poses from single board views, computed once each during the detection. Without VTK and widgets; for
+// worker threads.
 #pragma once
 
 #include "core/initialisation/camera_poses.h"
@@ -23,7 +23,7 @@ struct ViewPoses {
   std::size_t views_done = 0;
 };
 
-// Goes on from `before` where its views are the first of these; else from the start.
+// Continues from `before` if its views are the first of these; otherwise from the start.
 ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before, std::stop_token stop);
 
 }  // namespace evical::ui

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers and words as tables show them.
+// Numbers and units formatted for tables.
 #pragma once
 
 #include "core/base/number.h"
@@ -14,7 +14,7 @@ inline QString fromCore(const std::string& utf8) {
   return QString::fromStdString(utf8);
 }
 
-// "12.345 +- 0.012": to the sigma's second digit; the value alone where it has none.
+// "12.345 +- 0.012", to the sigma's second digit; the value alone without a sigma.
 inline QString withSigma(double value, double sigma) {
   return fromCore(evical::withSigma(value, sigma, " \u00b1 "));
 }

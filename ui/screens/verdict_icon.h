@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A verdict as a small picture: by colour and by shape.
+// Icon of a verdict, distinct by colour and by shape.
 #pragma once
 
 #include "core/data/calibration_status.h"

@@ -8,7 +8,7 @@
 namespace evical::ui {
 namespace {
 
-// Motion and place: what somebody who records can still do something about.
+// Criteria of motion and place, which the person who records can still improve.
 bool isOfRecording(AssessedThing thing) {
   switch (thing) {
     case AssessedThing::Duration:
@@ -48,7 +48,7 @@ QString titleOf(AssessedThing thing) {
     case AssessedThing::TimeOffset:
       return QObject::tr("Expected time offset");
     case AssessedThing::Obstacle:
-      return QObject::tr("In the way");
+      return QObject::tr("Problem");
   }
   return {};
 }
@@ -59,7 +59,7 @@ QString sentence(QString text) {
   return text;
 }
 
-// What is worst first; of two alike what comes first.
+// Sorted from worst to best; ties keep their order.
 std::vector<const Assessed*> worstFirst(const RecordingAssessment& assessment) {
   std::vector<const Assessed*> sorted;
   for (const Assessed& one : assessment.all) sorted.push_back(&one);
@@ -75,7 +75,7 @@ QString summaryOf(const RecordingAssessment& assessment) {
     case Light::Good:
       return QObject::tr("This recording is good enough");
     case Light::Fair:
-      return QObject::tr("This recording will do, but could be better");
+      return QObject::tr("This recording is sufficient, but could be better");
     case Light::Poor:
       return QObject::tr("This recording is not good enough");
   }
@@ -91,7 +91,7 @@ QString summaryWhileWritten(const RecordingAssessment& assessment) {
     case Light::Good:
       return QObject::tr("%1 so far: good enough, you can stop recording").arg(so_far);
     case Light::Fair:
-      return QObject::tr("%1 so far: this will do, but could be better").arg(so_far);
+      return QObject::tr("%1 so far: sufficient, but could be better").arg(so_far);
     case Light::Poor:
       return QObject::tr("%1 so far: not enough yet").arg(so_far);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the card that judges a recording says.
+// Texts of the card that assesses a recording.
 #pragma once
 
 #include "core/pipeline/rig/recording_assessment.h"
@@ -11,12 +11,12 @@
 namespace evical::ui {
 
 QString titleOf(AssessedThing thing);
-QString sentence(QString text);  // with a capital and a full stop
-// What is worst first; of two alike what comes first.
+QString sentence(QString text);  // adds a capital and a full stop
+// Sorted from worst to best; ties keep their order.
 std::vector<const Assessed*> worstFirst(const RecordingAssessment& assessment);
 
 QString summaryOf(const RecordingAssessment& assessment);
-// Of what there is so far of a recording that goes on.
+// For the existing part of a recording that is still being written.
 QString summaryWhileWritten(const RecordingAssessment& assessment);
 QString stillMissing(const RecordingAssessment& assessment);  // empty: nothing
 

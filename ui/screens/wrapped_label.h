@@ -1,4 +1,4 @@
-// Wrapped texts in one of the theme's roles.
+// Labels with wrapped text in a role of the theme.
 #pragma once
 
 #include <QLabel>
@@ -13,7 +13,7 @@ inline QLabel* wrappedLabel(const QString& text, const char* role, QWidget* pare
   return label;
 }
 
-// Its words can be selected and copied.
+// Text that can be selected and copied.
 inline QLabel* selectableLabel(const char* role, const QString& text, QWidget* parent) {
   QLabel* const label = wrappedLabel(text, role, parent);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);

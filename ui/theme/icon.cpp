@@ -11,7 +11,7 @@
 
 #include <memory>
 
-// Not in a namespace: the macro declares a function of the global one.
+// Outside of namespaces: the macro declares a global function.
 static void initResources() {
   Q_INIT_RESOURCE(resources);
 }
@@ -19,7 +19,7 @@ static void initResources() {
 namespace evical::ui {
 namespace {
 
-// A colour of its own, or a role of the palette of the moment.
+// A fixed colour, or a role of the current palette.
 struct Tint {
   QColor colour;
   QPalette::ColorRole role = QPalette::ButtonText;
@@ -31,7 +31,7 @@ struct Tint {
   }
 };
 
-// Draws the SVG's shape in the palette's colour of the moment, so that icons follow the theme by themselves.
+// Draws an SVG in the current palette's colour, so that icons follow the theme.
 class TintedIconEngine final : public QIconEngine {
  public:
   TintedIconEngine(const QByteArray& svg, const Tint& tint)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fusion with outlines that are seen in the dark too: its own are darker than the window.
+// Fusion style with outlines that are visible in dark themes, where its own are darker than the window.
 #pragma once
 
 #include <QProxyStyle>

@@ -6,8 +6,8 @@
 
 namespace evical::ui {
 
-// As large as its longest text asks for, whatever it says: a label that asks for another size has everything around it
-// laid out anew.
+// Fixes the size to that of the longest text: a label that changes its size triggers a layout of its
+// surroundings.
 inline void keepSize(QLabel& label, const QString& longest) {
   const QString text = label.text();
   label.setText(longest);

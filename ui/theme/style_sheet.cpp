@@ -4,7 +4,7 @@
 namespace evical::ui {
 namespace {
 
-// Spin boxes and combo boxes are left alone: with any rule of their own they lose their arrows.
+// No rules for spin boxes and combo boxes: with any rule they lose their arrows.
 const char* const kRules = R"(
 QToolTip { color: @text; background: @panel; border: 1px solid @line; padding: 4px 6px; }
 QToolBar { border: none; border-bottom: 1px solid @line; padding: 4px 8px; spacing: 4px; }
@@ -65,7 +65,7 @@ QString styleSheetOf(const Theme& t) {
   QString rules = kRules;
   rules.replace("@text", t.text.name());
   rules.replace("@faint", t.faint_text.name());
-  // In the dark, Fusion's fields have no visible outline: they are wells in a lighter ground.
+  // In dark themes, Fusion's fields have no visible outline: they are darker than the lighter ground.
   rules.replace("@card", t.dark ? mixed(t.window, t.text, kRaised).name() : t.panel.name());
   rules.replace("@panel", t.panel.name());
   rules.replace("@window", t.window.name());

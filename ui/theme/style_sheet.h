@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The few rules that make Fusion look of today. Everything else follows the palette.
+// A few rules that modernise Fusion. Everything else follows the palette.
 #pragma once
 
 #include "ui/theme/theme.h"

@@ -24,7 +24,7 @@ QVariant unwrapped(QVariant value) {
   return value;
 }
 
-// Invalid where nobody answers.
+// Invalid without an answer.
 QVariant setting(const QDBusConnection& bus, const char* group, const char* key) {
   constexpr int kPatience_ms = 200;
   QDBusMessage question = QDBusMessage::createMethodCall(kService, kPath, kInterface, "Read");

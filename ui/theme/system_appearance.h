@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the desktop wants dark windows, and whether it wants things to move: asked from its portal, told when it changes. (Qt
-// has this from 6.5 on.)
+// The desktop's settings for dark windows and animations, from its portal, with signals for changes. (Part of
+// Qt from 6.5 on.)
 #pragma once
 
 #include <QDBusVariant>
@@ -14,9 +14,9 @@ class SystemAppearance : public QObject {
  public:
   static SystemAppearance& instance();  // GUI thread only
 
-  // Without a portal: what the platform's own palette says, as it was before the first theme was applied.
+  // Without a portal: from the platform's palette before the first theme was applied.
   bool dark() const { return dark_; }
-  // People who get dizzy turn animations off.
+  // People who get dizzy disable animations.
   bool animated() const { return animated_; }
 
  signals:

@@ -21,7 +21,7 @@ Theme makeTheme(bool dark) {
   t.faint_text = dark ? QColor(0x9a, 0xa1, 0xab) : QColor(0x63, 0x6b, 0x76);
   t.grid_line = dark ? QColor(0x33, 0x38, 0x40) : QColor(0xdf, 0xe2, 0xe6);
   t.accent = dark ? QColor(0x5a, 0xa9, 0xf5) : QColor(0x1f, 0x6f, 0xc4);
-  // States and axes are told apart without seeing red and green as two colours, too: the greens lean to blue.
+  // States and axes are distinguishable with red-green colour blindness: the greens are bluish.
   t.good = dark ? QColor(0x3f, 0xc7, 0xb0) : QColor(0x00, 0x80, 0x6e);
   t.warning = dark ? QColor(0xf7, 0xd7, 0x74) : QColor(0xb8, 0x86, 0x0b);
   t.bad = dark ? QColor(0xee, 0x5a, 0x5f) : QColor(0xa3, 0x13, 0x3a);
@@ -38,7 +38,7 @@ const Theme& themeOf(bool dark) {
   return dark ? dark_theme : light_theme;
 }
 
-// From two colours, so that Light, Mid and Dark fit too: Fusion draws its bevels with them.
+// Derived from two colours, so that Light, Mid and Dark match, too: Fusion draws its bevels with them.
 QPalette paletteOf(const Theme& t) {
   QPalette palette(t.dark ? QColor(0x2b, 0x2f, 0x36) : QColor(0xf0, 0xf1, 0xf4), t.window);
   palette.setColor(QPalette::Base, t.panel);

@@ -19,7 +19,7 @@ QString textOf(const QString& resource) {
 }
 
 QString versionText(const QString& version) {
-  const QString commit = QStringLiteral(EVICAL_COMMIT);  // empty where it was built from no checkout
+  const QString commit = QStringLiteral(EVICAL_COMMIT);  // empty in a build without a checkout
   return commit.isEmpty() ? version : QObject::tr("%1 (%2)").arg(version, commit);
 }
 

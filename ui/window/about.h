@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this program is, which build, and under which licences, with their texts.
+// About dialog: the program, its version, and its licences with their texts.
 #pragma once
 
 class QString;

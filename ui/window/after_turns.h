@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Long work in pieces: what is done in turns of their own of the event loop does not add up
-// to one that people notice.
+// Splits long work over several turns of the event loop, so that no single turn is noticeably long.
 #pragma once
 
 #include <QObject>
@@ -11,8 +10,8 @@
 
 namespace evical::ui {
 
-// Acts when the event loop has gone round so often; each time it takes
-// what waits: events, layouts, paintings.
+// Calls `act` after the given number of turns of the event loop; each turn handles the pending events,
+// layouts and paintings.
 inline void afterTurns(int turns, QObject* context, const std::function<void()>& act) {
   if (turns <= 0) return act();
   constexpr auto kNext = std::chrono::milliseconds(1);

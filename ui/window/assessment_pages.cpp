@@ -30,7 +30,8 @@
 namespace evical::ui {
 namespace {
 
-// What all of these pages do. `start` may throw CalibrationError, which `refused` stands before.
+// Common connections of these pages. `start` may throw CalibrationError, which is shown under the title
+// `refused`.
 void wirePage(AssessmentScreen& screen, const TaskJob& job, std::function<void()> start,
               const QString& refused, Workbench& workbench, SessionFiles& files) {
   wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
@@ -64,7 +65,7 @@ std::vector<std::filesystem::path> pathsOf(const FileList& list) {
   return paths;
 }
 
-// What is open is taken as it is in the window, also where it is not saved.
+// The open session is used as shown in the window, even if it is not saved.
 bool isOpen(const QString& path, const CalibrationDocument& document) {
   if (!document.hasSession()) return false;
   const QFileInfo info(path);
@@ -101,8 +102,8 @@ void beginRepeat(RepeatScreen& screen, Workbench& workbench) {
   const QString folder = screen.folder().path();
   checkRepeatFolder(folder.toStdString());
   if (document.modified() && screen.files().files().contains(document.file()))
-    throw badInput(document.file().toStdString(), "has changes that are not saved",
-                   "Save the session first: its file is read");
+    throw badInput(document.file().toStdString(), "has unsaved changes",
+                   "Save the session first: the file is read");
   startRepeat(workbench.repeat,
               readRepeat(pathsOf(screen.files()),
                          document.hasSession() ? std::optional(document.session()) : std::nullopt),
@@ -112,10 +113,10 @@ void beginRepeat(RepeatScreen& screen, Workbench& workbench) {
 void show(const QString& path, SessionFiles& files) {
   if (QDesktopServices::openUrl(QUrl::fromLocalFile(path))) return;
   emit files.failed(QObject::tr("%1 cannot be shown").arg(QDir::toNativeSeparators(path)),
-                    {true, {}, QObject::tr("no program of this desktop opens it"), {}});
+                    {true, {}, QObject::tr("no program on this computer opens it"), {}});
 }
 
-// The files of a repeat are there already.
+// The repeat has already written its files.
 void wireRepeatedFiles(RepeatScreen& screen, const RepeatJob& job, SessionFiles& files) {
   QObject::connect(&screen, &RepeatScreen::openFolderRequested, &files, [&job, &files] {
     if (job.found()) show(job.found()->folder, files);
@@ -137,12 +138,12 @@ void wireRepeatedFiles(RepeatScreen& screen, const RepeatJob& job, SessionFiles&
 void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFiles& files) {
   ResultCheckJob& job = workbench.result_check;
   wireOldResult(screen.result(), screen, workbench);
-  wireFile(screen.recording(), screen, QObject::tr("The new recording, or a session of it"),
+  wireFile(screen.recording(), screen, QObject::tr("New recording, or a session of it"),
            recordingsFilter(true));
   wirePage(
       screen, job, [&screen, &workbench] { beginResultCheck(screen, workbench); },
       QObject::tr("The result cannot be checked"), workbench, files);
-  // What is open and has no result yet is the new one.
+  // Proposes the open recording if it has no result yet.
   const CalibrationDocument& document = workbench.document;
   const auto suggest = [&screen, &document] {
     const bool is_new = document.hasSession() && !document.last().run;
@@ -172,7 +173,7 @@ void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& 
            QObject::tr("Trajectories (*.csv *.txt *.tum);;All files (*)"));
   wirePage(
       screen, job, [&screen, &workbench] { beginMaintain(screen, workbench); },
-      QObject::tr("These logs cannot be looked at"), workbench, files);
+      QObject::tr("The logs cannot be checked"), workbench, files);
   QObject::connect(&job, &TaskJob::done, &screen, [&screen, &charts, &job] {
     screen.setMaintenance(*job.found());
     charts.setMaintenance(*job.found());
@@ -183,7 +184,7 @@ void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& 
       writeMaintenanceFiles(folder, *found, log);
     };
     saveToFolder(screen,
-                 {QObject::tr("Save what was found"), QObject::tr("What was found of the IMUs was saved")},
+                 {QObject::tr("Save the maintenance"), QObject::tr("The maintenance of the IMUs was saved")},
                  write, workbench, files);
   });
 }
@@ -193,12 +194,12 @@ void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files)
   wireList(screen.files(), screen, QObject::tr("Recordings or sessions of one rig"), true);
   QObject::connect(&screen.folder(), &PathRow::chooseRequested, &screen, [&screen] {
     const QString folder =
-        QFileDialog::getExistingDirectory(&screen, QObject::tr("Where the results go"), lastUsedFolder());
+        QFileDialog::getExistingDirectory(&screen, QObject::tr("Folder for the results"), lastUsedFolder());
     if (!folder.isEmpty()) screen.folder().setPath(folder);
   });
   wirePage(
       screen, job, [&screen, &workbench] { beginRepeat(screen, workbench); },
-      QObject::tr("These recordings cannot be calibrated together"), workbench, files);
+      QObject::tr("The recordings cannot be calibrated together"), workbench, files);
   const auto show_open = [&screen, &workbench] { screen.setOpenFile(openFileOf(workbench.document)); };
   QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &screen, show_open);
   QObject::connect(&workbench.document, &CalibrationDocument::fileChanged, &screen, show_open);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages that check a result, follow IMUs over time, and compare several recordings: their jobs, what is proposed to
-// them, their files.
+// The pages that check a result, follow IMUs over time, and compare several recordings: their jobs, default
+// paths and files.
 #pragma once
 
 namespace evical::ui {

@@ -32,7 +32,7 @@ ErrorPanel::ErrorPanel(QWidget* parent)
       advice_(errorLabel(this)),
       repair_(new RepairButton(this)) {
   setProperty("card", "bad");
-  setAccessibleName(tr("What went wrong"));
+  setAccessibleName(tr("Error"));
   title_->setProperty("role", "heading");
   auto* const close = new QToolButton(this);
   close->setIcon(icon("close"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What went wrong, where, and what to do: above the screens, never in front of them.
+// Panel with an error, its place and advice: above the screens, never covering them.
 #pragma once
 
 #include "ui/jobs/job_runner.h"

@@ -83,18 +83,17 @@ ExportDialog::ExportDialog(const ExportRequest& proposal, QWidget* parent)
   setWindowTitle(tr("Export the result"));
   check_->setObjectName("check");
   check_->setChecked(proposal.check);
-  check_->setToolTip(
-      tr("Finds out whether each program would take its files, and take the same numbers from them"));
+  check_->setToolTip(tr("Checks that each program accepts its files and reads the same values from them"));
   auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
   ok_ = buttons->button(QDialogButtonBox::Ok);
   ok_->setText(tr("&Export"));
   ok_->setToolTip(tr("Write all files to the folder"));
-  buttons->button(QDialogButtonBox::Cancel)->setToolTip(tr("Write nothing"));
+  buttons->button(QDialogButtonBox::Cancel)->setToolTip(tr("Close without writing"));
   connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
   connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
   fillTargets(proposal.targets);
   auto* const what =
-      new QLabel(tr("The result, its report and tables are always written. Besides them, files for:"), this);
+      new QLabel(tr("The result, its report and tables are always written. Additional files for:"), this);
   auto* const layout = new QVBoxLayout(this);
   layout->addWidget(makeFolderRow());
   layout->addWidget(hint_);
@@ -117,11 +116,10 @@ QWidget* ExportDialog::makeFolderRow() {
   label->setBuddy(folder_);
   folder_->setObjectName("folder");
   folder_->setAccessibleName(tr("Folder to export to"));
-  folder_->setToolTip(tr("Where the files go; the folder is made where it is not there yet"));
+  folder_->setToolTip(tr("Folder for the files; created if it does not exist"));
   hint_->setObjectName("folder_hint");
   hint_->setProperty("role", "hint");
-  QPushButton* const choose =
-      button("choose_folder", tr("&Choose..."), tr("Choose a folder that is there already"), row);
+  QPushButton* const choose = button("choose_folder", tr("&Choose..."), tr("Choose an existing folder"), row);
   connect(choose, &QPushButton::clicked, this, &ExportDialog::chooseFolder);
   connect(folder_, &QLineEdit::textChanged, this, &ExportDialog::judgeFolder);
   layout->addWidget(label);
@@ -139,9 +137,10 @@ QWidget* ExportDialog::makeSelectionRow() {
     connect(made, &QPushButton::clicked, this, [this, selection] { select(selection); });
     layout->addWidget(made);
   };
-  add("select_all", tr("Select &all"), tr("Files for every program; those that cannot hold this rig say so"),
+  add("select_all", tr("Select &all"),
+      tr("Files for all programs; those that cannot represent this rig are listed with the reason"),
       Selection::All);
-  add("select_odometry", tr("What &VIO needs"),
+  add("select_odometry", tr("For &VIO"),
       tr("Files for programs that estimate motion from cameras and an IMU"), Selection::Odometry);
   add("select_none", tr("&None"), tr("Only what is always written"), Selection::None);
   layout->addStretch();
@@ -195,12 +194,12 @@ void ExportDialog::judgeFolder() {
   const QFileInfo info(text);
   const bool usable = !text.isEmpty() && info.isAbsolute() && (!info.exists() || info.isDir());
   ok_->setEnabled(usable);
-  if (text.isEmpty()) return hint_->setText(tr("Give a folder."));
-  if (!info.isAbsolute()) return hint_->setText(tr("Give the folder's whole path, or choose it."));
-  if (info.exists() && !info.isDir()) return hint_->setText(tr("This is a file: give a folder."));
+  if (text.isEmpty()) return hint_->setText(tr("Enter a folder."));
+  if (!info.isAbsolute()) return hint_->setText(tr("Enter the folder's absolute path, or choose it."));
+  if (info.exists() && !info.isDir()) return hint_->setText(tr("This is a file. Enter a folder."));
   const bool has_files = info.exists() && !QDir(text).isEmpty();
-  hint_->setText(has_files       ? tr("There are files in this folder: those of the same names are replaced.")
-                 : info.exists() ? tr("This folder is there, and empty.")
+  hint_->setText(has_files       ? tr("This folder contains files. Files with the same names are replaced.")
+                 : info.exists() ? tr("This folder exists and is empty.")
                                  : tr("A new folder will be created."));
 }
 

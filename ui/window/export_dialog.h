@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a result goes and which programs it is exported for, a line about each. Kalibr's files are always written.
+// Dialog for the folder of a result and the programs to export to, one line each. Kalibr's files are always
+// written.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -20,15 +21,15 @@ namespace evical::ui {
 struct ExportRequest {
   QString folder;
   std::vector<std::string> targets;  // in the table's order, kalibr too
-  bool check = false;                // read the files back, and hold them against the result
+  bool check = false;                // read the files back, and compare them with the result
 };
 
-// Beside the recording, or at home where nobody may write there: <recording>_calibration, with a number where that is
-// there already.
+// <recording>_calibration next to the recording, or in the home folder if that is not writable; numbered if
+// it exists.
 QString newExportFolder(const QString& recording);
 QString newResultFolder(const QString& recording, const QString& kind);  // <recording>_<kind>
 
-// With the targets that the session asks for; where it asks for none, those of the last export.
+// With the targets of the session; if it has none, those of the last export.
 ExportRequest proposedExport(const Session& session);
 void rememberExport(const ExportRequest& request);
 

@@ -33,7 +33,7 @@ ExportNotice::ExportNotice(QWidget* parent)
       place_(noticeLabel(this)),
       details_(noticeLabel(this)) {
   setProperty("card", "true");
-  setAccessibleName(tr("Where files went"));
+  setAccessibleName(tr("Export"));
   title_->setProperty("role", "heading");
   auto* const open = new QPushButton(icon("folder"), tr("Open folder"), this);
   open->setObjectName("open_folder");
@@ -61,15 +61,16 @@ ExportNotice::ExportNotice(QWidget* parent)
 void ExportNotice::showOutcome(const ExportOutcome& outcome) {
   folder_ = outcome.folder;
   whole_ = outcome.refused.isEmpty() && outcome.differing.isEmpty();
-  title_->setText(!outcome.title.isEmpty()     ? outcome.title
-                  : outcome.refused.isEmpty()  ? tr("The result was exported")
-                  : outcome.programs.isEmpty() ? tr("The result was written, but exported for no program")
-                                               : tr("The result was exported, but not for all programs"));
+  title_->setText(!outcome.title.isEmpty()    ? outcome.title
+                  : outcome.refused.isEmpty() ? tr("The result was exported")
+                  : outcome.programs.isEmpty()
+                      ? tr("The result was written, but not exported for any program")
+                      : tr("The result was exported, but not for all programs"));
   place_->setText(tr("The files are in %1").arg(QDir::toNativeSeparators(folder_)));
   QStringList lines;
   if (!outcome.programs.isEmpty()) lines << tr("Written for: %1.").arg(outcome.programs.join(", "));
   if (outcome.checked && outcome.differing.isEmpty() && !outcome.programs.isEmpty())
-    lines << tr("Read back as those programs do: all say what the result says.");
+    lines << tr("Read back as those programs do: all values agree with the result.");
   lines << outcome.differing << outcome.refused;
   details_->setText(lines.join('\n'));
   details_->setVisible(!lines.isEmpty());
@@ -84,7 +85,7 @@ QString ExportNotice::text() const {
 
 void ExportNotice::openFolder() {
   if (!QDesktopServices::openUrl(QUrl::fromLocalFile(folder_)))
-    place_->setText(tr("No program of this desktop shows folders. The files are in %1")
+    place_->setText(tr("No program on this computer shows folders. The files are in %1")
                         .arg(QDir::toNativeSeparators(folder_)));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where an export went, what is in it, and what could not be: above the screens, until it is dismissed.
+// Notice of an export: its folder, its files, and what was refused. Above the screens, until it is dismissed.
 #pragma once
 
 #include <QFrame>
@@ -11,11 +11,11 @@ namespace evical::ui {
 
 struct ExportOutcome {
   QString folder;
-  QStringList programs;   // that have files
+  QStringList programs;   // programs with files
   QStringList refused;    // each with the reason
   bool checked = false;   // the files were read back
-  QStringList differing;  // those that do not say what the result says
-  QString title = {};     // of what was written, where it is no result
+  QStringList differing;  // programs that read other values than the result's
+  QString title = {};     // title if something else than a result was written
 };
 
 class ExportNotice : public QFrame {
@@ -36,7 +36,7 @@ class ExportNotice : public QFrame {
   void showIcon();
 
   QString folder_;
-  bool whole_ = true;  // nothing was refused, and nothing differs
+  bool whole_ = true;  // nothing was refused, and all values agree
   QLabel *icon_, *title_, *place_, *details_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using Files = std::vector<std::filesystem::path>;
 
-// The session's own first.
+// The session's recording first.
 Files filesOf(const Session& session) {
   Files files;
   const auto add = [&](const std::filesystem::path& file) {
@@ -25,7 +25,7 @@ Files filesOf(const Session& session) {
   return files;
 }
 
-// All of it is there now: streams, rates and pictures were those of its beginning.
+// The recording is complete: streams, rates and pictures are read again.
 void readAnew(const Pages& pages, Workbench& workbench) {
   QStringList recordings;
   for (const std::filesystem::path& file : filesOf(workbench.document.session()))
@@ -53,7 +53,7 @@ void wireFollowing(const Pages& pages, Workbench& workbench) {
     screen.setBeingWritten(true);
   });
   QObject::connect(&card, &CheckCard::followingWanted, &growing, &GrowingRecording::setFollowing);
-  // What is known is said in other words then.
+  // The summary has another wording while following.
   QObject::connect(&growing, &GrowingRecording::followingChanged, &card, [&card, &check](bool following) {
     card.setFollowing(following);
     if (const auto& checked = check.checked()) card.setAssessment(checked->assessment);

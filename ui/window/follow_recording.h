@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording that another program is still writing: it is offered to be followed, looked through again as it grows, and
-// read anew by all pages when its end has come.
+// Follows a recording that another program is still writing: offers it, checks it again as it grows, and
+// makes all pages read it again at its end.
 #pragma once
 
 #include "ui/window/pages.h"

@@ -15,7 +15,7 @@ namespace evical::ui {
 namespace {
 
 struct GuidePicture {
-  const char *part, *name, *title;  // the heading that it belongs to; a file of pictures/
+  const char *part, *name, *title;  // heading of its part; file in pictures/
 };
 
 constexpr std::array<GuidePicture, 12> kPictures = {{

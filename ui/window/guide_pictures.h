@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The guide's pictures: of the pages, as the documentation has them, and of the motions, drawn as they are shown.
+// Pictures of the guide: of the pages, as in the documentation, and of the motions, drawn like the
+// animations.
 #pragma once
 
 #include <QString>
@@ -9,10 +10,10 @@ class QTextDocument;
 
 namespace evical::ui {
 
-// The guide with its pictures: where a part has some, they stand below its text.
+// The guide with the pictures of each part below its text.
 QString withPictures(const QString& markdown);
 
-// What the guide with pictures names, at this width.
+// Adds the pictures that the guide refers to, at this width.
 void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio);
 QStringList guidePictures();  // the names
 

@@ -35,7 +35,7 @@ JobStatus::JobStatus(const JobRunner& runner, QWidget* parent)
   layout->addWidget(bar_);
   layout->addWidget(time_left_);
   layout->addStretch();
-  // Of one size whatever it says: it changes many times a second, and must not lay out the window anew.
+  // Fixed size: the text changes many times a second, which must not trigger layouts of the window.
   keepSize(*time_left_, tr("%1 %, about %2 left").arg("888").arg(durationText(3599.0)));
   what_->setText(tr("Ready"));
   connect(&runner_, &JobRunner::started, this, &JobStatus::begin);

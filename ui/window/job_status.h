@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The status bar's view of the job that runs: what, how far, how long still.
+// Status bar widget of the running job: its name, progress and remaining time.
 #pragma once
 
 #include "ui/jobs/job_runner.h"

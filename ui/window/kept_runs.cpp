@@ -20,7 +20,7 @@ QString titleIn(const RunHistory& history, const QString& folder) {
   return found == history.runs().end() ? folder : titleOf(*found);
 }
 
-// Where the session's runs are kept follows its file.
+// The folder of the runs follows the session's file.
 void followSession(Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   RunHistory& history = workbench.history;
@@ -44,13 +44,13 @@ void showList(RunsPanel& panel, ResultScreen& result, const Workbench& workbench
   std::vector<std::pair<QString, QString>> others;
   for (const RunSummary& run : history.runs())
     if (run.folder != shown) others.emplace_back(titleOf(run), QString::fromStdString(run.folder.string()));
-  std::reverse(others.begin(), others.end());  // the newest first
+  std::reverse(others.begin(), others.end());  // newest first
   result.setKeptRuns(others);
 }
 
 void open(Workbench& workbench, const QString& folder) {
   workbench.history.open(pathOf(folder), [&workbench, folder](const SavedRun& saved) {
-    if (workbench.runner.running()) return;  // what comes of it is shown then
+    if (workbench.runner.running()) return;  // its result will be shown instead
     workbench.lens.setAim(CalibrationAim::Rig);
     workbench.document.addUndoableRun({saved.run, saved.session, QString::fromStdString(saved.log)},
                                       QObject::tr("Show %1").arg(titleIn(workbench.history, folder)));

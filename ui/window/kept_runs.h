@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of the session that is open: each is kept as soon as it is there, and the list of them opens and compares
-// them.
+// Runs of the open session: each is stored when it is done; the list opens and compares them.
 #pragma once
 
 namespace evical::ui {

@@ -47,7 +47,7 @@ void LensFiles::chooseOther() {
   try {
     workbench_.lens.loadOther(file);
   } catch (const CalibrationError& error) {
-    emit failed(tr("%1 cannot be compared with").arg(QFileInfo(file).fileName()), errorOf(error));
+    emit failed(tr("%1 cannot be used for the comparison").arg(QFileInfo(file).fileName()), errorOf(error));
   }
 }
 
@@ -103,7 +103,7 @@ void LensFiles::exportTo(const QString& program, const QString& folder) {
   });
 }
 
-// `folder`: made where it is not there; empty where the path's own is.
+// `folder`: created if it does not exist; empty if the path contains its folder.
 void LensFiles::write(const QString& path, const QString& folder, Make make) {
   if (!workbench_.lens.last().run) return;
   const auto begun = workbench_.runner.start(tr("Save the lens"), {},

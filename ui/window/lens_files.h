@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lens into files, and lenses of files to compare with: the dialogs, and the writing as a job.
+// Writes a lens into files and reads lenses of files for comparison: the dialogs, and the writing as a job.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -15,7 +15,7 @@
 
 namespace evical::ui {
 
-// What the document's last lens is called by, in files and on screens.
+// The document's last lens, with its names in files and on screens.
 NamedIntrinsics namedLens(const LensRecord& record, const QString& version);
 
 class LensFiles : public QObject {
@@ -25,7 +25,7 @@ class LensFiles : public QObject {
   LensFiles(Workbench& workbench, QWidget* window);
 
   void chooseOther();
-  void chooseFile(int file);  // of kLensFiles
+  void chooseFile(int file);  // index of kLensFiles
   void chooseFolder();        // for all of them
   void chooseFolderFor(const QString& program);
 
@@ -38,7 +38,7 @@ class LensFiles : public QObject {
   void failed(const QString& what_was_tried, const evical::ui::JobError& error);
 
  private:
-  // Runs in the job's thread; paths as they are to be.
+  // Runs in the job's thread; final paths.
   using Make = std::function<ExportedFiles()>;
   void write(const QString& path, const QString& folder, Make make);
   QString lastFolder() const;

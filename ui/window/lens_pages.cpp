@@ -28,7 +28,7 @@ QStringList cameraNames(const Session& session) {
   return names;
 }
 
-// What runs keeps its own.
+// A running job keeps its aim.
 void wireAim(AimChooser& chooser, Workbench& workbench) {
   LensDocument& lens = workbench.lens;
   JobRunner& runner = workbench.runner;
@@ -67,7 +67,7 @@ void wireLensRecording(RecordingScreen& screen, Workbench& workbench) {
   });
 }
 
-// The run of what is calibrated; events and windows are the same.
+// Run of the current aim; events and windows are the same.
 void wireLensDetection(DetectionScreen& screen, Workbench& workbench) {
   IntrinsicsJob& job = workbench.intrinsics;
   LensDocument& lens = workbench.lens;
@@ -86,7 +86,7 @@ void wireLensDetection(DetectionScreen& screen, Workbench& workbench) {
   QObject::connect(&job, &IntrinsicsJob::ended, &screen, [&screen] { screen.setLive(false); });
 }
 
-// Those that hold a camera without a rig; what ROS and Kalibr take are files of the lens itself.
+// Formats for a camera without a rig; those of ROS and Kalibr are files of the lens.
 std::vector<std::pair<QString, QString>> programsForLenses() {
   std::vector<std::pair<QString, QString>> programs;
   for (const char* const name : {"opencv", "metavision", "dv-processing", "ekalibr", "matlab", "numpy"}) {

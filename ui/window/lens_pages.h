@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What screens show while a camera alone is calibrated, and its result.
+// Content of the screens during the calibration of a camera alone, and its result.
 #pragma once
 
 class QObject;
@@ -10,7 +10,7 @@ class LensFiles;
 struct Pages;
 struct Workbench;
 
-// After the other pages' connections: what a camera alone shows comes after what a rig shows.
+// Call after the other pages are wired: the slots for a camera alone must run after those for a rig.
 void wireLensPages(const Pages& pages, Workbench& workbench, LensFiles& files);
 
 }  // namespace evical::ui

@@ -18,7 +18,7 @@
 namespace evical::ui {
 namespace {
 
-// Of a run from a damaged folder pages show what there is: null where their part is missing.
+// The pages show the existing parts of a run from a damaged folder; null if their part is missing.
 std::shared_ptr<const CalibrationRun> withTrajectory(const std::shared_ptr<const CalibrationRun>& run) {
   return run && !run->result.state.world_from_imu_rotation.control_points.empty() ? run : nullptr;
 }
@@ -29,7 +29,7 @@ std::shared_ptr<const CalibrationRun> withSamples(const std::shared_ptr<const Ca
   return run && run->pass.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
 }
 
-// From the detections that the last run had.
+// Calibrates from the detections of the last run.
 void calibrateWithout(Workbench& workbench, const RejectedTimes& rejections) {
   const RunRecord& last = workbench.document.last();
   if (!last.run || rejections.size() != last.run->pass.cameras.size()) return;
@@ -150,14 +150,14 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
       });
 }
 
-// What says "press Calibrate" says so only while one can.
+// Pages show "press Calibrate" only if that is possible.
 template <class... Screen>
 void tellOfRuns(const CalibrationJob& job, Screen*... screen) {
   (QObject::connect(&job, &CalibrationJob::started, screen, [screen] { screen->setCalibrating(true); }), ...);
   (QObject::connect(&job, &CalibrationJob::ended, screen, [screen] { screen->setCalibrating(false); }), ...);
 }
 
-// Detection has read the recording already.
+// Detection has already read the recording.
 EventLookup eventsOf(const DetectionScreen& detection) {
   const std::optional<KeptEvents> kept = detection.keptEvents();
   if (!kept) return {};
@@ -165,7 +165,7 @@ EventLookup eventsOf(const DetectionScreen& detection) {
           [events = *kept](double begin_s, double end_s) { return events.between(begin_s, end_s); }};
 }
 
-// One cursor: a time that is chosen on one screen is shown on the others.
+// One cursor: a time chosen on one screen is shown on the others.
 template <class From, class... To>
 void linkTime(From* from, To*... to) {
   (QObject::connect(from, &From::timeSelected, to, &To::setTime), ...);
@@ -188,7 +188,7 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
                      if (checked->detected) pages.detection->goWhereSeen(checked->detected->pass.cameras);
                    });
   tellOfRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
-  // While it ran, the detection screen may have followed it.
+  // The detection screen may have followed the run.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
     const double time_s = pages.detection->time_s();
     pages.trajectory->setTime(time_s);

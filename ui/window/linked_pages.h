@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The screens that show a run, live and done, and share one cursor in time.
+// Screens that show a run, during and after it, with a common time cursor.
 #pragma once
 
 namespace evical::ui {

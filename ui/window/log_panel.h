@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the jobs have said, from a level on that is chosen here.
+// Messages of the jobs, from a selectable level on.
 #pragma once
 
 #include "ui/jobs/job_runner.h"
@@ -21,7 +21,7 @@ class LogPanel : public QWidget {
   explicit LogPanel(QWidget* parent = nullptr);
 
   void add(const LogLine& line);
-  void addHeading(const QString& title);  // a job begins
+  void addHeading(const QString& title);  // start of a job
   QString shownText() const;
 
  protected:

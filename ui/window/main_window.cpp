@@ -43,11 +43,11 @@ namespace evical::ui {
 namespace {
 
 constexpr int kSideBar_px = 236;
-constexpr int kLaidOut_turns = 3;  // after which pages are filled and laid out
-// Bumped when docks or tool bars change, so that an older layout isn't forced on them.
+constexpr int kLaidOut_turns = 3;  // until pages have their content and layout
+// Increased when docks or tool bars change, so that a saved older layout is ignored.
 constexpr int kLayoutVersion = 2;
 
-// Undone with the key: what was calibrated from the same detections without other windows.
+// Undoable: a calibration from the same detections without some windows.
 bool leavesOutOthers(const RunRecord& record, const RunRecord& last) {
   return last.run && rejectedTimes_s(record.run->pass) != rejectedTimes_s(last.run->pass);
 }
@@ -83,7 +83,7 @@ MainWindow::~MainWindow() = default;
 
 void MainWindow::makeCentre() {
   stack_ = new PageStack(this);
-  stack_->setMinimumSize(700, 420);  // the largest screen would ask for more than small displays have
+  stack_->setMinimumSize(700, 420);  // the largest screen would exceed small displays
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
@@ -117,7 +117,7 @@ QWidget* MainWindow::makeSideBar() {
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
   connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
-  // By the mouse, not by the list's arrow keys, which go on to the next.
+  // Connected to the mouse; the list's arrow keys select the next page.
   connect(navigation_, &QListWidget::clicked, this, [this] { stack_->currentWidget()->setFocus(); });
   steps_ = new StepsPanel(this);
   auto* const bar = new QFrame(this);
@@ -148,7 +148,7 @@ void MainWindow::makeDocks() {
 QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWidget* content,
                                  Qt::DockWidgetArea area) {
   auto* const dock = new QDockWidget(title, this);
-  dock->setObjectName(name);  // saveState goes by it
+  dock->setObjectName(name);  // needed by saveState
   dock->setWidget(content);
   addDockWidget(area, dock);
   return dock;
@@ -168,14 +168,14 @@ bool MainWindow::showScreen(const QString& name) {
   return true;
 }
 
-// When they are filled and laid out: all in one turn of the event loop would be long.
+// Updates resume when pages have their content and layout: one turn of the event loop would take long.
 void MainWindow::paintPagesLater() {
   stack_->setUpdatesEnabled(false);
   afterTurns(kLaidOut_turns, stack_, [this] { stack_->setUpdatesEnabled(true); });
 }
 
 void MainWindow::turnTo(int page) {
-  // Its drawing library takes 80 MB: only where somebody looks.
+  // Its drawing library takes 80 MB, so it is loaded on demand.
   if (screenNames().value(page) == "trajectory") pages_.trajectory->startInBackground();
   paintPagesLater();
   stack_->setCurrentIndex(page);
@@ -271,7 +271,7 @@ void MainWindow::wireJobs() {
           });
 }
 
-// Once the pages are filled: to who still looks at the first two.
+// After the pages are filled, and only if one of the first two is still shown.
 void MainWindow::showResultSoon() {
   result_is_due_ = stack_->currentIndex() <= 1;
   afterTurns(kLaidOut_turns, this, [this] {
@@ -309,7 +309,7 @@ void MainWindow::calibrate() {
   const std::vector<SessionProblem> problems = workbench_.lens.problems();
   if (!problems.empty()) {
     showScreen(workbench_.document.hasSession() ? "recording" : "start");
-    showProblem(tr("This cannot be calibrated yet"), {true, {}, problems.front().text, {}});
+    showProblem(tr("The session cannot be calibrated yet"), {true, {}, problems.front().text, {}});
     return;
   }
   const Session& session = workbench_.document.session();
@@ -365,12 +365,13 @@ void MainWindow::showState() {
   const bool has_result = of_camera ? workbench_.lens.last().run != nullptr : document.last().run != nullptr;
   actions_.export_result->setEnabled(!running && has_result);
   actions_.report->setEnabled(!running && has_result && !of_camera);
-  actions_.report->setToolTip(of_camera    ? tr("Reports are of rigs: a camera alone has the Result page")
+  actions_.report->setToolTip(of_camera
+                                  ? tr("Reports exist only for rigs. See the Result page for a camera alone")
                               : has_result ? tr("Open the result's report in the browser (Ctrl+R)")
-                                           : tr("There is no result yet, so no report: press Calibrate"));
+                                           : tr("There is no result yet: press Calibrate"));
 }
 
-// Beside the Result page's name, by colour and shape: whoever watches another page sees how it ended.
+// Mark next to the Result page's name, by colour and shape: it shows the outcome on any page.
 void MainWindow::showVerdictBadge() {
   const qsizetype row = screenNames().indexOf("result");
   QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
@@ -383,7 +384,7 @@ void MainWindow::showVerdictBadge() {
 void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
-  constexpr int kFrame_px = 48;  // a title bar that isn't drawn yet
+  constexpr int kFrame_px = 48;  // title bar, not drawn yet
   const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
   resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
   constexpr int kLog_px = 190, kParameters_px = 320;
@@ -424,7 +425,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
   const QList<QUrl> urls = event->mimeData()->urls();
   if (urls.size() != 1 || !urls.front().isLocalFile()) return;
   event->acceptProposedAction();
-  // The drag's source waits until this returns: questions come afterwards.
+  // The drag's source waits until this returns: questions are asked afterwards.
   QMetaObject::invokeMethod(
       this, [this, path = urls.front().toLocalFile()] { files_->open(path); }, Qt::QueuedConnection);
 }

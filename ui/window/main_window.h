@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The window: navigation, screens, steps, docks, menus, status bar. Nothing else.
+// The window: navigation, screens, steps, docks, menus, status bar.
 #pragma once
 
 #include "ui/window/pages.h"
@@ -37,7 +37,7 @@ class MainWindow : public QMainWindow {
   SessionFiles& files() { return *files_; }
   LensFiles& lensFiles() { return *lens_files_; }
   QStringList screenNames() const;
-  bool showScreen(const QString& name);  // false: there is none of this name
+  bool showScreen(const QString& name);  // false: unknown name
 
  public slots:
   void calibrate();

@@ -53,12 +53,11 @@ void MainWindow::makeFileMenu() {
                                 QKeySequence("Ctrl+Shift+S"));
   actions_.export_result = makeAction(this, "export", tr("&Export result..."),
                                       tr("Write the result's files to a folder"), QKeySequence("Ctrl+E"));
-  actions_.export_every =
-      makeAction(this, "export", tr("Export e&very result..."),
-                 tr("Write each result to a folder as soon as it is there"), QKeySequence());
+  actions_.export_every = makeAction(this, "export", tr("Export e&very result..."),
+                                     tr("Write each new result to a folder"), QKeySequence());
   actions_.export_every->setCheckable(true);
   actions_.report = makeAction(this, "report", tr("Open re&port"), {}, QKeySequence("Ctrl+R"));
-  actions_.quit = makeAction(this, "close", tr("&Quit"), tr("Leave the program"), QKeySequence("Ctrl+Q"));
+  actions_.quit = makeAction(this, "close", tr("&Quit"), tr("Quit the program"), QKeySequence("Ctrl+Q"));
   connect(actions_.open_session, &QAction::triggered, files_, &SessionFiles::chooseSession);
   connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
   connect(actions_.save, &QAction::triggered, files_, &SessionFiles::save);
@@ -80,7 +79,7 @@ void MainWindow::makeFileMenu() {
   });
   menu->addSeparator();
   QAction* const print_board = makeAction(this, "board", tr("Print a &board..."),
-                                          tr("A target for the camera, true to scale"), QKeySequence());
+                                          tr("A target for the camera, to scale"), QKeySequence());
   print_board->setObjectName("print_board_action");
   connect(print_board, &QAction::triggered, this, [this] { showPrintBoard(this, workbench_); });
   menu->addAction(print_board);
@@ -110,9 +109,9 @@ void MainWindow::makeCalibrateMenu() {
   actions_.calibrate = makeAction(this, "calibrate", tr("&Calibrate"),
                                   tr("Read, detect, initialise and optimise"), QKeySequence("F5"));
   actions_.cancel =
-      makeAction(this, "cancel", tr("Ca&ncel"), tr("Stop what is running"), QKeySequence("Shift+F5"));
+      makeAction(this, "cancel", tr("Ca&ncel"), tr("Cancel the running job"), QKeySequence("Shift+F5"));
   actions_.calibrate->setIcon(icon("calibrate", QPalette::HighlightedText));
-  actions_.calibrate->setIconVisibleInMenu(false);  // it is tinted for the button's background
+  actions_.calibrate->setIconVisibleInMenu(false);  // its colour is for the button's background
   connect(actions_.calibrate, &QAction::triggered, this, &MainWindow::calibrate);
   connect(actions_.cancel, &QAction::triggered, this, &MainWindow::cancel);
   menuBar()
@@ -142,13 +141,13 @@ void MainWindow::makeViewMenu() {
   QAction* const runs = runs_dock_->toggleViewAction();
   runs->setIcon(icon("recent"));
   runs->setShortcut(QKeySequence("Ctrl+H"));
-  runs->setToolTip(tr("Runs of this session: open, compare, name and delete them (Ctrl+H)"));
+  runs->setToolTip(tr("Runs of this session: open, compare, rename and delete them (Ctrl+H)"));
   menu->addAction(runs);
   menu->addSeparator();
   QMenu* const appearance = menu->addMenu(icon("theme"), tr("&Appearance"));
   auto* const group = new QActionGroup(this);
   const int now = QSettings().value("appearance", static_cast<int>(Appearance::System)).toInt();
-  const std::pair<Appearance, QString> choices[] = {{Appearance::System, tr("As the &system")},
+  const std::pair<Appearance, QString> choices[] = {{Appearance::System, tr("Follow the &system")},
                                                     {Appearance::Light, tr("&Light")},
                                                     {Appearance::Dark, tr("&Dark")}};
   for (const auto& [choice, text] : choices) {

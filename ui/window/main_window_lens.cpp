@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the window does while a camera alone is calibrated.
+// Parts of the window for the calibration of a camera alone.
 #include "ui/screens/lens/lens_screen.h"
 #include "ui/screens/recording/recording_screen.h"
 #include "ui/window/lens_files.h"
@@ -39,13 +39,13 @@ void MainWindow::wireLens() {
           });
 }
 
-// All there is of it, to a folder.
+// Exports all files to a folder.
 void MainWindow::exportResult() {
   if (workbench_.lens.aim() == CalibrationAim::Camera) return lens_files_->chooseFolder();
   files_->chooseExportFolder();
 }
 
-// Of what is calibrated; nothing before the first run.
+// Status of the current aim's last run; none before the first run.
 std::optional<CalibrationStatus> MainWindow::lastStatus() const {
   if (workbench_.lens.aim() == CalibrationAim::Camera) {
     const auto& run = workbench_.lens.last().run;

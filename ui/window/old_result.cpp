@@ -20,7 +20,7 @@ void propose(OldResultRow& row, const Workbench& workbench) {
   std::vector<std::pair<QString, QString>> runs;
   for (const RunSummary& run : workbench.history.runs())
     runs.emplace_back(titleOf(run), QString::fromStdString(run.folder.string()));
-  std::reverse(runs.begin(), runs.end());  // the newest first
+  std::reverse(runs.begin(), runs.end());  // newest first
   row.setKeptRuns(runs);
 }
 
@@ -29,11 +29,11 @@ void propose(OldResultRow& row, const Workbench& workbench) {
 void wireOldResult(OldResultRow& row, QWidget& page, Workbench& workbench) {
   QObject::connect(&row, &OldResultRow::folderRequested, &page, [&row, &page] {
     const QString folder =
-        QFileDialog::getExistingDirectory(&page, QObject::tr("The old result's folder"), lastUsedFolder());
+        QFileDialog::getExistingDirectory(&page, QObject::tr("Folder of the old result"), lastUsedFolder());
     if (!folder.isEmpty()) row.setPath(folder);
   });
   QObject::connect(&row, &OldResultRow::fileRequested, &page, [&row, &page] {
-    const QString file = QFileDialog::getOpenFileName(&page, QObject::tr("The old result"), lastUsedFolder(),
+    const QString file = QFileDialog::getOpenFileName(&page, QObject::tr("Old result"), lastUsedFolder(),
                                                       QObject::tr("Results (*.yaml *.yml);;All files (*)"));
     if (!file.isEmpty()) row.setPath(file);
   });

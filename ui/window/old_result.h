@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is proposed as the old result: the run that is shown, then those that are kept; and the dialogs that choose one.
+// Proposals for the old result: the shown run, then the stored runs; and the dialogs that choose one.
 #pragma once
 
 class QWidget;

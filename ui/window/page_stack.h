@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages of a window. How large they are does not follow from what is on them (who holds them says how small they
-// may be): else whenever anything in the window changes its size, every page, seen or not, lays out each of its wrapped
-// texts anew, which took half of a run's computing.
+// The pages of a window. Its size is independent of their contents (the parent sets the minimum): otherwise
+// every change of size in the window would trigger a layout of the wrapped texts of all pages, hidden or not,
+// which took half of a run's computing time.
 #pragma once
 
 #include <QStackedWidget>

@@ -30,7 +30,7 @@ QString titleOf(const JobProgress& progress) {
 }  // namespace
 
 void wireWork(WorkBar& bar, JobRunner& runner, std::function<bool()> own) {
-  // Whose job it is its owner knows once it is told that it has begun, or has ended.
+  // The owner of a job is known only after its start or end has been signalled.
   const auto show = [&bar, &runner, own] { bar.setRunning(own() && runner.running(), runner.running()); };
   QObject::connect(&runner, &JobRunner::started, &bar, show);
   QObject::connect(&runner, &JobRunner::finished, &bar, show);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pages with a job of their own have in common.
+// Common parts of pages with a job of their own.
 #pragma once
 
 #include <QString>
@@ -17,10 +17,10 @@ class SessionFiles;
 class WorkBar;
 struct Workbench;
 
-// The bar follows the runner; `own` tells whether what runs is the page's.
+// The bar follows the runner; `own` returns whether the running job is the page's.
 void wireWork(WorkBar& bar, JobRunner& runner, std::function<bool()> own);
 
-// Into a folder that a person chooses; `saved` is said when it is there.
+// Saves into a folder that the user chooses; `saved` is the title of the notice.
 struct SavedWords {
   QString title, saved;
 };
@@ -28,10 +28,10 @@ void saveToFolder(QWidget& page, const SavedWords& words,
                   std::function<void(const std::filesystem::path& folder)> write, Workbench& workbench,
                   SessionFiles& files);
 
-// The session's file, else its recording; empty where nothing is open.
+// The session's file, else its recording; empty without a session.
 QString openFileOf(const CalibrationDocument& document);
 
-QString lastUsedFolder();                      // where files were opened from last
+QString lastUsedFolder();                      // folder of the last opened file
 QString recordingsFilter(bool with_sessions);  // for file dialogs
 
 }  // namespace evical::ui

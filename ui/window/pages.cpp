@@ -41,7 +41,7 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
                    [&start] { showHowToRecord(start.window()); });
   QObject::connect(&start, &StartScreen::demoRequested, &files, [&workbench, &files] {
     if (workbench.runner.running()) return;
-    workbench.lens.setAim(CalibrationAim::Rig);  // which the demo is made for
+    workbench.lens.setAim(CalibrationAim::Rig);  // the demo is a rig
     files.openDemo();
   });
   QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::open);
@@ -103,7 +103,7 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
                    namedRecord(workbench.document.last(), workbench.version));
     screen.setOutdated(workbench.document.runIsOutdated());
   };
-  // It takes as long as everything else that a calibration's end brings.
+  // Delayed by a turn: it takes as long as all other updates at a calibration's end together.
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
                    [&screen, fill] { afterTurns(1, &screen, fill); });
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen,

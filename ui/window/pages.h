@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The screens, in the order of the navigation: buildPages makes them, wirePages connects them with the
-// workbench and with each other. Screens themselves know neither.
+// The screens, in the order of the navigation: buildPages creates them, wirePages connects them with the
+// workbench and with each other. Screens themselves depend on neither.
 #pragma once
 
 #include <QKeySequence>
@@ -42,22 +42,22 @@ struct Pages {
   ResidualsScreen* residuals = nullptr;
   ResultScreen* result = nullptr;
   LensScreen* lens = nullptr;
-  QStackedWidget* results = nullptr;  // the last two: of a rig, of a camera alone
+  QStackedWidget* results = nullptr;  // the last two: for a rig, for a camera alone
   ResultCheckScreen* result_check = nullptr;
   RepeatScreen* repeat = nullptr;
   MaintainScreen* maintain = nullptr;
-  MaintenanceCharts* maintenance_charts = nullptr;  // on it
-  std::vector<RigPage*> of_rigs;                    // around those that show nothing of a camera alone
+  MaintenanceCharts* maintenance_charts = nullptr;  // part of `maintain`
+  std::vector<RigPage*> of_rigs;                    // wrappers of the pages that are for rigs only
 };
 
-// A page as the navigation lists it.
+// A page in the navigation.
 struct PageEntry {
   QString name;  // for --screenshot
   QString title, icon_name;
   QWidget* widget = nullptr;
 };
 
-// Ctrl+1 to Ctrl+9, Ctrl+0, then with Shift from 1 on.
+// Ctrl+1 to Ctrl+9, Ctrl+0, then Ctrl+Shift+1 and so on.
 QKeySequence keyOfPage(std::size_t index);
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);

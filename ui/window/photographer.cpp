@@ -20,21 +20,21 @@ namespace evical::ui {
 namespace {
 
 constexpr int kDone = 0, kFailed = 1;
-constexpr int kSettle_ms = 2500;  // screens prepare what they show in threads of their own
+constexpr int kSettle_ms = 2500;  // screens prepare their contents in separate threads
 const char* const kCheck = "check";
 const char* const kPrintBoard = "print-board";
 const char* const kHowToRecord = "how-to-record";
 const char* const kExport = "export";
-// Pages whose own job needs further recordings.
+// Pages that need further recordings.
 const char *const kCheckResult = "check-result", *const kRepeat = "repeat";
-// A log is opened, and the old result is behind it; the page has a second tab.
+// The first argument is a log, the second the old result; the page has two tabs.
 const char *const kMaintain = "maintain", *const kOverTime = "maintain-over-time";
 
 void complain(const QString& text) {
   QTextStream(stderr) << text << '\n';
 }
 
-// The dialog that is open, else the window.
+// The open dialog, else the window.
 QWidget* shownOf(MainWindow& window) {
   for (QWidget* const widget : QApplication::topLevelWidgets())
     if (qobject_cast<QDialog*>(widget) && widget->isVisible()) return widget;
@@ -67,7 +67,7 @@ QStringList Photographer::screensOf(const MainWindow& window) {
 
 void Photographer::giveUp(const QString& what, const JobError& error) {
   complain(what + ": " + error.text());
-  QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(kFailed); });  // exec() may not have begun
+  QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(kFailed); });  // exec() may not have started
 }
 
 void Photographer::opened() {
@@ -86,7 +86,7 @@ void Photographer::calibrate() {
   if (!window_.workbench().runner.running()) giveUp("calibrate", {true, {}, "the session is incomplete", {}});
 }
 
-// Once the run is kept: its folder is the old result.
+// After the run is stored: its folder is the old result.
 void Photographer::checkResult() {
   Workbench& workbench = window_.workbench();
   auto* const screen = window_.findChild<ResultCheckScreen*>();
@@ -120,7 +120,7 @@ void Photographer::jobDone() {
 void Photographer::openDialog() {
   if (screen_ == kPrintBoard) showPrintBoard(&window_, window_.workbench());
   if (screen_ == kHowToRecord) showHowToRecord(&window_);
-  if (screen_ == kExport)  // it waits for its answer
+  if (screen_ == kExport)  // modal: blocks until it is answered
     QTimer::singleShot(0, &window_, [this] { window_.files().chooseExportFolder(); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Takes one picture of the desktop program: of a page, a dialog, or a recording that was just looked through.
+// Takes one picture of the desktop program: of a page, a dialog, or a checked recording.
 #pragma once
 
 #include <QObject>
@@ -11,14 +11,14 @@ namespace evical::ui {
 class MainWindow;
 struct JobError;
 
-// Calibrates the session, or opens the saved run, lets the screen draw what it got, saves its picture, and ends the
-// program: with 0, or with 1 where something failed.
+// Calibrates the session or opens the saved run, waits until the screen is drawn, saves its picture, and ends
+// the program: with 0, or with 1 after a failure.
 class Photographer : public QObject {
  public:
-  // `further`: recordings beside the one that is opened, for pages that compare several.
+  // `further`: recordings in addition to the opened one, for pages that compare several.
   Photographer(MainWindow& window, QString screen, QString file, QStringList further = {});
 
-  // Pages, and what else there are pictures of.
+  // Names of the pages and other pictures.
   static QStringList screensOf(const MainWindow& window);
 
  private:

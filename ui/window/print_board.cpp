@@ -13,7 +13,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kWidth_px = 960, kHeight_px = 650;  // on the smallest display there is room for it
+constexpr int kWidth_px = 960, kHeight_px = 650;  // fits the smallest display
 
 template <class Dialog>
 Dialog* opened(QWidget* window) {
@@ -24,11 +24,11 @@ Dialog* opened(QWidget* window) {
   return dialog;
 }
 
-// Of the session; else the one that was printed last.
+// Board of the session, else the last printed one.
 Board boardToPrint(const Workbench& workbench) {
   if (workbench.document.hasSession()) return workbench.document.session().board;
   if (const auto last = lastPrintedBoard()) return last->board;
-  Board small;  // the usual board at a size that most printers have
+  Board small;  // the usual board, on a sheet that fits most printers
   small.spacing_m = 0.02;
   small.radius_m = 0.008;
   return small;
@@ -44,7 +44,7 @@ void take(const PrintedBoard& printed, Workbench& workbench) {
   document.confirmBoard();
 }
 
-// In a thread of its own, which ends with the dialog.
+// Writes in a separate thread, which ends with the dialog.
 void writeFor(PrintBoardDialog* dialog) {
   auto* const writing = new LatestJob(OutdatedWork::Delivered, dialog);
   QObject::connect(dialog, &PrintBoardDialog::fileRequested, writing,

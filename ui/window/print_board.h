@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What comes before a recording: a board to print, and how to move before it. Windows of their own, beside the work.
+// Dialogs for the preparation of a recording, not modal: a board to print, and the motions.
 #pragma once
 
 #include <QString>
@@ -11,6 +11,6 @@ namespace evical::ui {
 struct Workbench;
 
 void showPrintBoard(QWidget* window, Workbench& workbench);
-void showHowToRecord(QWidget* window, const QString& motion = {});  // that is shown first
+void showHowToRecord(QWidget* window, const QString& motion = {});  // shown first
 
 }  // namespace evical::ui

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A dialog that is read beside the work: not modal, and nothing stands in front of a running job.
+// Dialog for reading, not modal, so that it never blocks a running job.
 #pragma once
 
 class QDialog;
@@ -8,13 +8,13 @@ class QWidget;
 
 namespace evical::ui {
 
-// Of this name, with an empty column; deleted when it is closed.
+// Creates a dialog of this name with an empty column; deleted when closed.
 QDialog* makeReadingDialog(QWidget* window, const QString& name, const QString& title);
 
-// Below all else that was added.
+// Call after everything else has been added: the button goes to the bottom.
 void addCloseButton(QDialog* dialog);
 
-// True if it is open already; then it comes to the front.
+// If the dialog is already open, raises it and returns true.
 bool raiseOpened(QWidget* window, const QString& name);
 
 }  // namespace evical::ui

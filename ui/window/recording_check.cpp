@@ -26,7 +26,7 @@ QString boardText(const Session& session) {
       .arg(1e3 * session.board.spacing_m);
 }
 
-// What stands between a session without problems and "ready".
+// Text in place of "ready" for a session without problems.
 void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool failed) {
   const CalibrationDocument& document = workbench.document;
   const bool unconfirmed = document.hasSession() && !document.boardConfirmed();
@@ -35,15 +35,14 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
   if (workbench.growing.following()) return screen.setReservation(QObject::tr("Being recorded"), Light::Fair);
   if (failed || (checked && !checked->assessment.can_be_calibrated))
     return screen.setReservation(QObject::tr("Not ready: see below"), Light::Poor);
-  if (workbench.check.awaited())
-    return screen.setReservation(QObject::tr("Being looked through"), Light::Good);
+  if (workbench.check.awaited()) return screen.setReservation(QObject::tr("Being checked"), Light::Good);
   if (unconfirmed) return screen.setReservation(QObject::tr("The board is not confirmed"), Light::Fair);
   if (checked && checked->assessment.light == Light::Poor)
     return screen.setReservation(QObject::tr("Not good enough: see below"), Light::Fair);
   screen.setReservation({}, Light::Good);
 }
 
-// The quantities that will be calibrated: those of a single camera, or of the rig.
+// Session of the current aim: of a single camera, or of the rig.
 Session aimedAt(const Workbench& workbench) {
   Session session = workbench.document.session();
   if (workbench.lens.aim() != CalibrationAim::Camera || session.cameras.empty()) return session;
@@ -56,17 +55,17 @@ Session aimedAt(const Workbench& workbench) {
   return session;
 }
 
-// A session that has all it needs, and whose recording has been looked through.
+// Checks a session that is complete and whose recording has been read.
 void choose(Workbench& workbench) {
   const Session session = aimedAt(workbench);
-  // At the end of a recording that was followed it is inspected once more, which changes nothing here.
+  // At the end of a followed recording, it is inspected once more, which changes nothing here.
   const bool inspected = !workbench.inspection.running() || workbench.growing.followedToEnd();
   const bool camera_alone = session.cameras.size() == 1 && session.imus.empty();
   const bool calibrates =
       sessionProblems(session, camera_alone ? CalibrationAim::Camera : CalibrationAim::Rig).empty();
   const bool complete = workbench.document.hasSession() && inspected && !session.board_blinks && calibrates;
   if (!complete) return workbench.check.setSession(std::nullopt);
-  // A result says more.
+  // A result is more informative than the check.
   const bool calibrated = workbench.document.last().run && !workbench.document.runIsOutdated();
   if (calibrated && !workbench.check.checked()) return workbench.check.setSession(std::nullopt);
   workbench.check.setSession(session);
@@ -127,11 +126,11 @@ void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
 }
 
 QAction* makeCheckAction(Workbench& workbench, QObject* parent) {
-  auto* const action = new QAction(QObject::tr("Check recordings by &itself"), parent);
+  auto* const action = new QAction(QObject::tr("Check recordings &automatically"), parent);
   action->setObjectName("check_recordings");
   action->setCheckable(true);
   action->setChecked(workbench.check.automatic());
-  action->setToolTip(QObject::tr("Looks whether a recording is good enough as soon as it is opened"));
+  action->setToolTip(QObject::tr("Checks whether an opened recording is good enough"));
   QObject::connect(action, &QAction::toggled, &workbench.check, [&workbench](bool on) {
     QSettings().setValue(kKey, on);
     workbench.check.setAutomatic(on);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the recording is good enough: the job that finds out, the card that says it, and what may be called ready.
+// Check whether the recording is good enough: its job, its card, and the condition for "ready".
 #pragma once
 
 class QAction;
@@ -12,7 +12,7 @@ struct Workbench;
 
 void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench);
 
-// Turns it off and on; remembered.
+// Disables and enables the check; the state is stored in the settings.
 QAction* makeCheckAction(Workbench& workbench, QObject* parent);
 
 }  // namespace evical::ui

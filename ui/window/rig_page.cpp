@@ -13,14 +13,14 @@ RigPage::RigPage(QWidget* page, const QString& what, QWidget* parent) : QStacked
   auto* const note = new QWidget(this);
   auto* const layout = new QVBoxLayout(note);
   auto* const text = new QLabel(tr("%1 to the calibration of a rig: a camera and an IMU, or several cameras. "
-                                   "A camera alone has its page under Result.")
+                                   "The result of a camera alone is on the page Result.")
                                     .arg(what),
                                 note);
   text->setProperty("role", "heading");
   text->setWordWrap(true);
   text->setAlignment(Qt::AlignCenter);
   auto* const rig = new QPushButton(icon("axes"), tr("Calibrate the rig instead"), note);
-  rig->setToolTip(tr("Choose the rig as what is calibrated; nothing is started"));
+  rig->setToolTip(tr("Choose the calibration of the rig; it is not started yet"));
   connect(rig, &QPushButton::clicked, this, &RigPage::rigRequested);
   layout->addStretch();
   layout->addWidget(text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page that shows what only the calibration of a rig brings; while a camera alone is calibrated, it says so.
+// Wraps a page that is for rigs only; while a camera alone is calibrated, shows a note instead.
 #pragma once
 
 #include "ui/document/calibration_aim.h"
@@ -12,7 +12,7 @@ class RigPage : public QStackedWidget {
   Q_OBJECT
 
  public:
-  // `what`: what the page shows, as the subject of a sentence.
+  // `what`: content of the page with its verb, as in "Trajectories belong".
   RigPage(QWidget* page, const QString& what, QWidget* parent);
 
   void setAim(CalibrationAim aim);

@@ -35,7 +35,7 @@ const char* const kRecentKey = "recent_files";
 const char* const kFolderKey = "last_folder";
 const char* const kReport = "report.html";
 
-// The session's own first.
+// The session's recording first.
 QStringList recordingsOf(const Session& session) {
   QStringList recordings = {QString::fromStdString(session.recording.string())};
   const auto add = [&](const auto& sensor) {
@@ -52,7 +52,7 @@ bool isSessionFile(const QString& path) {
   return suffix == "yaml" || suffix == "yml";
 }
 
-// Of a run that is kept beside a session's file; empty where there is none.
+// Session file of a run stored next to it; empty if there is none.
 QString sessionOfRun(const QString& folder) {
   const QFileInfo place(QFileInfo(folder).absolutePath());
   if (place.suffix() != "runs") return {};
@@ -63,7 +63,7 @@ QString sessionOfRun(const QString& folder) {
   return {};
 }
 
-// Scenarios name each other by file, so those that are embedded become files for a moment.
+// Scenarios refer to each other by file, so the embedded ones are copied to temporary files.
 Scenario demoScenario() {
   const QTemporaryDir folder;
   for (const char* const name : {"davis346.yaml", "davis346_10s.yaml"})
@@ -71,12 +71,12 @@ Scenario demoScenario() {
   return readScenario(folder.filePath("davis346_10s.yaml").toStdString());
 }
 
-// "Kalibr", as the list of targets has it.
+// "Kalibr", from the list of targets.
 QString programOf(const std::string& target) {
   return QString::fromUtf8(exportTarget(target, {}).program);
 }
 
-// The job's part. A folder that was made for it goes away again where nothing came of it.
+// Runs in the job. A folder created for it is removed if the export fails.
 ExportOutcome exportRun(const RunRecord& record, const ExportRequest& request, const QString& version,
                         const RunContext& context) {
   const std::filesystem::path folder = request.folder.toStdString();
@@ -121,7 +121,7 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
   });
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this, [this] {
     if (every_result_folder_.isEmpty()) return;
-    // Once everybody has heard of the run: an export is a job of its own.
+    // After all receivers have handled the run: an export is a separate job.
     QTimer::singleShot(0, this, [this] { exportTo(every_result_folder_); });
   });
 }
@@ -152,7 +152,7 @@ void SessionFiles::openSession(const QString& file) {
   try {
     if (QFile::exists(truth)) workbench_.document.loadReference(truth);
   } catch (const CalibrationError& error) {
-    emit failed(tr("The truth beside the session cannot be read"), errorOf(error));
+    emit failed(tr("The truth next to the session cannot be read"), errorOf(error));
   }
   emit opened();
 }
@@ -169,7 +169,7 @@ void SessionFiles::runOpened(const SavedRun& saved) {
                 {true, workbench_.runner.title(), tr("was started meanwhile"), tr("Cancel it, or wait")});
     return;
   }
-  workbench_.lens.setAim(CalibrationAim::Rig);  // which the run is of
+  workbench_.lens.setAim(CalibrationAim::Rig);  // saved runs are rigs
   RunRecord record{saved.run, saved.session, QString::fromStdString(saved.log)};
   const QString session_file = sessionOfRun(folder);
   try {
@@ -187,9 +187,8 @@ void SessionFiles::runOpened(const SavedRun& saved) {
   QStringList missing;
   for (const std::string& text : saved.missing) missing << QString::fromStdString(text);
   if (!missing.isEmpty())
-    emit failed(
-        tr("Not everything of this run is there"),
-        {true, folder, missing.join('\n'), tr("The pages show what is there; calibrate again for the rest")});
+    emit failed(tr("The run is incomplete"), {true, folder, missing.join('\n'),
+                                              tr("Calibrate again: the pages show only the available data")});
 }
 
 void SessionFiles::lookForRecording(const QString& missing) {
@@ -207,7 +206,7 @@ void SessionFiles::openRecording(const QString& path) {
   workbench_.inspection.start({awaited_recording_});
 }
 
-// The streams of the session that is open; also after another recording that could not be opened.
+// Inspects the streams of the open session; also after a failure to open another recording.
 void SessionFiles::inspectSession() {
   awaited_recording_.clear();
   further_recordings_.clear();
@@ -238,8 +237,9 @@ void SessionFiles::addRecording(const QString& path) {
   const QStringList listed = recordingsOf(workbench_.document.session()) + further_recordings_;
   if (std::any_of(listed.begin(), listed.end(),
                   [&](const QString& other) { return QFileInfo(other) == QFileInfo(recording); })) {
-    emit failed(tr("%1 is not added").arg(QFileInfo(path).fileName()),
-                {true, recording, tr("its streams are listed already"), tr("Choose their roles there")});
+    emit failed(
+        tr("%1 was not added").arg(QFileInfo(path).fileName()),
+        {true, recording, tr("its streams are listed already"), tr("Choose their roles in the list")});
     return;
   }
   further_recordings_ << recording;
@@ -255,7 +255,7 @@ void SessionFiles::furtherRecordingInspected(const QString& recording, const Ins
   if (more) document.edit(found, tr("Add sensors of %1").arg(QFileInfo(recording).fileName()), {});
 }
 
-// Of sessions that leave out what their recordings do not say either.
+// For sessions without a resolution whose recordings do not contain it either.
 void SessionFiles::takeResolutions(const QString& recording, const Inspection& inspection) {
   CalibrationDocument& document = workbench_.document;
   const Session found = withSeenResolutions(document.session(), recording.toStdString(), inspection);
@@ -316,11 +316,11 @@ bool SessionFiles::mayDiscard() {
   if (!workbench_.document.modified()) return true;
   QMessageBox question(QMessageBox::Question, tr("Unsaved changes"),
                        workbench_.document.file().isEmpty()
-                           ? tr("Save what was set for %1 as a session?").arg(workbench_.document.title())
+                           ? tr("Save the settings for %1 as a session?").arg(workbench_.document.title())
                            : tr("Save the changes to %1?").arg(workbench_.document.title()),
                        QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
   question.setInformativeText(
-      tr("Board, sensors and parameters are kept in the session file; the recording stays as it is."));
+      tr("Board, sensors and parameters are stored in the session file; the recording is not changed."));
   question.setDefaultButton(QMessageBox::Save);
   const int answer = question.exec();
   if (answer == QMessageBox::Save) return save();
@@ -331,7 +331,7 @@ void SessionFiles::openDemo() {
   const QString folder =
       QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/demo_" + workbench_.version;
   const QString session = folder + "/session.yaml";
-  if (QFile::exists(session)) return open(session);  // it comes last: the recording is whole
+  if (QFile::exists(session)) return open(session);  // written last, so the recording is complete
   if (!mayDiscard()) return;
   QDir().mkpath(QFileInfo(folder).path());
   const bool begun = workbench_.runner.start(
@@ -355,7 +355,7 @@ void SessionFiles::chooseReference() {
   try {
     workbench_.document.loadReference(file);
   } catch (const CalibrationError& error) {
-    emit failed(tr("%1 cannot be compared with").arg(QFileInfo(file).fileName()), errorOf(error));
+    emit failed(tr("%1 cannot be used for the comparison").arg(QFileInfo(file).fileName()), errorOf(error));
   }
 }
 
@@ -384,7 +384,7 @@ void SessionFiles::writeResult(const QString& title, const ExportRequest& reques
   RunRecord record = workbench_.document.last();
   if (!record.run) return;
   record.session.exports = request.targets;
-  const auto outcome = std::make_shared<ExportOutcome>();  // read here once the job has ended
+  const auto outcome = std::make_shared<ExportOutcome>();  // read here after the job
   const bool begun = workbench_.runner.start(
       title, {}, [record, request, outcome, version = workbench_.version](const RunContext& context) {
         *outcome = exportRun(record, request, version, context);
@@ -417,7 +417,7 @@ void SessionFiles::showReport() {
   const QString file = QDir(report_folder_).filePath(kReport);
   if (QDesktopServices::openUrl(QUrl::fromLocalFile(file))) return;
   emit failed(tr("The report cannot be shown"),
-              {true, file, tr("no program of this desktop opens it"), tr("Open it with a browser")});
+              {true, file, tr("no program on this computer opens it"), tr("Open it with a browser")});
 }
 
 void SessionFiles::exportEveryResult(bool wanted) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files in and out: sessions, recordings, the demo, results; asks about
-// unsaved changes, remembers recent files.
+// Opens and saves sessions, recordings, the demo and results; asks about unsaved changes and stores the
+// recent files.
 #pragma once
 
 #include "ui/window/export_dialog.h"
@@ -34,10 +34,10 @@ class SessionFiles : public QObject {
   void open(const QString& path);  // a session file, a recording, a saved run, or a folder with one of them
   void chooseSession();
   void chooseRecording();
-  // A recording beside the session's, for sensors that it lacks.
+  // Adds a recording to the session, for sensors that it lacks.
   void chooseFurtherRecording();
   void addRecording(const QString& path);
-  // Asks where a recording is that is not at its place any more.
+  // Asks for the new place of a missing recording.
   void lookForRecording(const QString& missing);
   bool save();
   bool saveAs();
@@ -45,12 +45,12 @@ class SessionFiles : public QObject {
   void chooseReference();
   void chooseExportFolder();
   void exportTo(const QString& folder);
-  // Every result goes to a folder that is asked for now, as soon as it is there; until another session comes.
+  // Exports every further result to a folder, which is chosen now; ends with the session.
   void exportEveryResult(bool wanted);
-  // report.html of the last result, in the browser; written to a folder for the moment if no export has it.
+  // Opens report.html of the last result in the browser; written to a temporary folder if no export has it.
   void openReport();
 
-  // False if the person would rather keep what is not saved.
+  // False if the user wants to keep unsaved changes.
   bool mayDiscard();
   QStringList recentFiles() const;
 
@@ -72,7 +72,8 @@ class SessionFiles : public QObject {
   void recordingInspected(const QString& recording, const Inspection& inspection);
   void furtherRecordingInspected(const QString& recording, const Inspection& inspection);
   void takeResolutions(const QString& recording, const Inspection& inspection);
-  bool refuseUseless(const QString& recording, const Inspection& inspection);  // false for what is useful
+  bool refuseUseless(const QString& recording,
+                     const Inspection& inspection);  // false if the recording is useful
   QString askForRecording(const QString& title);
   void inspectSession();
   QString lastFolder() const;
@@ -83,11 +84,11 @@ class SessionFiles : public QObject {
 
   Workbench& workbench_;
   QWidget* window_;
-  QString every_result_folder_;                             // empty: results are not exported by themselves
-  QString awaited_recording_;                               // opened as soon as it has been looked through
-  QStringList further_recordings_;                          // added to the session as soon as they have been
-  std::optional<std::vector<std::string>> export_targets_;  // chosen by hand; else as the session says
-  std::shared_ptr<const CalibrationRun> reported_run_;      // the run that report_folder_ is of
+  QString every_result_folder_;                             // empty: no automatic export
+  QString awaited_recording_;                               // opened after its inspection
+  QStringList further_recordings_;                          // added to the session after their inspection
+  std::optional<std::vector<std::string>> export_targets_;  // chosen by the user; else those of the session
+  std::shared_ptr<const CalibrationRun> reported_run_;      // run of report_folder_
   QString report_folder_;
   QTemporaryDir momentary_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One line of the steps panel.
+// One row of the steps panel.
 #pragma once
 
 #include <QWidget>

@@ -12,10 +12,10 @@
 namespace evical::ui {
 namespace {
 
-// Words that change lay out the panel anew, and nobody reads faster.
+// Minimum time between changes of text: they trigger a layout of the panel, and faster ones are unreadable.
 constexpr double kReadable_s = 0.25;
 
-// As core names them (CalibrationObserver); others are added when they come.
+// Names of core (CalibrationObserver); rows for others are added when they start.
 const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation"};
 // Stages that only some runs have get their row when they start.
@@ -101,7 +101,7 @@ StepRow* StepsPanel::addRow(const QString& key, const QString& title,
   return added;
 }
 
-// Steps that nobody announced come at the end of their stage.
+// Unknown steps are added at the end of their stage.
 StepRow* StepsPanel::rowAfter(const QString& key, std::optional<CalibrationStage> step_of) {
   bool passed = false;
   for (const StageRow& stage : kCalibrationStages) {
@@ -120,7 +120,7 @@ StepRow* StepsPanel::row(const QString& key) {
   return found == rows_.end() ? nullptr : found->second;
 }
 
-// Passes have their row when they start: nobody knows how many it takes. Frames need no first look.
+// Each pass gets its row at its start, since the number of passes is unknown. Frames need no first look.
 void StepsPanel::startPass(const QString& stage) {
   for (const auto& [key, step] : rows_)
     if (step->state() == StepState::Running) step->setState(StepState::Done);
@@ -178,7 +178,7 @@ void StepsPanel::addInitialisationNote(const InitialisationNote& note) {
   StepRow* step = row(note.step);
   if (step == nullptr) step = addRow(note.step, capitalised(note.step), CalibrationStage::Initialise);
   step->setState(StepState::Done);
-  // Room is scarce: the tool tip says of which sensor it is.
+  // Space is limited: only the tool tip names the sensor.
   step->setKeyNumber(note.result, note.subject.isEmpty() ? note.result : note.subject + ": " + note.result);
   step->setTime(note.duration_s);
 }
@@ -206,7 +206,7 @@ void StepsPanel::setPass(const LensPass& pass) {
   step->setKeyNumber(pass.moved_px > 0.0
                          ? tr("%1 views, moved %2 px").arg(pass.views).arg(pass.moved_px, 0, 'g', 2)
                          : tr("%1 views").arg(pass.views),
-                     tr("%1 views, points fit to %2 px RMS, the lens moved pixels by %3 px")
+                     tr("%1 views, reprojection error %2 px RMS, change of the lens %3 px")
                          .arg(pass.views)
                          .arg(pass.reprojection_rms_px, 0, 'g', 2)
                          .arg(pass.moved_px, 0, 'g', 2));
@@ -221,7 +221,7 @@ void StepsPanel::finish(JobOutcome outcome) {
   }
 }
 
-// Those that this kind of rig does not need.
+// Removes steps that this kind of rig does not need.
 void StepsPanel::dropUnusedSteps() {
   for (const QString& step : kInitialisationSteps) {
     const auto found = rows_.find(step);
@@ -237,7 +237,7 @@ void StepsPanel::setRun(const CalibrationRun& run) {
   for (const StageRow& stage : kCalibrationStages) {
     if (stage.duration_s == nullptr) continue;
     row(stage.stage)->setTime(result.timing.*stage.duration_s);
-    // Also of a run of another time.
+    // Also for runs that were opened from a folder.
     if (stage.stage != CalibrationStage::CompareHalves || result.split_half_check)
       row(stage.stage)->setState(StepState::Done);
   }
@@ -255,9 +255,9 @@ void StepsPanel::setRun(const CalibrationRun& run) {
   row(CalibrationStage::Optimise)->setKeyNumber(tr("reprojection %1").arg(reprojections.join(", ")));
   StepRow* const halves = row(CalibrationStage::CompareHalves);
   if (!result.split_half_check) {
-    halves->setKeyNumber(tr("not asked for"));
+    halves->setKeyNumber(tr("not requested"));
   } else if (result.split_half_check->failure.empty()) {
-    halves->setKeyNumber(tr("they differ by %1 sigmas").arg(result.split_half_check->rms_sigmas, 0, 'f', 2));
+    halves->setKeyNumber(tr("difference of %1 sigmas").arg(result.split_half_check->rms_sigmas, 0, 'f', 2));
   } else {
     halves->setKeyNumber(QString::fromStdString(result.split_half_check->failure));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The steps of a calibration in their order, each with its state, progress, time taken and key number.
+// Steps of a calibration in order, each with its state, progress, duration and key number.
 #pragma once
 
 #include "core/data/calibration_stage.h"
@@ -26,13 +26,13 @@ class StepsPanel : public QWidget {
   explicit StepsPanel(QWidget* parent = nullptr);
 
   void reset();
-  void setAim(CalibrationAim aim);        // whose steps they are; a run's end leaves them
+  void setAim(CalibrationAim aim);        // whose steps are shown; they remain after a run
   void startStage(const QString& stage);  // by name (core/data/calibration_stage.h)
   void setProgress(const JobProgress& progress);
   void setDetections(const LiveDetections& detections);
   void addInitialisationNote(const InitialisationNote& note);
   void setIterations(const LiveIterations& iterations);
-  void setPass(const LensPass& pass);  // of a camera alone
+  void setPass(const LensPass& pass);  // for a camera alone
   void finish(JobOutcome outcome);
   void setRun(const CalibrationRun& run);  // the final numbers
 
@@ -43,10 +43,10 @@ class StepsPanel : public QWidget {
   void dropUnusedSteps();
   void addStages();
   void startPass(const QString& stage);
-  // `step_of`: the stage that it is a step of; none: it is a stage.
+  // `step_of`: the stage of this step; none: it is a stage.
   StepRow* addRow(const QString& key, const QString& title, std::optional<CalibrationStage> step_of = {});
   StepRow* rowAfter(const QString& key,
-                    std::optional<CalibrationStage> step_of);  // null: none comes after it
+                    std::optional<CalibrationStage> step_of);  // null: none follows
   StepRow* row(const QString& key);
   StepRow* row(CalibrationStage stage);
 
@@ -55,7 +55,7 @@ class StepsPanel : public QWidget {
   CalibrationAim aim_ = CalibrationAim::Rig;
   QString stage_;
   double stage_begin_s_ = 0.0, elapsed_s_ = 0.0;
-  double counted_s_ = -1.0, timed_s_ = -1.0;  // when windows and seconds were last told
+  double counted_s_ = -1.0, timed_s_ = -1.0;  // time of the last update of windows and seconds
 };
 
 }  // namespace evical::ui

@@ -36,7 +36,7 @@ void scrollTo(QTextBrowser& browser, int block) {
   browser.verticalScrollBar()->setValue(static_cast<int>(top_px));
 }
 
-// The guide's parts; a click goes there.
+// Parts of the guide, as links.
 QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
   auto* const contents = new QListWidget(parent);
   contents->setObjectName("contents");
@@ -58,7 +58,7 @@ QString wholeGuide() {
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
 }
 
-// The part under this heading, up to the next one.
+// Part with this heading, up to the next one.
 QString partOfGuide(const QString& heading) {
   const QString all = wholeGuide();
   const qsizetype begin = all.indexOf("\n## " + heading + '\n');
@@ -73,10 +73,10 @@ void showUserGuide(QWidget* window) {
   QDialog* const dialog = makeReadingDialog(window, "user_guide", QObject::tr("User guide"));
   auto* const parts = new QSplitter(dialog);
   QTextBrowser* const browser = makeBrowser("guide", parts);
-  browser->document()->setMarkdown(withPictures(wholeGuide()));  // which forgets pictures that were there
+  browser->document()->setMarkdown(withPictures(wholeGuide()));  // discards earlier pictures
   addGuidePictures(*browser->document(), kPicture_px, dialog->devicePixelRatioF());
   browser->document()->markContentsDirty(0, browser->document()->characterCount());
-  browser->moveCursor(QTextCursor::Start);  // setMarkdown leaves it at the end, and the view follows it
+  browser->moveCursor(QTextCursor::Start);  // setMarkdown leaves it at the end, which scrolls the view
   parts->insertWidget(0, makeContents(browser, parts));
   parts->setSizes({kContents_px, kWidth_px - kContents_px});
   parts->setStretchFactor(1, 1);

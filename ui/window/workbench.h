@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All of the program that is no widget: one document, and the jobs that work for it.
+// The program without widgets: one document, and the jobs that work on it.
 #pragma once
 
 #include "ui/document/calibration_document.h"
@@ -24,15 +24,15 @@ struct Workbench {
   CalibrationDocument document;
   JobRunner runner;
   CalibrationJob calibration{runner};
-  RunHistory history;  // has a thread of its own
+  RunHistory history;  // has its own thread
   LensDocument lens{document};
-  IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
+  IntrinsicsJob intrinsics{runner};  // for the lens of one camera alone
   ResultCheckJob result_check{runner};
   RepeatJob repeat{runner};
   MaintainJob maintain{runner};
-  InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
-  RecordingCheckJob check;   // so has this one, which gives way to all others
-  GrowingRecording growing;  // the session's files, where somebody still writes them
+  InspectionJob inspection;  // has its own runner, in parallel to a calibration
+  RecordingCheckJob check;   // has its own runner, with lower priority than all others
+  GrowingRecording growing;  // the session's files that are still being written
 };
 
 }  // namespace evical::ui

@@ -16,13 +16,13 @@
 namespace evical {
 namespace {
 
-// The numbers of one sensor that change together.
+// Numbers of one sensor that change together.
 struct Candidate {
   ChangeKind kind;
   QuantityOwner owner;
   std::size_t sensor;
   std::vector<Eigen::Index> columns;
-  std::vector<double> largest;  // of each number: holds directions without information
+  std::vector<double> largest;  // of each number: bounds directions without information
 };
 
 std::optional<ChangeKind> kindOf(const QuantityInfo& info) {
@@ -34,7 +34,7 @@ std::optional<ChangeKind> kindOf(const QuantityInfo& info) {
 }
 
 std::vector<Candidate> candidatesOf(const ProjectedInformation& information) {
-  constexpr double kLargest = 1000.0;  // of what makes quantities comparable: 57 deg, 1 m, 0.1 s
+  constexpr double kLargest = 1000.0;  // comparable units: 57 deg, 1 m, 0.1 s
   std::vector<Candidate> all;
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
     const Quantity& quantity = information.quantities[i];
@@ -62,7 +62,7 @@ class ChangeTest {
     for (const Eigen::VectorXd& score : information.scores) gradient_ += score;
   }
 
-  // The most certain one; nothing in recordings too short for two parts.
+  // The most certain change; nullopt in recordings too short for two parts.
   std::optional<SensorChange> best(const Candidate& candidate) const {
     std::optional<SensorChange> best;
     for (const Step& step : likelySteps(candidate)) {
@@ -76,7 +76,7 @@ class ChangeTest {
   }
 
  private:
-  // Of all stretches from one on.
+  // Sums over all stretches from one on.
   struct Part {
     std::size_t from;
     Eigen::VectorXd score;
@@ -85,14 +85,14 @@ class ChangeTest {
   struct Step {
     std::size_t from;
     Eigen::VectorXd change;
-    Eigen::MatrixXd others;  // what the other unknowns, which are free to follow, take of it
+    Eigen::MatrixXd others;  // reduction by the other unknowns, which are free
     Eigen::MatrixXd information;
 
-    double explains = 0.0;  // chi-square, with all as stated
+    double explains = 0.0;  // chi-square, with the given sigmas
   };
 
-  // By stretch, how many of those before it tell anything of these numbers: others have a little all the same, by
-  // what the trajectory carries over.
+  // For each stretch, the number of earlier ones with information on these numbers. Others have a little,
+  // too, through the trajectory.
   std::vector<std::size_t> tellingBefore(const Candidate& candidate) const {
     constexpr double kLeastShare = 0.05;  // of the mean
     const Eigen::Index first = candidate.columns.front();
@@ -105,10 +105,10 @@ class ChangeTest {
     return before;
   }
 
-  // The moments at which a step explains most. Either part has its share of what the sensor measured: one view
-  // before a gap is no part.
+  // Moments at which a step explains most. Either part needs its share of the sensor's measurements: one view
+  // before a gap is not enough.
   std::vector<Step> likelySteps(const Candidate& candidate) const {
-    constexpr double kLeastPart_s = 1.5;  // shorter parts tell little
+    constexpr double kLeastPart_s = 1.5;  // shorter parts have little information
     constexpr std::size_t kTried = 30;
     const std::size_t count = information_.scores.size();
     std::vector<Step> steps;
@@ -147,7 +147,7 @@ class ChangeTest {
     return step;
   }
 
-  // Of the step, stretch by stretch, once it is made.
+  // Scores by stretch after the step.
   std::vector<Eigen::VectorXd> scoresLeft(const Candidate& candidate, const Step& step) const {
     const std::vector<Eigen::Index>& columns = candidate.columns;
     const Eigen::VectorXd moved = -inverse_.times(gradient_) - step.others * step.change;
@@ -163,8 +163,8 @@ class ChangeTest {
     return left;
   }
 
-  // By information or by the scatter of what is left, whichever is less certain; and where more is left than noise
-  // leaves, a step must stand out from that, too.
+  // By information or by the scatter of the remaining scores, whichever is less certain. If the remaining
+  // scores exceed the noise, the step must be significant relative to them, too.
   static double sigmasOf(const Step& step, const std::vector<Eigen::VectorXd>& left) {
     constexpr double kLeastScatter = 1e-9;
     const Eigen::MatrixXd scatter = scoreScatter(left, step.change.size());
@@ -221,19 +221,18 @@ std::string wordsOf(const CalibrationInput& input, const SensorChange& change) {
   switch (change.kind) {
     case ChangeKind::Clock:
       return fmt::format(
-          "{}: its clock and that of {} seem to step by {:.2g} ms against each other about {:.1f} s after "
-          "the "
-          "start ({:.0f} sigmas): calibrate the larger part alone",
+          "{}: its clock seems to step relative to that of {} by {:.2g} ms about {:.1f} s after the start "
+          "({:.0f} sigmas): calibrate only the larger part",
           name, referenceName(input), std::abs(timeOffset_ms(change)), change.at_s, change.sigmas);
     case ChangeKind::Pose:
       return fmt::format(
-          "{}: it seems to have moved against {} about {:.1f} s after the start, by {:.2g} deg and {:.2g} mm "
-          "({:.0f} sigmas): fasten it and record again, or calibrate the larger part alone",
+          "{}: it seems to have moved relative to {} about {:.1f} s after the start, by {:.2g} deg and "
+          "{:.2g} mm ({:.0f} sigmas): fasten it and record again, or calibrate only the larger part",
           name, referenceName(input), change.at_s, rotation_deg(change), translation_mm(change),
           change.sigmas);
     case ChangeKind::Biases:
       return fmt::format(
-          "{}: its biases change within the recording, by {:.2g} rad/s and {:.2g} m/s^2 ({:.0f} sigmas): "
+          "{}: its biases change within the recording by {:.2g} rad/s and {:.2g} m/s^2 ({:.0f} sigmas): "
           "calibrate with optimisation.model.bias_model: linear",
           name, change.change.head<3>().norm(), change.change.tail<3>().norm(), change.sigmas);
   }
@@ -241,7 +240,7 @@ std::string wordsOf(const CalibrationInput& input, const SensorChange& change) {
 }
 
 Repair repairOf(const SensorChange& change, const ProjectedInformation& information) {
-  constexpr double kMargin_s = 0.5;  // as well as the moment is known
+  constexpr double kMargin_s = 0.5;  // uncertainty of the moment
   if (change.kind == ChangeKind::Biases) return {"optimisation.model.bias_model", "linear"};
   const double begin_s = std::max(0.0, information.first_stretch_s);
   const double end_s =

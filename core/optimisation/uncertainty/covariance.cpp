@@ -26,7 +26,7 @@ ProjectedInformation projected(CalibrationProblem& problem, const CalibrationInp
   return projectInformation(problem, options.correlation_time_s, options.threads, context);
 }
 
-// Of the information of all that is estimated, noise taken out of it.
+// Information of all estimated quantities, noise-corrected.
 struct Sigmas {
   QuantityCovariance covariance;
   UncertaintyReport report;
@@ -49,7 +49,7 @@ Sigmas sigmasFrom(CalibrationProblem& problem, const ProjectedInformation& infor
 UncertaintyReport estimateSigmas(const CalibrationInput& input, const BatchSolution& solution,
                                  const OptimisationOptions& options, const RunContext& context) {
   OptimisationOptions apart = options;
-  apart.share_sensors = false;  // until they are tied, as everywhere
+  apart.share_sensors = false;  // until they are tied
   CalibrationProblem problem(input, apart, solution.state);
   ProjectedInformation information = projected(problem, input, solution, options, context);
   information = withSharedSensors(input, options, std::move(information));

@@ -1,4 +1,4 @@
-// How sure biases that drift are at their knots.
+// Uncertainty of drifting biases at their knots.
 #pragma once
 
 #include "core/data/calibration_result.h"

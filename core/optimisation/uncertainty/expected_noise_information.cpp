@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-// The splines, for a while elsewhere.
+// Moves the splines temporarily.
 class SplineShift {
  public:
   explicit SplineShift(const UnknownColumns& columns) {
@@ -34,7 +34,7 @@ class SplineShift {
     }
   }
 
-  // From where they were, in tangent columns.
+  // Moves them from their original values, in tangent columns.
   void moveBy(const Eigen::VectorXd& shift) {
     const double* number = numbers_.data();
     for (const Unknown* each : splines_) {
@@ -53,7 +53,7 @@ class SplineShift {
   std::vector<double> numbers_;
 };
 
-// Of the quantities, where the splines are now.
+// Information of the quantities at the current splines.
 Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, const RunContext& context) {
   const Eigen::Index quantities = columns.quantitySize(), knots = columns.driftSize();
   NormalEquations equations(columns);
@@ -69,10 +69,10 @@ Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, cons
 
 }  // namespace
 
-// Either way, so that what is linear in the errors cancels.
+// Both signs, so that linear terms cancel.
 Eigen::MatrixXd informationFromNoise(const UnknownColumns& columns, const BandCholesky& splines,
                                      const Eigen::MatrixXd& total, int threads, const RunContext& context) {
-  constexpr std::uint64_t kSeed = 20260102;  // any
+  constexpr std::uint64_t kSeed = 20260102;  // arbitrary
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> normal;
   Eigen::VectorXd shift(columns.splineSize());

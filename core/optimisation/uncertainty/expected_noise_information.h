@@ -1,4 +1,4 @@
-// What the splines' own errors add to the information of the quantities.
+// Contribution of the splines' own errors to the information of the quantities.
 #pragma once
 
 #include "core/base/progress.h"
@@ -10,9 +10,9 @@ namespace evical {
 
 class BandCholesky;
 
-// On average, by simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): errors once more of the size that the
-// splines already have add once more what these have added. `splines`: their
-// information, factored; `total`: that of the quantities where the splines are.
+// Mean contribution, by simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): further errors of
+// the size that the splines already have add the same contribution again. `splines`: their factored
+// information; `total`: that of the quantities at the solution's splines.
 Eigen::MatrixXd informationFromNoise(const UnknownColumns& columns, const BandCholesky& splines,
                                      const Eigen::MatrixXd& total, int threads, const RunContext& context);
 

@@ -9,15 +9,15 @@
 namespace evical {
 namespace {
 
-// Errors of a window's circles have parts in common, and the splines therefore larger errors than their
-// information says: three times, in simulated recordings.
+// Errors of a window's circles have common parts, so that the splines have larger errors than their
+// information indicates: by a factor of three in simulated recordings.
 constexpr double kNoiseFactor = 10.0;
-// Delays are told from the trajectory's jerk, whose errors are an accelerometer's own: white, so that they count
-// nearly as they are.
+// Delays are determined from the trajectory's jerk, whose errors come from the accelerometer: white, so that
+// their factor is near 1.
 constexpr double kDelayNoiseFactor = 3.0;
 constexpr double kLeastShare = 1e-12;  // of the strongest direction, for the decomposition only
 
-// What noise has added, times its factor.
+// Information added by noise, times its factor.
 Eigen::MatrixXd feigned(const ProjectedInformation& information) {
   Eigen::VectorXd root = Eigen::VectorXd::Constant(information.total.rows(), std::sqrt(kNoiseFactor));
   for (std::size_t i = 0; i < information.quantities.size(); ++i)

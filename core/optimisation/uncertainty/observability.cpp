@@ -24,7 +24,7 @@ bool hasSigmas(const QuantityCovariance& covariance, std::size_t quantity) {
   return own.allFinite() && own.diagonal().minCoeff() > 0.0;
 }
 
-// In its worst direction.
+// Sigma in the worst direction.
 struct Worst {
   double sigma;
   Eigen::VectorXd direction;
@@ -54,10 +54,10 @@ class Judge {
  private:
   struct Part {
     std::size_t quantity;
-    Eigen::Index at, size;  // rows among those needed
+    Eigen::Index at, size;  // rows among the needed quantities
     QuantityNeed need;
   };
-  // A direction in the reference IMU's frame, said in the sensor's own: its axis, or the components.
+  // A direction in the reference IMU's frame, given in the sensor's own: its axis, or the components.
   std::string axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const;
   std::string partWords(const Quantity& quantity, QuantityNeed need, const Eigen::VectorXd& direction) const;
   std::string directionWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const;
@@ -120,9 +120,9 @@ const char* nameOf(QuantityNeed need) {
 // Empty if the part is certain enough in every direction.
 std::string Judge::unmetNeed(const Part& part) const {
   const Quantity& quantity = covariance_.quantities[part.quantity];
-  // Of a problem that has no inverse: nothing compares with what is no number, and so would be certain enough.
+  // A singular problem has NaN sigmas, which no comparison would reject.
   if (!hasSigmas(covariance_, part.quantity))
-    return fmt::format("the {} of {} has no sigma: splines or sensors are without measurements",
+    return fmt::format("the {} of {} has no sigma: splines or sensors have no measurements",
                        nameOf(part.need), sensorName(input_, quantity));
   const auto [sigma, direction] = worstOf(covariance_, part.quantity);
   if (!(sigma > neededSigma(part.need, options_))) return {};
@@ -181,7 +181,7 @@ Observability Judge::judge() const {
   }
   if (result.status == CalibrationStatus::Doubtful) {
     result.reason +=
-        ". Record again, turning about all three axes and moving along all three, faster or for longer";
+        ". Record again: rotate about all three axes and move along all three, faster or for longer";
   }
   return result;
 }
@@ -207,11 +207,11 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
     const double uncertain_ms = 0.5e3 * camera.observations.stamp_step_s;
     if (!options.judge_sigmas || input.imus.empty() || uncertain_ms <= options.needed_time_offset_ms)
       continue;
-    flagDoubtful(fmt::format("the time stamps of {}'s events step by {:.3g} ms, which leaves its time offset "
-                             "open by {:.2g} ms "
-                             "(needed: {:.2g}): record the sensor's own stamps, in us",
-                             camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
-                 result);
+    flagDoubtful(
+        fmt::format("the event time stamps of {} have steps of {:.3g} ms, which leave an error of "
+                    "{:.2g} ms in its time offset (needed: {:.2g}): record the sensor's own stamps in us",
+                    camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
+        result);
   }
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const QuantityInfo& info = *covariance.quantities[i].info;
@@ -219,9 +219,10 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
     const double whole_mm = 1e3 * worstOf(covariance, i).sigma, own_mm = 1e3 * worstOf(scale_known, i).sigma;
     if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
     flagDoubtful(
-        fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "
-                    "{:.2g}): measure it better and say so by board.spacing_std, or come nearer to it",
-                    sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
+        fmt::format(
+            "the translation of {} has a sigma of {:.2g} mm with the board's size uncertainty (needed: "
+            "{:.2g}): measure the board more accurately and set board.spacing_std, or move closer",
+            sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
         result);
   }
   return result;

@@ -1,5 +1,5 @@
-// What a covariance means to people: which needs it meets, and which direction is
-// the weakest, in plain words.
+// Interpretation of a covariance for people: which needs it meets, and its weakest
+// direction.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -13,17 +13,18 @@
 namespace evical {
 
 struct Observability {
-  std::vector<double> eigenvalues;      // as UncertaintyReport::observability, with the scale known
-  std::vector<std::string> directions;  // of each eigenvalue, in words
+  std::vector<double> eigenvalues;      // as UncertaintyReport::observability, for a known scale
+  std::vector<std::string> directions;  // text for each eigenvalue
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;
 };
 
-// What is asked of a sigma, in SI units.
+// Needed sigma, in SI units.
 double neededSigma(QuantityNeed need, const OptimisationOptions& options);
 
-// What a recording can mend is judged as if the board and gravity were known (`scale_known`, as withScaleKnown
-// has it); what only a better measure of the board can, against a need of its own.
+// Needs that another recording can meet are compared with the sigmas for a known board and gravity
+// (`scale_known`, from withScaleKnown). Needs that only a better board measurement can meet are compared
+// separately.
 Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,
                                  const QuantityCovariance& covariance, const QuantityCovariance& scale_known,
                                  const OptimisationOptions& options);

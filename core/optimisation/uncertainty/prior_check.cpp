@@ -28,9 +28,9 @@ struct Unit {
 
 // One number, in SI units.
 struct Compared {
-  double known, known_sigma;  // 0: given
-  double alone, alone_sigma;  // what the recording alone says
-  double pull;                // that, less the solution
+  double known, known_sigma;  // sigma 0: given
+  double alone, alone_sigma;  // estimate from the recording alone
+  double pull;                // alone minus the solution
 };
 
 class Comparison {
@@ -49,7 +49,7 @@ class Comparison {
   void compareSensor(const std::string& sensor, const Rows& rows, bool reference, const Prior& prior,
                      const State& solution, const State& alone, const Sigma& sigma);
   void compareLens(std::size_t camera);
-  // Of several numbers the one that is furthest off is said.
+  // Reports the number with the largest deviation.
   void judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
              const std::vector<std::string>& parts);
 
@@ -74,10 +74,10 @@ void Comparison::judge(const std::string& name, const Unit& unit, const std::vec
     if (sigmas < worst) continue;
     worst = sigmas;
     const std::string known = each.known_sigma > 0.0
-                                  ? fmt::format("the prior says {:.6g} +- {:.2g}", unit.factor * each.known,
+                                  ? fmt::format("the prior is {:.6g} +- {:.2g}", unit.factor * each.known,
                                                 unit.factor * each.known_sigma)
                                   : fmt::format("given as {:.6g}", unit.factor * each.known);
-    text = fmt::format("{}{}: {}{}, but the recording alone says {:.6g} +- {:.2g}{} ({:.0f} sigmas away)",
+    text = fmt::format("{}{}: {}{}, but the recording alone gives {:.6g} +- {:.2g}{} ({:.0f} sigmas apart)",
                        name, parts[i], known, unit.name, unit.factor * each.alone,
                        unit.factor * each.alone_sigma, unit.name, sigmas);
   }
@@ -86,7 +86,7 @@ void Comparison::judge(const std::string& name, const Unit& unit, const std::vec
   if (matters && check_.doubt.empty()) check_.doubt = text + "; check the session's prior";
 }
 
-// What a value is compared with, and how it is told: rotations as vectors from the known one, which is 0.
+// Numbers to compare: rotations as vectors from the known one, which is 0.
 template <class Value>
 Eigen::VectorXd fromKnown(const QuantityInfo&, const Value& value, const Value&) {
   return quantityNumbers(value);
@@ -125,7 +125,7 @@ void Comparison::compareRow(const std::string& sensor, const Row& row, const Pri
   for (Eigen::Index i = 0; i < value.size(); ++i)
     numbers.push_back({value[i], value_sigma[i], found_alone[i], alone_sigma[i], found_alone[i] - found[i]});
   const std::string shown_unit = info.shown_unit;
-  judge(sensor + "." + info.name + (isRotation(info) ? " (from there)" : ""),
+  judge(sensor + "." + info.name + (isRotation(info) ? " (relative to the prior)" : ""),
         {shown_unit.empty() ? "" : fmt::format(" {}", shown_unit), info.shown_factor,
          info.need == QuantityNeed::None ? kNoNeed : neededSigma(info.need, options_)},
         numbers, partWords(info));
@@ -140,7 +140,7 @@ void Comparison::compareSensor(const std::string& sensor, const Rows& rows, bool
   });
 }
 
-// Of a lens that was given with sigmas.
+// Comparison of a lens that was given with sigmas.
 void Comparison::compareLens(std::size_t camera) {
   const CameraLens& lens = input_.cameras[camera].lens;
   const auto &solved = solution_.cameras[camera].lens.solved, &alone = alone_.cameras[camera].lens.solved;
@@ -180,7 +180,7 @@ CalibrationInput withoutPriors(CalibrationInput input) {
   return input;
 }
 
-// What is not estimated otherwise is, where there is a prior to hold against the recording.
+// Frees the drift if it has a prior to compare.
 void freeDrift(const SensorPrior& prior, OptimisationOptions& options) {
   options.time_offset_drift = options.time_offset_drift || prior.time_offset_drift.has_value();
 }
@@ -214,7 +214,8 @@ PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solut
     const UncertaintyReport sigmas = estimateSigmas(without, alone, free, quiet);
     check = Comparison(input, options, solution.state, alone.state, sigmas).run();
   } catch (const CalibrationError& error) {
-    check.notes.push_back(std::string("the priors could not be held against the recording: ") + error.what());
+    check.notes.push_back(std::string("the priors could not be compared with the recording: ") +
+                          error.what());
   }
   if (!given.empty()) check.notes.insert(check.notes.begin(), "given, not estimated: " + joined(given));
   return check;

@@ -1,6 +1,5 @@
-// Whether the recording agrees with what was said to be known: each given value and each prior
-// is held against what the recording alone says, solved once more from the solution with
-// everything free and without priors.
+// Check of priors: each given value and each prior is compared with the recording alone, by another
+// solution that starts at the current one with everything free and without priors.
 #pragma once
 
 #include <string>
@@ -14,11 +13,11 @@ struct OptimisationOptions;
 struct RunContext;
 
 struct PriorCheck {
-  std::vector<std::string> notes;  // what is given, and each value that the recording contradicts
-  std::string doubt;               // where that matters against the needs; empty if nowhere
+  std::vector<std::string> notes;  // given values, and contradicted ones
+  std::string doubt;               // relevant contradictions; empty if none
 };
 
-// Without priors and with all groups free there is nothing to check, and it costs nothing.
+// Returns at once if there are no priors and all groups are free.
 PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solution,
                        const OptimisationOptions& options, const RunContext& context);
 

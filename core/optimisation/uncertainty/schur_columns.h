@@ -1,4 +1,4 @@
-// Quantities that are dropped from what is known, as if they were exactly what they are, or that are one and the same.
+// Quantities that are removed from the information, as if known exactly, or that are tied to others.
 #pragma once
 
 #include "core/optimisation/uncertainty/projected_information.h"
@@ -13,9 +13,9 @@ class KeptColumns {
  public:
   explicit KeptColumns(const ProjectedInformation& all) : first_column_(all.first_column) {}
 
-  // In the order of the quantities; those that are never kept are dropped.
+  // In the order of the quantities; those that are not kept are removed.
   void keep(std::size_t quantity);
-  // A quantity moves with one that is kept, and is as long.
+  // Ties a quantity to a kept one of equal size.
   void tie(std::size_t quantity, std::size_t to_kept);
 
   const std::vector<std::size_t>& quantities() const { return quantities_; }
@@ -31,7 +31,7 @@ class KeptColumns {
     return first_column_[quantity + 1] - first_column_[quantity];
   }
 
-  std::vector<Eigen::Index> first_column_;  // of all
+  std::vector<Eigen::Index> first_column_;  // of all quantities
   std::vector<std::size_t> quantities_;
   std::vector<Tie> ties_;
 };

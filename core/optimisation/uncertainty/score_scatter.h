@@ -1,4 +1,5 @@
-// Scores of stretches of time scatter as their information says where residuals are uncorrelated and the model holds.
+// Scatter of the scores of stretches of time; equal to their information for white residuals and a correct
+// model.
 #pragma once
 
 #include "core/numerics/newey_west.h"
@@ -10,15 +11,15 @@
 
 namespace evical {
 
-// Scores come in stretches of the correlation time: weights that fall to zero over the next three see
-// correlation over up to about that time in full.
+// Scores are summed over stretches of the correlation time: weights that fall to zero over the next three
+// include the full correlation over up to about that time.
 inline constexpr std::size_t kScoreLags = 3;
 
 inline Eigen::MatrixXd scoreScatter(const std::vector<Eigen::VectorXd>& scores, Eigen::Index size) {
   return neweyWestByLag(scores, size, kScoreLags);
 }
 
-// Their variance over what the information says, by its mean over the numbers; 1 where all is as stated.
+// Ratio of their variance to the information, mean over the numbers; 1 if model and sigmas are correct.
 inline double scatterRatio(const Eigen::MatrixXd& scatter, const Eigen::MatrixXd& information) {
   constexpr double kNone = 1e-300;
   return scatter.diagonal().cwiseQuotient(information.diagonal().cwiseMax(kNone)).mean();

@@ -19,7 +19,7 @@
 namespace evical {
 namespace {
 
-// Free for the test's sake, not because there is a prior to be weighed or an option that asks for it.
+// Free only for the test, without a prior with a sigma or an option that releases it.
 bool isHeld(const Quantity& quantity, const CalibrationInput& input, const OptimisationOptions& options) {
   if (quantity.info->id == QuantityId::Intrinsics) return !options.freesIntrinsics();
   if (quantity.info->release == QuantityRelease::BoardBow) return !options.board_bow;
@@ -30,7 +30,7 @@ bool isHeld(const Quantity& quantity, const CalibrationInput& input, const Optim
   return !(prior && prior->sigma);
 }
 
-// How one quantity would step, and by how many sigmas along its axis that is most certain.
+// Step of one quantity, and its significance along the most certain axis.
 struct Step {
   Eigen::VectorXd change;
   double sigmas = 0.0;
@@ -38,8 +38,8 @@ struct Step {
 
 class Steps {
  public:
-  // Sigmas take residuals for uncorrelated: under what is looked for they are not, and sigmas that allow for
-  // that would hide it.
+  // Sigmas assume uncorrelated residuals. A wrong fixed value correlates them, and sigmas that include the
+  // correlation would hide it.
   Steps(const ProjectedInformation& information, const ProjectedInformation& credible)
       : information_(information),
         inverse_(information.total),
@@ -57,11 +57,11 @@ class Steps {
     return step;
   }
 
-  // With all steps made, the variance of what each stretch of time says of this one, over what noise leaves.
+  // After all steps, the variance of this quantity's scores over stretches, relative to that of noise.
   double leftOf(std::size_t quantity) const {
     const Eigen::Index first = information_.first_column[quantity],
                        size = information_.first_column[quantity + 1] - first;
-    Eigen::MatrixXd weights(step_.size(), size);  // of the scores in the estimate
+    Eigen::MatrixXd weights(step_.size(), size);  // of the scores in this estimate
     for (Eigen::Index k = 0; k < size; ++k)
       weights.col(k) = inverse_.times(Eigen::VectorXd(Eigen::VectorXd::Unit(step_.size(), first + k)));
     std::vector<Eigen::VectorXd> left;
@@ -82,7 +82,8 @@ void add(std::string& doubts, const std::string& doubt) {
   doubts += (doubts.empty() ? "" : "; ") + doubt;
 }
 
-// A turn explains what there is to explain: errors that come and go look like one, too, but leave most of themselves.
+// A misalignment removes all errors that it causes: errors that come and go imitate one, but most of them
+// remain.
 void testGyroscope(const std::string& imu, const Steps& steps, std::size_t quantity,
                    const OptimisationOptions& options, HeldDoubts& doubts) {
   const Step step = steps.of(quantity);
@@ -92,14 +93,14 @@ void testGyroscope(const std::string& imu, const Steps& steps, std::size_t quant
   if (sigmas < options.turned_gyroscope_sigmas)
     return add(
         doubts.wandering_imus,
-        fmt::format("{}: for tenths of a second at a time its samples are further off than the stated noise "
-                    "density allows, and no turn of the gyroscope explains it: check its noise density, its "
-                    "filters and what shakes it",
-                    imu));
+        fmt::format(
+            "{}: sample errors that last for tenths of a second exceed the given noise density, and a "
+            "misaligned gyroscope does not explain them: check its noise density, filters and vibrations",
+            imu));
   doubts.gyroscope_sigmas = std::max(doubts.gyroscope_sigmas, sigmas);
   add(doubts.gyroscopes,
-      fmt::format("{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, "
-                  "and other rotations may be off by as much; calibrate with "
+      fmt::format("{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg, and other "
+                  "rotations may have errors of the same size; calibrate with "
                   "optimisation.model.gyroscope_rotation: true",
                   imu, turn_deg));
 }
@@ -109,7 +110,7 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
   if (step.sigmas < options.wrong_lens_sigmas) return;
   std::array<double, 9> numbers{};
   writeIntrinsics(held, numbers.data());
-  for (Eigen::Index k = 0; k < step.change.size(); ++k)  // those that the model does not use come last
+  for (Eigen::Index k = 0; k < step.change.size(); ++k)  // unused ones come last
     numbers[static_cast<std::size_t>(k)] += step.change[k];
   const CameraIntrinsics freed = intrinsicsFrom(numbers.data(), held.model, held.resolution_px);
   const Eigen::Array2d focal = idealFocalLength_px(freed).array() / idealFocalLength_px(held).array() - 1.0;
@@ -118,8 +119,8 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
   if (moved_px < options.wrong_lens_px) return;
   constexpr double kPercent = 100.0;
   add(doubts,
-      fmt::format("{}: the lens is not as the session says: focal lengths seem {:+.2f} and {:+.2f} %, the "
-                  "principal point ({:+.1f}, {:+.1f}) px off ({:.0f} sigmas); calibrate with "
+      fmt::format("{}: the lens differs from the session's: focal lengths by {:+.2f} and {:+.2f} %, the "
+                  "principal point by ({:+.1f}, {:+.1f}) px ({:.0f} sigmas); calibrate with "
                   "optimisation.model.camera_intrinsics: free",
                   camera, kPercent * focal.x(), kPercent * focal.y(), centre_px.x(), centre_px.y(),
                   step.sigmas));
@@ -130,13 +131,14 @@ void testShutter(const CameraData& camera, const Step& step, const OptimisationO
   const double readout_ms =
       1e-3 * std::abs(step.change[0]) * camera.lens.detection_intrinsics->resolution_px.height_px;
   if (step.sigmas < options.rolling_shutter_sigmas || readout_ms < options.rolling_shutter_ms) return;
-  add(doubts, fmt::format("{}: its shutter rolls: each row is exposed {:.2g} us {} the one above it ({:.0f} "
-                          "sigmas); set shutter: rolling for this camera",
-                          camera.name, std::abs(step.change[0]), step.change[0] > 0.0 ? "after" : "before",
-                          step.sigmas));
+  add(doubts,
+      fmt::format("{}: the shutter is rolling: each row is exposed {:.2g} us {} the row above ({:.0f} "
+                  "sigmas); set shutter: rolling for this camera",
+                  camera.name, std::abs(step.change[0]), step.change[0] > 0.0 ? "after" : "before",
+                  step.sigmas));
 }
 
-// Of the curvatures that are certain; which one is most is in the words.
+// Test of the significant curvatures; the text names the largest one.
 class BoardTest {
  public:
   void add(const QuantityInfo& info, const Step& step, const OptimisationOptions& options) {
@@ -149,7 +151,7 @@ class BoardTest {
   std::string doubt(const Board& board, const std::string& called, const OptimisationOptions& options) const {
     if (largestBow_mm(bent_, board) < options.bent_board_mm) return {};
     return fmt::format(
-        "{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.model.board_bow: true",
+        "{} ({:.0f} sigmas): mount it on glass, or calibrate with optimisation.model.board_bow: true",
         bowWords(bent_, board, called), sigmas_);
   }
 

@@ -1,6 +1,6 @@
-// What is held although the recording could tell it: a gyroscope's turn against its accelerometer, a lens, and that the
-// board is flat. Whether one of them is wrong is noticed by how far the estimate would step if it were free (Rao's score test),
-// against that step's sigma.
+// Score test of fixed quantities that the recording could determine: a gyroscope's misalignment, a lens, and
+// the flatness of the board. The step of the estimate if it were free is compared with the step's sigma
+// (Rao's score test).
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -12,23 +12,23 @@
 
 namespace evical {
 
-// The options with everything free that the tests look at.
+// The options with all tested quantities free.
 OptimisationOptions freeToBeTested(OptimisationOptions options);
 
-// What is doubtful; empty without any. `information` is of a solution that holds what `options` hold, with it
-// free all the same.
+// Doubts; empty without any. `information` is of a solution in which the quantities that `options` fix are
+// fixed, but are free columns.
 struct HeldDoubts {
-  std::string gyroscopes;  // turns that are certain and larger than the rotation that is needed
+  std::string gyroscopes;  // significant misalignments above needed_rotation_deg
   double gyroscope_sigmas = 0.0;
-  std::string wandering_imus;  // that look so, but for errors that last and that no turn explains
-  std::string lenses;          // that project elsewhere, for certain and by more than wrong_lens_px
-  std::string board;           // that is bent, for certain and by more than bent_board_mm
-  std::string shutters;        // that are said to be global, and roll
+  std::string wandering_imus;  // seemingly misaligned, but with lasting errors that this does not explain
+  std::string lenses;          // significant projection errors above wrong_lens_px
+  std::string board;           // significant bow above bent_board_mm
+  std::string shutters;        // declared global, but rolling
 };
 HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
                           const ProjectedInformation& information, const OptimisationOptions& options);
 
-// As if what is held were known to be what it is.
+// The information if all fixed values are exact.
 ProjectedInformation withoutHeldValues(const CalibrationInput& input, const OptimisationOptions& options,
                                        ProjectedInformation information);
 

@@ -20,7 +20,7 @@
 namespace evical {
 namespace {
 
-// The same quantity of the camera that stands for this one's sensor; none where that one's is not estimated.
+// Same quantity of the camera that represents this one's sensor; nullopt if it is not estimated.
 std::optional<std::size_t> partnerOf(std::size_t quantity, const CalibrationInput& input,
                                      const ProjectedInformation& information) {
   const Quantity& own = information.quantities[quantity];
@@ -36,10 +36,10 @@ bool isShared(const Quantity& quantity, const CalibrationInput& input) {
          input.cameras[quantity.sensor].same_sensor_as.has_value();
 }
 
-// By how much a camera would differ from its sensor with both free.
+// Difference of a camera from its sensor with both free.
 struct Apart {
   double rotation_deg = 0.0, translation_mm = 0.0, lens_px = 0.0;
-  double sigmas = 0.0;  // of the most certain one that counts
+  double sigmas = 0.0;  // of the most significant relevant difference
 };
 
 class SensorTest {
@@ -80,7 +80,7 @@ class SensorTest {
     if (counts(quantity, difference, sigmas, apart)) apart.sigmas = std::max(apart.sigmas, sigmas);
   }
 
-  // Where both have their own, as blocks step; zero where they are held to be the same.
+  // Difference of two separate quantities, as a tangent step; zero if they are shared.
   Eigen::VectorXd alreadyApart(const Quantity& quantity) const {
     const CameraState& camera = state_.cameras[quantity.sensor];
     const CameraState& sensor = state_.cameras[input_.sensorOf(quantity.sensor)];
@@ -95,7 +95,7 @@ class SensorTest {
     return numbers;
   }
 
-  // What is more than anybody needs to know, and certain.
+  // Difference that is significant and above any need.
   bool counts(const Quantity& quantity, const Eigen::VectorXd& difference, double sigmas,
               Apart& apart) const {
     const bool certain = sigmas > options_.other_sensor_sigmas;
@@ -128,7 +128,7 @@ class SensorTest {
   ScaledInverse covariance_;
 };
 
-// Of two cameras' time offsets.
+// Sigma of the difference of two cameras' time offsets.
 double differenceSigma(const UncertaintyReport& report, std::size_t first, std::size_t second) {
   const auto offsetOf = [&](std::size_t camera) {
     return columnOf({QuantityOwner::Camera, camera, QuantityId::TimeOffset}, report.columns);
@@ -154,9 +154,8 @@ std::string doubtOfSensors(const CalibrationInput& input, const CalibrationState
     const Apart apart = test->of(i);
     if (apart.sigmas == 0.0) continue;
     doubts += fmt::format(
-        "{}{} is not the same sensor as {}: by its own views it is turned by {:.2g} deg and moved by {:.2g} "
-        "mm "
-        "against it, and its lens is {:.2g} px apart ({:.0f} sigmas); remove same_sensor_as, or check the "
+        "{}{} is not the same sensor as {}: separate poses differ by {:.2g} deg and {:.2g} mm, and lenses by "
+        "{:.2g} px ({:.0f} sigmas); remove same_sensor_as, or check the "
         "streams",
         doubts.empty() ? "" : "; ", input.cameras[i].name, input.cameras[input.sensorOf(i)].name,
         apart.rotation_deg, apart.translation_mm, apart.lens_px, apart.sigmas);

@@ -1,5 +1,5 @@
-// Cameras that are one sensor, as a DAVIS's events and frames: what they have in common is one quantity, whether they
-// do have it in common is tested (Rao's score test, as of what is held), and how much later one stamps what both see follows.
+// Cameras that are one sensor, as a DAVIS's events and frames: common quantities are estimated once. A score
+// test (Rao) checks whether they are equal, and the latency between both streams is computed.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -13,16 +13,16 @@ namespace evical {
 
 struct ProjectedInformation;
 
-// Which cameras do not see as the sensor they are said to be does; empty without any. `information` is of a solution
+// Cameras that contradict their declaration as one sensor; empty without any. `information` is of a solution
 // with, or without, one pose and lens for both, and with those of both free.
 std::string doubtOfSensors(const CalibrationInput& input, const CalibrationState& state,
                            const ProjectedInformation& information, const OptimisationOptions& options);
 
-// With one quantity in place of two, where options ask for that.
+// Merges the two quantities into one, if options request it.
 ProjectedInformation withSharedSensors(const CalibrationInput& input, const OptimisationOptions& options,
                                        ProjectedInformation information);
 
-// What the report says of a sensor holds for all cameras that are it.
+// Copies the sensor's report to all of its cameras.
 void reportSharedSensors(const CalibrationInput& input, const OptimisationOptions& options,
                          UncertaintyReport& report);
 

@@ -1,5 +1,5 @@
-// The splines, and the biases' knots where these drift, eliminated from the batch's normal equations: what quantities tell
-// once all else may follow them (projected_information.h).
+// Elimination of the splines, and of drifting biases' knots, from the batch's normal equations: the
+// information on the quantities if all else is free to follow (projected_information.h).
 #pragma once
 
 #include "core/numerics/band_cholesky.h"
@@ -14,16 +14,17 @@ class SplineElimination {
  public:
   using RowMajorMatrix = BandCholesky::RowMajorMatrix;
 
-  // `equations`: of the same columns.
+  // `equations`: with the same columns.
   SplineElimination(const UnknownColumns& columns, NormalEquations equations);
 
   Eigen::Index quantities() const { return eliminated_.cols(); }
-  // How a control point, or a knot, follows the quantities. P is J_q + J_x followers of x + J_k followers of k.
+  // Derivatives of a control point, or a knot, by the quantities. P is J_q + J_x followers of x + J_k
+  // followers of k.
   auto ofSpline(Eigen::Index column) const { return -eliminated_.row(column); }
   auto ofKnot(Eigen::Index column) const { return -drift_by_quantities_.row(column); }
 
   const BandCholesky& splines() const { return splines_; }  // factored
-  // By how much knots fall where quantities rise, and the knots' covariance where these are known.
+  // Negative derivatives of knots by quantities, and the knots' covariance if known.
   const Eigen::MatrixXd& driftByQuantities() const { return drift_by_quantities_; }
   const Eigen::MatrixXd& driftCovariance() const { return drift_covariance_; }
 

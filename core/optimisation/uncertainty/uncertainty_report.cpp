@@ -16,7 +16,7 @@ UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovari
     QuantityAddress number = quantities.quantities[i].address();
     if (number.id == QuantityId::Intrinsics)
       number.model = input.cameras[number.sensor].lens.detection_intrinsics->model;
-    // Of intrinsics and gravity those without a column come last.
+    // Unused numbers of intrinsics and gravity, without a column, come last.
     for (Eigen::Index k = quantities.first_column[i]; k < quantities.first_column[i + 1];
          ++k, ++number.component)
       report.columns.push_back(number);

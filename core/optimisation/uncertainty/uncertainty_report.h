@@ -1,5 +1,5 @@
-// A covariance as results have it: addresses, standard deviations and correlation of every number, and each
-// quantity's own sigmas.
+// A covariance in the format of results: addresses, standard deviations and correlation of all numbers, and
+// each quantity's own sigmas.
 #pragma once
 
 #include "core/data/calibration_result.h"

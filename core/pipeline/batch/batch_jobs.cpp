@@ -50,10 +50,10 @@ class JobReader {
     }
     if (job.session.empty()) job.session = template_;
     if (job.session.empty())
-      throw node.error("names a recording, but there is no session that says what is in it",
-                       "Add 'session: FILE' at the top, for all jobs, or to this one");
+      throw node.error("names a recording, but no session describes it",
+                       "Add 'session: FILE' at the top for all jobs, or to this job");
     if (job.session == template_ && job.recording.empty())
-      throw node.error("has neither a recording nor a session of its own", "Name one of them");
+      throw node.error("has neither a recording nor a session", "Name one of them");
     return job;
   }
 
@@ -63,7 +63,7 @@ class JobReader {
     if (const auto name = node.find("name")) {
       job.name = name->text();
       if (job.name.empty() || job.name != fitForFolder(job.name) || job.name == "jobs")
-        throw name->error(fmt::format("'{}' can't be the name of a folder of results", job.name),
+        throw name->error(fmt::format("'{}' is not a valid name for a result folder", job.name),
                           "Use letters, digits, '-', '_' and '.', and not 'jobs'");
     }
     if (const auto session = node.find("session")) job.session = beside(*session, folder_);
@@ -76,14 +76,15 @@ class JobReader {
   std::vector<std::string> settings_;
 };
 
-// Those that have no name get one by what they calibrate.
+// Derives names from session or recording for jobs without a name.
 void nameJobs(const YamlNode& list, std::vector<BatchJob>& jobs) {
   std::vector<std::filesystem::path> paths;
   std::set<std::string> taken = {"jobs"};
   for (const BatchJob& job : jobs) {
     if (job.name.empty()) paths.push_back(job.recording.empty() ? job.session : job.recording);
     if (!job.name.empty() && !taken.insert(job.name).second)
-      throw list.error(fmt::format("two jobs are called '{}'", job.name), "Give each a name of its own");
+      throw list.error(fmt::format("two jobs have the name '{}'", job.name),
+                       "Give each job a different name");
   }
   const std::vector<std::string> names = distinctNames(paths);
   std::size_t next = 0;

@@ -1,11 +1,11 @@
-// A batch: many recordings to be calibrated one by one, listed in a YAML file.
+// Batch: many recordings to be calibrated one by one, listed in a YAML file.
 //
 //   evical_batch: 1
-//   session: car.yaml               # of jobs that name a recording only, in the place of its own recording
-//   set: {optimisation.knots.spacing_s: 0.02}     # of all jobs; a job's own come after it
-//   at_once: 4                      # jobs; default: as many as there are processors for their threads
-//   threads: 1                      # of each job
-//   memory_limit_mb: 2000           # of each job; default: none
+//   session: car.yaml               # for jobs that name only a recording, which replaces the session's
+//   set: {optimisation.knots.spacing_s: 0.02}     # for all jobs; a job's own settings are applied later
+//   at_once: 4                      # jobs; default: number of processors divided by threads
+//   threads: 1                      # per job
+//   memory_limit_mb: 2000           # per job; default: none
 //   jobs:
 //     - monday/session.yaml         # a session,
 //     - tuesday/recording.bag       # or a recording
@@ -23,7 +23,7 @@ namespace evical {
 struct BatchJob {
   std::string name;                   // the folder of its result
   std::filesystem::path session;      // absolute
-  std::filesystem::path recording;    // in the place of the session's; empty: the session's own
+  std::filesystem::path recording;    // replaces the session's; empty: the session's own
   std::vector<std::string> settings;  // "group.option=value"
 };
 
@@ -34,7 +34,7 @@ struct Batch {
   int memory_limit_mb = 0;  // 0: none
 };
 
-// Sessions and recordings need not be there: that is their jobs' concern. Throws CalibrationError (BadInput).
+// Sessions and recordings may be missing: their jobs report that. Throws CalibrationError (BadInput).
 Batch readBatch(const std::filesystem::path& file);
 
 }  // namespace evical

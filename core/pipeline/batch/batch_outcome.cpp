@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<const char*, 8> kEndNames = {"not_run",   "elsewhere",     "done",   "failed",
                                                   "bad_input", "out_of_memory", "killed", "cancelled"};
 
-// "recording /data/a.bag, 1234 bytes, changed 1732432": of folders their own times.
+// "recording /data/a.bag, 1234 bytes, changed 1732432"; for folders the time of the folder itself.
 std::string stampOf(const char* role, const std::filesystem::path& path) {
   std::error_code error;
   const auto changed = std::filesystem::last_write_time(path, error);
@@ -28,7 +28,7 @@ std::string stampOf(const char* role, const std::filesystem::path& path) {
                      changed.time_since_epoch().count());
 }
 
-// Of a session that can't be read none but the job's own: its job will say so.
+// Recordings of a job. If the session cannot be read, only the job's own: the job will report the error.
 std::vector<std::filesystem::path> recordingsOf(const BatchJob& job) {
   std::vector<std::filesystem::path> recordings = {job.recording};
   try {

@@ -1,5 +1,5 @@
-// How a job of a batch ended, as it stands in FOLDER/jobs/NAME.yaml: written last, so that a job with such a file has ended,
-// and one without has to be run.
+// Outcome of a batch job, stored in FOLDER/jobs/NAME.yaml. It is written last: a job without this file must
+// be run.
 #pragma once
 
 #include "core/pipeline/batch/batch_jobs.h"
@@ -12,13 +12,13 @@
 namespace evical {
 
 enum class JobEnd {
-  NotRun,       // of a batch that was stopped before
-  Elsewhere,    // another process is at it
-  Done,         // there is a result, whatever its verdict
-  Failed,       // there is none, and there would be none if it ran again
-  BadInput,     // its session or recording is not as it should be
-  OutOfMemory,  // more than the limit
-  Killed,       // by somebody, or by its own fault
+  NotRun,       // the batch was stopped before
+  Elsewhere,    // another process runs it
+  Done,         // it has a result, with any verdict
+  Failed,       // it has no result, and would not have one if it ran again
+  BadInput,     // its session or recording is invalid
+  OutOfMemory,  // exceeded the limit
+  Killed,       // by a signal from outside, or by a crash
   Cancelled
 };
 
@@ -26,21 +26,21 @@ const char* jobEndName(JobEnd end);
 
 struct JobOutcome {
   JobEnd end = JobEnd::NotRun;
-  std::string reason;  // empty of Done
+  std::string reason;  // empty if Done
   double wall_s = 0.0, peak_memory_mb = 0.0;
   std::vector<std::string> inputs;  // inputsOf
 };
 
-// What it was made of: its session and recording with sizes and times, and its settings.
+// Inputs of a job: session and recording with sizes and times, and settings.
 std::vector<std::string> inputsOf(const BatchJob& job);
 
 std::filesystem::path jobFile(const std::filesystem::path& folder, const BatchJob& job, const char* ending);
 
-// Nothing where there is none that can be read.
+// Absent if there is no readable outcome.
 std::optional<JobOutcome> readOutcome(const std::filesystem::path& folder, const BatchJob& job);
 void writeOutcome(const std::filesystem::path& folder, const BatchJob& job, const JobOutcome& outcome);
 
-// Whether it need not run again: it ended by itself, and nothing that it was made of has changed.
+// True if the job need not run again: it ended without a signal, and its inputs are unchanged.
 bool isSettled(const std::filesystem::path& folder, const BatchJob& job, const JobOutcome& outcome);
 
 }  // namespace evical

@@ -20,10 +20,10 @@
 namespace evical {
 namespace {
 
-constexpr double kPatience_s = 10.0;  // with a job that was asked to end
+constexpr double kPatience_s = 10.0;  // until a job that was asked to end is killed
 constexpr std::chrono::milliseconds kBetweenLooks(50);
 
-// The last line that says something. Jobs print little: what is far up is not looked at.
+// Last line that is not empty. Only the end of the file is read.
 std::string lastLineOf(const std::filesystem::path& file) {
   constexpr std::streamoff kTail_bytes = 4096;
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
@@ -35,13 +35,14 @@ std::string lastLineOf(const std::filesystem::path& file) {
   return last;
 }
 
-// The session that the job's process is given: its own, or one with the job's recording in it.
+// Session file for the job's process: its own, or a copy with the job's recording.
 std::filesystem::path sessionFor(const BatchJob& job, const std::filesystem::path& folder) {
   if (job.recording.empty()) return job.session;
   Session session = readSessionOfRun(job.session);
   std::error_code ignored;
   if (!std::filesystem::exists(job.recording, ignored))
-    throw badInput(job.recording.string(), "does not exist", "Paths are relative to the file of jobs");
+    throw badInput(job.recording.string(), "does not exist",
+                   "Check the path: paths are relative to the batch file");
   session.recording = job.recording;
   session.more_recordings.clear();
   const std::filesystem::path file = jobFile(folder, job, ".session.yaml");
@@ -61,8 +62,8 @@ JobOutcome outcomeOf(const ProcessEnd& end, const std::string& last_line, int me
   } else if (end.signal != 0) {
     outcome.end = JobEnd::Killed;
     outcome.reason =
-        fmt::format("was ended by signal {}{}", end.signal,
-                    end.signal == SIGKILL ? ", as where memory runs out or a machine goes down" : "");
+        fmt::format("was terminated by signal {}{}", end.signal,
+                    end.signal == SIGKILL ? ", possibly because of insufficient memory or a shutdown" : "");
   } else if (memory_limit_mb > 0 && last_line.find("not enough memory") != std::string::npos) {
     outcome.end = JobEnd::OutOfMemory;
     outcome.reason = fmt::format("needs more memory than the limit of {} MB", memory_limit_mb);
@@ -113,11 +114,11 @@ class BatchRunner {
       if (place_.wait_for_others)
         waiting_.push_back(k);
       else
-        tellEnd(k, {JobEnd::Elsewhere, "another process is at it", 0.0, 0.0, {}}, true);
+        tellEnd(k, {JobEnd::Elsewhere, "another process runs this job", 0.0, 0.0, {}}, true);
     }
   }
 
-  // False where another process has it.
+  // False if another process runs it.
   bool startOrSettle(std::size_t k) {
     const BatchJob& job = batch_.jobs[k];
     FileLock lock(jobFile(place_.folder, job, ".lock"));
@@ -208,7 +209,7 @@ class BatchRunner {
 void makeBatchFolder(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (std::filesystem::exists(folder / "result.yaml", ignored))
-    throw badInput(folder.string(), "holds the result of a calibration", "Name another folder");
+    throw badInput(folder.string(), "contains the result of a calibration", "Choose another folder");
   makeOutputFolder(folder);
   makeOutputFolder(folder / "jobs");
 }

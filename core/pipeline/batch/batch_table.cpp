@@ -34,7 +34,7 @@ std::string columnOf(const ShownNumber& number) {
   return number.unit.empty() ? number.key : fmt::format("{} [{}]", number.key, number.unit);
 }
 
-// The largest sigma of what is needed, in shown units; empty where none was estimated.
+// Largest sigma of a required quantity, in displayed units; empty if none was estimated.
 std::string worstSigma(const BatchRow& row, QuantityNeed need, int decimals) {
   double worst = 0.0;
   if (row.result)
@@ -70,7 +70,7 @@ std::string BatchRow::status() const {
 
 std::string BatchRow::reason() const {
   if (result) return result->result->reason;
-  return outcome.reason.empty() ? "has not been run" : outcome.reason;
+  return outcome.reason.empty() ? "was not run" : outcome.reason;
 }
 
 std::vector<BatchRow> batchRows(const Batch& batch, std::vector<JobOutcome> outcomes,
@@ -107,13 +107,12 @@ std::string batchText(std::span<const BatchRow> rows) {
         "{:<{}}  {:<13}  {:>14}  {:>16}  {:>16}  {:>8.1f}  {:>11.0f}\n", row.job->name, width, row.status(),
         worstSigma(row, QuantityNeed::Rotation, 4), worstSigma(row, QuantityNeed::Translation, 3),
         worstSigma(row, QuantityNeed::TimeOffset, 4), row.outcome.wall_s, row.outcome.peak_memory_mb);
-  return text +
-         "Rotation, translation, time offset: one standard deviation, of the sensor that is known worst.\n" +
+  return text + "Rotation, translation, time offset: one standard deviation of the least accurate sensor.\n" +
          failuresText(rows);
 }
 
 std::string batchCsv(std::span<const BatchRow> rows) {
-  std::vector<std::string> columns;  // in the order in which results have them
+  std::vector<std::string> columns;  // in the order of the results
   std::vector<std::map<std::string, ShownNumber>> numbers;
   for (const BatchRow& row : rows) {
     numbers.emplace_back();

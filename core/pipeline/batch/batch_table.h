@@ -1,4 +1,4 @@
-// What came of a batch, as a table for terminals, CSV and YAML.
+// Results of a batch as a table for terminals, CSV and YAML.
 #pragma once
 
 #include "core/pipeline/batch/batch_jobs.h"
@@ -16,22 +16,23 @@ namespace evical {
 struct BatchRow {
   const BatchJob* job = nullptr;
   JobOutcome outcome;
-  std::optional<NamedResult> result;  // of what is done
+  std::optional<NamedResult> result;  // if Done
 
-  std::string status() const;  // "ok", "doubtful", or how it ended
+  std::string status() const;  // "ok", "doubtful", or the outcome
   std::string reason() const;
 };
 
-// With the results that jobs left in the folder; one that can't be read is a failure.
+// Rows with the results in the folder; a result that cannot be read is a failure.
 std::vector<BatchRow> batchRows(const Batch& batch, std::vector<JobOutcome> outcomes,
                                 const std::filesystem::path& folder);
 
 bool allDone(std::span<const BatchRow> rows);
 
-// One line a job: status, the worst sensor's standard deviations, time and memory; then what failed, with reasons.
+// One line for each job: status, the worst sensor's standard deviations, time and memory; then the failures
+// with reasons.
 std::string batchText(std::span<const BatchRow> rows);
 
-// One line a job, two columns for each quantity that some result has: its value and its standard deviation.
+// One line for each job, two columns for each quantity of any result: value and standard deviation.
 std::string batchCsv(std::span<const BatchRow> rows);
 std::string batchYaml(std::span<const BatchRow> rows, const std::string& version);
 

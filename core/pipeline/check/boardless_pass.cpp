@@ -19,7 +19,7 @@
 namespace evical {
 namespace {
 
-// One camera's way from events to windows.
+// Processing of one camera's events into windows.
 struct MotionIntake {
   CameraKind kind = CameraKind::Events;
   std::unique_ptr<EventIntake> events;
@@ -78,7 +78,7 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
       if (intake.events->eventCount() == 0)
         throw badInput(
             session.recording.string(),
-            fmt::format("stream {} holds no events{}", session.cameras[pass.cameras.size() - 1].stream,
+            fmt::format("stream {} has no events{}", session.cameras[pass.cameras.size() - 1].stream,
                         session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
             "Check the recording " + howTo(HowTo::Inspect));
     }

@@ -1,4 +1,4 @@
-// One pass over a recording without a board: how every event camera turns, and every IMU's samples in memory.
+// One pass over a recording without a board: rotation of each event camera, and samples of each IMU.
 #pragma once
 
 #include "core/base/progress.h"
@@ -14,14 +14,14 @@ namespace evical {
 
 struct BoardlessPass {
   std::int64_t start_ns = 0;          // first event or sample of the session's streams
-  std::vector<CameraRecord> cameras;  // by camera of the session; empty of frames and points
+  std::vector<CameraRecord> cameras;  // by camera of the session; empty for frames and points
   std::vector<CameraKind> kinds;
   std::vector<ImuData> imus;  // SI units, in time order
   std::vector<RecordingFault> faults;
 };
 
-// Through the session's lenses, of which all are known. Memory does not grow with the number of events. Throws BadInput
-// for streams that are missing, empty, or do not fit the session, and Cancelled.
+// Uses the session's lenses, which must all be known. Memory does not grow with the number of events. Throws
+// BadInput for streams that are missing, empty, or do not fit the session, and Cancelled.
 BoardlessPass readWithoutBoard(const Session& session, const RunContext& context);
 
 }  // namespace evical

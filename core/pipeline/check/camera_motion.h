@@ -1,4 +1,5 @@
-// How a camera turns over time, from its events: bursts, slopes of their times, and the motion in each window.
+// Rotation of a camera over time from its events: bursts, slopes of their times, and the motion in each
+// window.
 #pragma once
 
 #include "core/egomotion/camera_record.h"
@@ -16,10 +17,10 @@ namespace evical {
 
 class CameraMotion {
  public:
-  // `start_ns`: of the recording, from which the windows' times count.
+  // `start_ns`: start of the recording, the origin of the windows' times.
   CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options, std::int64_t start_ns);
 
-  // Bursts as BurstExtractor hands them out.
+  // Adds bursts from BurstExtractor.
   void add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns) {
     slopes_.add(bursts, complete_until_ns);
   }

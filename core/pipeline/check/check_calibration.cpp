@@ -19,7 +19,7 @@
 namespace evical {
 namespace {
 
-// The session as a calibration takes it; that a short recording leaves sigmas large is judged here, not there.
+// Session for the calibration without a prior; the check judges large sigmas itself.
 Session freeSession(const CheckInput& input) {
   Session session = input.session;
   session.options.optimisation.edit().judge_sigmas = false;
@@ -28,7 +28,7 @@ Session freeSession(const CheckInput& input) {
   return session;
 }
 
-// In how many of the windows and frames of all cameras.
+// Visibility of the board in the windows and frames of all cameras.
 struct BoardSeen {
   std::size_t windows = 0, with_board = 0;
 
@@ -46,7 +46,7 @@ BoardSeen boardSeen(const DetectionResult& pass) {
   return seen;
 }
 
-// As far as numbers go by name: of a run with the same session.
+// Adds the numbers of the joint solution to the findings, by name.
 void addJoint(const NamedResult& together, const CheckInput& input, std::vector<Finding>& findings) {
   const ComparedQuantities compared =
       compareQuantities({input.before, together, input.same_board}, *input.session.options.check);
@@ -67,7 +67,7 @@ class Check {
     out_.check.inputs = {input.session.recording.filename().string()};
   }
 
-  // `calibrate`: the free run, of the session it is given.
+  // `calibrate`: runs the calibration without a prior, with the given session.
   template <class Calibrate>
   CheckRun run(const Calibrate& calibrate) {
     const Session session = freeSession(input_);
@@ -93,15 +93,17 @@ class Check {
     const CheckOptions& options = *session.options.check;
     const ComparedQuantities compared = compareQuantities({input_.before, now, input_.same_board}, options);
     if (compared.quantities.empty())
-      throw badInput(session.source.string(), "nothing that this recording tells is in the old result",
+      throw badInput(session.source.string(),
+                     "the old result has none of the quantities that this recording determines",
                      "Check with a recording of at least two of its sensors");
     testQuantities(compared, options, out_.check);
     for (const std::string& one : compared.not_told)
-      out_.check.notes.push_back(one + " is not checked: it is given, or the recording does not tell it");
+      out_.check.notes.push_back(one +
+                                 " is not checked: it is given, or the recording does not determine it");
     solveTogether(session);
   }
 
-  // What is known after both; a check of its own that the old result and the recording fit it is not.
+  // Joint solution of the old result and the recording. It is not a separate test that both agree.
   void solveTogether(const Session& session) {
     const Session weighed = withPriorOf(input_.before, session);
     DetectionResult pass = out_.run->pass;
@@ -113,7 +115,7 @@ class Check {
         runCalibration(weighed, std::move(pass), RunContext{progress, context_.stop, context_.observer});
     if (outcome.status == RunStatus::Cancelled) throw Cancelled{};
     if (!outcome.run) {
-      out_.check.notes.push_back("with the old result as prior there is no solution: " +
+      out_.check.notes.push_back("the calibration with the old result as prior failed: " +
                                  std::string(outcome.error->what()));
       return;
     }
@@ -123,27 +125,27 @@ class Check {
 
   void judge() {
     const CalibrationResult& result = out_.run->result;
-    // What is wrong with the data may look like a change, and may hide one.
+    // Faults of the data can look like a change, or hide one.
     if (result.status != CalibrationStatus::Ok) {
-      setCannotTell("the new recording is not to be relied on: " + result.reason, out_.check);
-      addAdvice("Mend what is said of the recording, and record again", out_.check);
+      setCannotTell("the new recording is not reliable: " + result.reason, out_.check);
+      addAdvice("Fix the problem reported above and record again", out_.check);
       return;
     }
     judgeFindings(out_.check);
     if (out_.check.verdict == Verdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
   }
 
-  // As a recording is assessed before it is calibrated.
+  // Advice from the assessment of the recording.
   void advise(const DetectedRecording& detected) {
     if (detected.pass.cameras.empty()) return;
     try {
       for (const Assessed& one : assessRecording(input_.session, detected, context_.unobserved()).all)
         addAdvice(one.advice, out_.check);
     } catch (const CalibrationError&) {
-      // Which is said already.
+      // Already reported.
     }
     if (out_.check.advice.empty())
-      addAdvice("Record for longer: twice the time makes sigmas 1.4 times smaller", out_.check);
+      addAdvice("Record for longer: doubling the time makes sigmas 1.4 times smaller", out_.check);
   }
 
   const CheckInput& input_;
@@ -161,8 +163,9 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   if (input.session.board_blinks || !seen.isRare(input.session.options.check->least_board_share))
     return checked;
   CheckRun without = checkWithoutBoard(input, context);
-  without.check.notes.push_back(fmt::format(
-      "the board was found in {} of {} windows, so it is taken as not there", seen.with_board, seen.windows));
+  without.check.notes.push_back(
+      fmt::format("the board was found in only {} of {} windows, so the check does not use it",
+                  seen.with_board, seen.windows));
   return without;
 }
 

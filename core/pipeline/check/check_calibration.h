@@ -1,5 +1,5 @@
-// Whether an old calibration still holds: the new recording is calibrated freely, and with the old result as prior,
-// and each quantity's change is tested.
+// Check of an old calibration: the new recording is calibrated without and with the old result as prior, and
+// the change of each quantity is tested.
 #pragma once
 
 #include "core/base/progress.h"
@@ -13,19 +13,19 @@ namespace evical {
 
 struct CheckRun {
   CalibrationCheck check;
-  std::shared_ptr<const CalibrationRun> run;  // the free one; empty where there is none
-  DetectionResult pass;                       // where there is none: what was read and detected until then
+  std::shared_ptr<const CalibrationRun> run;  // without the prior; empty if it has no result
+  DetectionResult pass;                       // if there is no run: data read and detected until then
 };
 
-// The part of the second run, which has the old result as prior.
+// Name of the second run in progress, which has the old result as prior.
 inline constexpr const char* kTogetherPart = "with the old result";
 
-// Where the board is hardly ever seen, or is not to be looked for, that of check_without_board.h. A recording that tells
-// nothing is a verdict, no error. Throws CalibrationError (BadInput) where it cannot be read as
-// the session says, and Cancelled.
+// Checks without a board (check_without_board.h) if the board is hardly ever seen, or if this is requested.
+// An uninformative recording gives a verdict, not an error. Throws CalibrationError (BadInput) if it does not
+// match the session, and Cancelled.
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context);
 
-// The same from what was detected, through the lenses of the old result.
+// The same from detections with the lenses of the old result.
 CheckRun checkCalibration(const CheckInput& input, DetectionResult pass, const RunContext& context);
 
 }  // namespace evical

@@ -29,7 +29,7 @@ void writeCheckFiles(const std::filesystem::path& folder, const CheckInput& inpu
   for (FileContent& file :
        reportOf(input.session, named, checked.run ? checked.run->pass : checked.pass, {}, &checked.check))
     files.push_back(std::move(file));
-  files.push_back({"check.yaml", assessmentYaml(checked.check)});  // the last tells that all are there
+  files.push_back({"check.yaml", assessmentYaml(checked.check)});  // written last: marks a complete result
   writeExportedFiles(folder, files);
 }
 

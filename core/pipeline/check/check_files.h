@@ -1,4 +1,5 @@
-// What a check leaves in its folder: check.yaml, report.html with its tables, log.txt. All appear together, or none.
+// Files of a check: check.yaml, report.html with its tables, log.txt. They are written together or not at
+// all.
 #pragma once
 
 #include "core/pipeline/check/check_calibration.h"

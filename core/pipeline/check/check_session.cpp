@@ -38,18 +38,18 @@ void checkSensors(const Sensors& sensors, const std::vector<SensorDescription>& 
     if (std::find(names.begin(), names.end(), sensor.name) == names.end())
       throw badInput(
           input.session.source.string(),
-          fmt::format("the {} '{}' is not in the old result: it is of another rig, or the sensor has "
-                      "another name there",
+          fmt::format("the {} '{}' is not in the old result: the result is of another rig, or the sensor has "
+                      "another name in it",
                       what, sensor.name),
           names.empty() ? fmt::format("The old result has no {}s", what) : nameAdvice(sensor.name, names));
   }
   for (const std::string& name : names)
     if (!seen.contains(name))
       input.notes.push_back(
-          fmt::format("the {} '{}' of the old result is not in the session: it is not checked", what, name));
+          fmt::format("the {} '{}' of the old result is not in the session and is not checked", what, name));
 }
 
-// What was weighed then would pull both results to one value, and hide a change; what is given stays given.
+// Removes priors with sigmas: they would pull both results to one value and hide a change. Fixed values stay.
 template <class Rows, class Prior>
 void dropWeighed(const Rows& rows, Prior& prior) {
   forEachPriorQuantity(rows, [&](const auto& row) {
@@ -58,21 +58,21 @@ void dropWeighed(const Rows& rows, Prior& prior) {
   });
 }
 
-// The recording is seen through the lens as it was, so that what has changed of it shows.
+// Uses the old lens for detection, so that a change of the lens becomes visible.
 void setLens(const CameraState& before, SessionCamera& camera, CheckInput& input) {
   const std::optional<CameraIntrinsics>& lens = before.lens.inUse();
   if (!lens)
-    throw badInput("cameras." + camera.name, "the old result does not say what its lens is",
-                   "Calibrate again: the result is of an older version, or was shortened");
+    throw badInput("cameras." + camera.name, "the old result has no intrinsics for it",
+                   "Calibrate again: the result is from an older version, or incomplete");
   if (camera.resolution_px.known() && camera.resolution_px != lens->resolution_px)
     throw badInput(input.session.source.string() + ": cameras." + camera.name,
-                   fmt::format("has an image of {}, in the old result it has {}",
-                               sizeText(camera.resolution_px), sizeText(lens->resolution_px)),
-                   "Check a camera in the mode that it was calibrated in");
+                   fmt::format("has images of {}, but {} in the old result", sizeText(camera.resolution_px),
+                               sizeText(lens->resolution_px)),
+                   "Record with the resolution at which the camera was calibrated");
   if (camera.intrinsics && camera.intrinsics->model != lens->model)
-    input.notes.push_back(fmt::format(
-        "the session gives {} a lens of another kind ({}) than the old result has ({}), which is taken",
-        camera.name, cameraModelTitle(camera.intrinsics->model), cameraModelTitle(lens->model)));
+    input.notes.push_back(
+        fmt::format("{}: the session's lens model ({}) differs from the old result's ({}), which is used",
+                    camera.name, cameraModelTitle(camera.intrinsics->model), cameraModelTitle(lens->model)));
   camera.intrinsics = lens;
   camera.resolution_px = lens->resolution_px;
   camera.intrinsics_uncertainty.reset();
@@ -81,7 +81,7 @@ void setLens(const CameraState& before, SessionCamera& camera, CheckInput& input
 Session sessionFor(const CheckPaths& paths) {
   if (isSessionFile(paths.recording)) return readSession(paths.recording);
   if (!isThere(paths.recording))
-    throw badInput(paths.recording.string(), "is not there", "Give the new recording, or a session of it");
+    throw badInput(paths.recording.string(), "does not exist", "Give the new recording, or a session of it");
   Session session;
   if (!paths.session.empty()) {
     session = readSessionOfRun(paths.session);
@@ -89,7 +89,7 @@ Session sessionFor(const CheckPaths& paths) {
     std::optional<Session> kept = sessionOfOldResult(paths.result);
     if (!kept)
       throw badInput(paths.result.string(),
-                     "there is no run_session.yaml beside it, which says board and sensors",
+                     "has no run_session.yaml next to it, which describes board and sensors",
                      "Give the session of the new recording by " + howTo(HowTo::Option, {"session"}));
     session = std::move(*kept);
   }
@@ -102,15 +102,15 @@ bool isSameBoard(const std::filesystem::path& result, const Session& session) {
     const std::optional<Session> kept = sessionOfOldResult(result);
     return kept && kept->board == session.board;
   } catch (const CalibrationError&) {
-    return false;  // which nobody asked for
+    return false;  // the session is optional
   }
 }
 
-// Where the old result has a sigma: what was given then is given by the session now.
+// Adds priors for quantities with a sigma in the old result; the session has the given ones.
 template <class Rows, class State, class Uncertainty, class Prior>
 void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, bool reference,
            const CheckOptions& options, Prior& prior) {
-  constexpr double kLeast = 1e-12;  // a sigma of 0 would be none
+  constexpr double kLeast = 1e-12;  // a sigma of 0 would fix the value
   forEachPriorQuantity(rows, [&](const auto& row) {
     const std::optional<double> stability = stabilityOf(row.info, options);
     const Eigen::VectorXd sigmas = quantityNumbers(row.sigma(uncertainty));
@@ -124,7 +124,7 @@ void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, b
   });
 }
 
-// With its whole covariance: focal length and distortion err together.
+// Adds the lens as prior with its full covariance: errors of focal length and distortion are correlated.
 void weighLens(const UncertaintyReport& before, std::size_t camera, double stability_px,
                SessionCamera& session_camera) {
   Eigen::MatrixXd covariance = intrinsicsCovariance(before, camera);
@@ -144,22 +144,22 @@ void weighLens(const UncertaintyReport& before, std::size_t camera, double stabi
 CheckInput checkInputOf(NamedResult before, Session session) {
   CheckInput input{std::move(before), std::move(session), true, {}, {}};
   if (input.session.reference != input.before.reference)
-    throw badInput(input.session.source.string() + ": reference",
-                   fmt::format("is '{}', that of the old result is '{}'", input.session.reference,
-                               input.before.reference),
-                   "Use the old result's reference: poses are relative to it");
+    throw badInput(
+        input.session.source.string() + ": reference",
+        fmt::format("is '{}', but '{}' in the old result", input.session.reference, input.before.reference),
+        "Use the old result's reference: poses are relative to it");
   checkSensors(input.session.cameras, input.before.cameras, "camera", input);
   checkSensors(input.session.imus, input.before.imus, "IMU", input);
   const std::vector<std::string> names = sensorNames(input.before.cameras);
   for (SessionImu& imu : input.session.imus) dropWeighed(kImuQuantities, imu.prior);
   for (SessionCamera& camera : input.session.cameras) {
     dropWeighed(kCameraQuantities, camera.prior);
-    if (!camera.same_sensor_as.empty()) continue;  // whose lens is that one's
+    if (!camera.same_sensor_as.empty()) continue;  // has the other camera's lens
     const auto k = std::find(names.begin(), names.end(), camera.name) - names.begin();
     setLens(input.before.result->state.cameras.at(static_cast<std::size_t>(k)), camera, input);
   }
   if (input.before.result->status == CalibrationStatus::Doubtful)
-    input.notes.push_back("the old calibration was doubtful itself: " + input.before.result->reason);
+    input.notes.push_back("the old calibration was doubtful: " + input.before.result->reason);
   return input;
 }
 

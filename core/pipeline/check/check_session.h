@@ -1,4 +1,4 @@
-// What a check starts from: an old result, and the session that calibrates the new recording as the old one was.
+// Input of a check: an old result, and a session that calibrates the new recording in the same way.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -12,8 +12,8 @@ namespace evical {
 
 struct CheckPaths {
   std::filesystem::path result;     // result.yaml, or the folder of a run
-  std::filesystem::path recording;  // or a session, which says all
-  std::filesystem::path session;    // of the new recording; empty: the one that is kept beside the result
+  std::filesystem::path recording;  // or a complete session
+  std::filesystem::path session;    // of the new recording; empty: the one stored with the result
 };
 
 struct CheckInput {
@@ -21,19 +21,20 @@ struct CheckInput {
   Session session;
   bool same_board = true;
   std::vector<std::string> notes;
-  std::string before_name;  // as people know it
+  std::string before_name;  // displayed name
 };
 
-// Throws CalibrationError (BadInput): the result is none, failed, or of another rig; there is no session.
+// Throws CalibrationError (BadInput) if the result is missing, failed, or of another rig, or without a
+// session.
 CheckInput readCheckInput(const CheckPaths& paths);
 
-// The same of a session that is there already.
+// The same with a given session.
 CheckInput readCheckInput(const std::filesystem::path& result, Session session);
 
-// Of a session that is there already: what it has of lenses comes from the result. Throws as above.
+// The same with a given result and session, whose lenses are replaced by the result's. Throws as above.
 CheckInput checkInputOf(NamedResult before, Session session);
 
-// The result as prior, each of its sigmas with what the quantity may move by itself.
+// Session with the result as prior; each sigma includes the quantity's allowed drift.
 Session withPriorOf(const NamedResult& before, Session session);
 
 }  // namespace evical

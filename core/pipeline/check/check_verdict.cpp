@@ -22,7 +22,7 @@ std::string changeText(const Finding& finding) {
 }
 
 std::string openText(const Finding& finding) {
-  return fmt::format("a change of {} below {} {} ({} matters)", wordsOf(finding),
+  return fmt::format("a change of {} below {} {} (required: {})", wordsOf(finding),
                      html::significant(finding.smallest_detectable_change, 2), finding.unit,
                      html::plain(finding.required_detectability));
 }
@@ -56,14 +56,13 @@ void judgeFindings(CalibrationCheck& check) {
     check.verdict = Verdict::Changed;
     check.reason = joined(changed) + " changed";
     if (!alternatives.empty())
-      check.reason += fmt::format(" (or {}: the recording does not tell which)", joined(alternatives));
-    addAdvice("Calibrate again, and look for what is loose", check);
+      check.reason += fmt::format(" (or {}: the recording cannot distinguish them)", joined(alternatives));
+    addAdvice("Check the rig for loose parts, then calibrate again", check);
   } else if (open.empty()) {
     check.verdict = Verdict::Unchanged;
-    check.reason = "nothing has changed, and a change that matters would have shown";
+    check.reason = "nothing has changed, and a relevant change would have been detected";
   } else {
-    setCannotTell("nothing is seen to have changed, but this recording would not have shown " + joined(open),
-                  check);
+    setCannotTell("no change was detected, but this recording would not have shown " + joined(open), check);
   }
 }
 

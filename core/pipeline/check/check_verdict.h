@@ -1,4 +1,4 @@
-// What is said of an old calibration once both results are there: each quantity tested, and the sentence for all.
+// Verdict on an old calibration from both results: a test of each quantity, and one sentence for all.
 #pragma once
 
 #include "core/data/calibration_check.h"
@@ -12,11 +12,11 @@ namespace evical {
 // Fills the check's findings.
 void testQuantities(const ComparedQuantities& compared, const CheckOptions& options, CalibrationCheck& check);
 
-// Verdict and reason from the findings, and what to do where something has changed.
+// Verdict and reason from the findings, and advice if something has changed.
 void judgeFindings(CalibrationCheck& check);
 
 void setCannotTell(const std::string& reason, CalibrationCheck& check);
-// As a sentence, once.
+// Adds advice as a sentence, without duplicates.
 void addAdvice(const std::string& advice, CalibrationCheck& check);
 
 }  // namespace evical

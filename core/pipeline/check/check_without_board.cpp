@@ -24,25 +24,25 @@
 namespace evical {
 namespace {
 
-// What the windows say of why there are no more of them, as people may mend it.
+// Advice for windows that were not used.
 const char* adviceFor(WindowUse use) {
   switch (use) {
     case WindowUse::FewEdges:
-      return "Move more, where there is more to see: edges are needed all over the image";
+      return "Move more, in a scene with edges in all parts of the image";
     case WindowUse::HardlyMoving:
-      return "Turn the rig more: the image hardly moved";
+      return "Rotate the rig more: the image hardly moved";
     case WindowUse::NotExplained:
-      return "Record where nothing else moves and no lamp flickers";
+      return "Record a static scene without flickering lamps";
     case WindowUse::Uncertain:
-      return "Record where the image has edges in all directions";
+      return "Record a scene with edges in all directions";
     case WindowUse::NoGyroscope:
       return "Check the IMU's samples: they do not cover the camera's events";
     case WindowUse::OutOfLine:
-      return "Check that the lens and the IMU's units are those of this rig";
+      return "Check that the lens and the IMU's units belong to this rig";
     case WindowUse::Used:
       break;
   }
-  return "Record for longer: twice the time makes sigmas 1.4 times smaller";
+  return "Record for longer: doubling the time makes sigmas 1.4 times smaller";
 }
 
 const char* keyOf(WindowUse use) {
@@ -93,8 +93,7 @@ class BoardlessCheck {
     check.before = input.before_name;
     check.inputs = {input.session.recording.filename().string()};
     check.without_board = true;
-    check.notes.push_back(
-        "without a board, rotations and time offsets of event cameras are checked, and nothing else");
+    check.notes.push_back("without a board, only rotations and time offsets of event cameras are checked");
     out_.pass.start_ns = pass_.start_ns;
     out_.pass.faults = pass_.faults;
     out_.pass.imus = pass_.imus;
@@ -102,8 +101,8 @@ class BoardlessCheck {
 
   CheckRun run() {
     if (input_.before.imus.empty() || pass_.imus.empty()) {
-      setCannotTell("without a board cameras are compared with an IMU, and there is none", out_.check);
-      addAdvice("Record before the board", out_.check);
+      setCannotTell("a check without a board compares cameras with an IMU, but there is no IMU", out_.check);
+      addAdvice("Record with the board in view", out_.check);
       return std::move(out_);
     }
     now_ = input_.before;
@@ -128,7 +127,7 @@ class BoardlessCheck {
   void alignCamera(std::size_t k) {
     const std::string& name = input_.session.cameras[k].name;
     if (pass_.kinds[k] != CameraKind::Events) {
-      out_.check.notes.push_back(fmt::format("{} is not checked: it is no event camera", name));
+      out_.check.notes.push_back(fmt::format("{} is not checked: it is not an event camera", name));
       return;
     }
     const std::size_t imu = placeOf(input_.session.reference, input_.session.imus),
@@ -149,14 +148,15 @@ class BoardlessCheck {
                   alignment.advice.empty() ? std::vector<std::string>{adviceFor(commonest(windows))}
                                            : alignment.advice);
     if (alignment.misfit_rms_rad_s > limits.without_board_misfit * alignment.rate_rms_rad_s)
-      return fail(name,
-                  fmt::format("the camera's turns are not the gyroscope's: {:.2g} of {:.2g} rad/s are left",
-                              alignment.misfit_rms_rad_s, alignment.rate_rms_rad_s),
-                  {adviceFor(WindowUse::NotExplained), "Check that camera and IMU are those of one rig"});
+      return fail(
+          name,
+          fmt::format("the camera's rotation does not match the gyroscope's: residual {:.2g} of {:.2g} rad/s",
+                      alignment.misfit_rms_rad_s, alignment.rate_rms_rad_s),
+          {adviceFor(WindowUse::NotExplained), "Check that camera and IMU belong to the same rig"});
     if (std::abs(alignment.scale - 1.0) > limits.without_board_scale)
       return fail(name,
-                  fmt::format("the image turns {:.3g} times as fast as the gyroscope says", alignment.scale),
-                  {"Check that the lens is this camera's, and calibrate again before the board"});
+                  fmt::format("the image rotates {:.3g} times as fast as the gyroscope", alignment.scale),
+                  {"Check that the lens belongs to this camera, and calibrate again with the board"});
     weakest_ = nameOfAxis(alignment.weakest_in_camera);
     take(camera_before, alignment);
   }
@@ -166,7 +166,7 @@ class BoardlessCheck {
     for (const std::string& one : advice) addAdvice(one, out_.check);
   }
 
-  // Into the result of now, whose only uncertain numbers these are.
+  // Copies the alignment into the new result, as its only estimated numbers.
   void take(std::size_t camera, const RotationAlignment& alignment) {
     CameraState& state = result_->state.cameras[camera];
     state.reference_from_camera.rotation = alignment.imu_from_camera;
@@ -193,7 +193,7 @@ class BoardlessCheck {
     if (!result_->uncertainty.columns.empty()) {
       now_.result = result_;
       now_.options.clear();
-      // The light of pixels' delays is not in these sigmas.
+      // These sigmas do not include pixel delays that depend on light.
       OptionRow& delay = now_.options.emplace_back();
       delay.name = "optimisation.verdict.pixel_delay_ms";
       delay.value = "0";
@@ -215,12 +215,13 @@ class BoardlessCheck {
 
   void advise() {
     addAdvice(
-        fmt::format("Turn about all axes in turn, and about others than the camera's {} axis most", weakest_),
+        fmt::format("Rotate about all axes in turn, and most about axes other than the camera's {} axis",
+                    weakest_),
         out_.check);
     addAdvice(adviceFor(WindowUse::Used), out_.check);
   }
 
-  // Number by number, as two independent estimates of one.
+  // Combines both values of each number as independent estimates.
   static void addJoint(Finding& finding) {
     for (ComparedNumber& number : finding.numbers) {
       const double before = number.before.sigma * number.before.sigma,

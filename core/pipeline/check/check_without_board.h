@@ -1,5 +1,5 @@
-// Whether an old calibration still holds where there is no board: rotation and time offset of event cameras against the
-// reference IMU, from how both turn (docs/maths.md, 16).
+// Check of an old calibration without a board: rotation and time offset of event cameras relative to the
+// reference IMU, from the angular rates of both (docs/maths.md, 16).
 #pragma once
 
 #include "core/base/progress.h"
@@ -9,10 +9,10 @@
 
 namespace evical {
 
-// Reads the recording. A recording that tells nothing is a verdict, no error. Throws as checkCalibration.
+// Reads the recording. An uninformative recording gives a verdict, not an error. Throws as checkCalibration.
 CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context);
 
-// The same from what was read.
+// The same from data that were read before.
 CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context = {});
 
 }  // namespace evical

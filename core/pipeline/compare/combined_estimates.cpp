@@ -12,7 +12,7 @@ namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
-// Eigenvalues of matrices with a diagonal of 1 that are rounding.
+// Rounding error of eigenvalues of matrices with unit diagonal.
 constexpr double kRounding = 1e-10;
 
 Eigen::VectorXd scaleOf(const Eigen::MatrixXd& symmetric) {
@@ -20,7 +20,7 @@ Eigen::VectorXd scaleOf(const Eigen::MatrixXd& symmetric) {
   return symmetric.diagonal().cwiseMax(kLeast).cwiseSqrt();
 }
 
-// Of what may be singular but for rounding.
+// Inverse of a matrix that may be singular up to rounding.
 Eigen::MatrixXd inverseOfPositive(const Eigen::MatrixXd& symmetric) {
   const Eigen::VectorXd scale = scaleOf(symmetric).cwiseInverse();
   const SymmetricEigen eigen = symmetricEigen(scale.asDiagonal() * symmetric * scale.asDiagonal());
@@ -30,7 +30,7 @@ Eigen::MatrixXd inverseOfPositive(const Eigen::MatrixXd& symmetric) {
          scale.asDiagonal();
 }
 
-// `all` less a part of it, which rounding, and noise that looked like information, may leave less than nothing of.
+// `all` minus a part of it; negative eigenvalues from rounding or noise are set to zero.
 Eigen::MatrixXd without(const Eigen::MatrixXd& all, const Eigen::MatrixXd& part) {
   const Eigen::VectorXd scale = scaleOf(all), inverse = scale.cwiseInverse();
   const SymmetricEigen eigen = symmetricEigen(inverse.asDiagonal() * (all - part) * inverse.asDiagonal());
@@ -60,7 +60,7 @@ EstimateCombination::EstimateCombination(std::span<const PartialEstimate> estima
 }
 
 EstimateCombination::Solution EstimateCombination::solve(std::span<const std::size_t> chosen) const {
-  constexpr double kNothing = 1e-12;  // a sigma of 1e6, where there is no information at all
+  constexpr double kNothing = 1e-12;  // a sigma of 1e6 for unknowns without information
   Eigen::MatrixXd information = known_.information;
   Solution solution{
       {}, Eigen::MatrixXd::Zero(information.rows(), information.cols()), known_.information * known_.value};
@@ -106,7 +106,7 @@ EstimateDistance EstimateCombination::distance(std::size_t one, std::span<const 
   const Eigen::MatrixXd covariance =
       congruence(of_one, measured_[one].scatter) + congruence(of_rest, rest.scatter) +
       congruence(of_one - of_rest, known_.information) + part(known_.moving, both);
-  constexpr double kLeast = 1e-7;  // of what both were told all but nothing is left
+  constexpr double kLeast = 1e-7;  // smaller eigenvalues: directions with common priors only
   const Eigen::VectorXd scale = scaleOf(covariance).cwiseInverse();
   const SymmetricEigen eigen = symmetricEigen(scale.asDiagonal() * covariance * scale.asDiagonal());
   EstimateDistance distance;

@@ -1,5 +1,5 @@
-// Several estimates of the same unknowns as one: the sum of their normal equations, with what all of them were told
-// beforehand counted once (docs/maths.md, 14). To first order the estimate that all their data have together.
+// Combination of several estimates of the same unknowns: the sum of their normal equations, with common
+// priors counted once (docs/maths.md, 14). To first order it equals the joint estimate from all their data.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,20 +10,20 @@
 
 namespace evical {
 
-// What one recording says. Weight and covariance are with what it was told beforehand. They are no inverses of each
-// other where errors are larger than they are weighed, or hang together.
+// Estimate from one recording. Weight and covariance include its priors. They are not inverses of each other
+// if errors are larger than assumed, or correlated.
 struct PartialEstimate {
-  std::vector<Eigen::Index> unknowns;  // that it tells, in ascending order
+  std::vector<Eigen::Index> unknowns;  // that it estimates, in ascending order
   Eigen::VectorXd value;               // of those
   Eigen::MatrixXd weight;              // its normal equations, reduced to these unknowns
   Eigen::MatrixXd covariance;
 };
 
-// Over all unknowns.
+// Priors over all unknowns.
 struct CommonKnowledge {
-  Eigen::MatrixXd information;  // that every recording was told alike
+  Eigen::MatrixXd information;  // priors common to all recordings
   Eigen::VectorXd value;
-  Eigen::MatrixXd moving;  // covariance of what unknowns move by themselves from one recording to the next
+  Eigen::MatrixXd moving;  // covariance of the allowed drift of unknowns between recordings
 };
 
 struct CombinedEstimate {
@@ -31,7 +31,7 @@ struct CombinedEstimate {
   Eigen::MatrixXd covariance;
 };
 
-// How far one estimate is from others.
+// Distance of one estimate from others.
 struct EstimateDistance {
   double chi_square = 0.0;
   int freedom = 0;
@@ -41,23 +41,24 @@ class EstimateCombination {
  public:
   EstimateCombination(std::span<const PartialEstimate> estimates, CommonKnowledge known);
 
-  // Of those that are named; unknowns that none of them tells stay as they are known, with huge sigmas.
+  // Combination of the chosen estimates; unknowns that none of them estimates keep their priors, with huge
+  // sigmas.
   CombinedEstimate combine(std::span<const std::size_t> chosen) const;
 
-  // All unknowns of the combination by those of one of the chosen.
+  // Derivative of the combination's unknowns with respect to those of one chosen estimate.
   Eigen::MatrixXd gain(std::size_t one, std::span<const std::size_t> chosen) const;
 
-  // Beyond what unknowns move by themselves. Errors of what both were told are the same, and do not count.
+  // Distance beyond the allowed drift. Errors of common priors are equal and do not count.
   EstimateDistance distance(std::size_t one, std::span<const std::size_t> others) const;
 
-  // What one estimate's sigmas say of how it varies from recording to recording, by its own unknowns.
+  // Expected variation of one estimate between recordings from its sigmas, by its own unknowns.
   Eigen::VectorXd varyingSigmas(std::size_t one) const;
 
  private:
-  // Over all unknowns, without what was told.
+  // Information over all unknowns, without priors.
   struct Measured {
     Eigen::MatrixXd information;
-    Eigen::VectorXd vector;   // information * value, of the data alone
+    Eigen::VectorXd vector;   // information * value, from the data only
     Eigen::MatrixXd scatter;  // covariance of that vector
   };
   struct Solution {
@@ -71,7 +72,7 @@ class EstimateCombination {
   std::vector<Measured> measured_;
 };
 
-// The probability that chance makes a larger distance.
+// Probability of a larger distance by chance.
 double probabilityBeyond(const EstimateDistance& distance);
 
 }  // namespace evical

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kPerCent = 100.0;
 
-// How sizes of a quantity's changes are told and judged.
+// Units and thresholds for changes of a quantity.
 struct Judged {
   const char* unit;
   double factor;  // from SI units
@@ -51,11 +51,11 @@ std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& opt
     case QuantityId::Stretch:
       return Judged{"", 1.0, kStableSheet, 0.0};
     default:
-      return std::nullopt;  // what no calibration is made for: biases, drifts, edges' leads
+      return std::nullopt;  // not part of the rig's calibration: biases, drifts, edge leads
   }
 }
 
-// One number of a result: its column in the report, or a sigma of its own where an older one has none.
+// One number of a result: its column in the report, or a separate sigma for older results without columns.
 struct Uncertain {
   QuantityAddress number;
   std::optional<Eigen::Index> column = {};
@@ -69,8 +69,8 @@ double covarianceOf(const UncertaintyReport& report, const Uncertain& a, const U
   return same ? a.sigma * a.sigma : 0.0;
 }
 
-// What light does to pixels' delays is in the sigmas of time offsets; of one camera it is the same in both, to
-// within the stability.
+// Effect of light on pixel delays, which is part of the sigmas of time offsets. For one camera it is the same
+// in both results, up to the stability.
 double pixelDelay_s(const NamedResult& named) {
   double delay_ms = VerdictOptions().pixel_delay_ms;
   for (const OptionRow& row : named.options)
@@ -91,7 +91,7 @@ std::vector<Eigen::Vector2d> placesInImage(Resolution size_px, bool border_only)
   return places;
 }
 
-// Pixels by the first `count` intrinsics, where there are rays.
+// Derivatives of pixels with respect to the first `count` intrinsics, where rays exist.
 std::vector<Eigen::MatrixXd> byIntrinsics(const CameraIntrinsics& camera, Eigen::Index count,
                                           bool border_only) {
   std::vector<Eigen::MatrixXd> all;
@@ -103,7 +103,7 @@ std::vector<Eigen::MatrixXd> byIntrinsics(const CameraIntrinsics& camera, Eigen:
   return all;
 }
 
-// By a turn about the reference's axes.
+// Derivatives with respect to rotations about the reference's axes.
 std::vector<Eigen::MatrixXd> byTurn(const CameraState& camera) {
   std::vector<Eigen::MatrixXd> all;
   const CameraIntrinsics& lens = *camera.lens.inUse();
@@ -118,7 +118,8 @@ std::vector<Eigen::MatrixXd> byTurn(const CameraState& camera) {
   return all;
 }
 
-// The size of a lens's change is the RMS of what it moves in the image: its square is a form in the change.
+// The size of a lens change is the RMS displacement in the image: its square is a quadratic form of the
+// change.
 Eigen::MatrixXd lensToSize(const CameraIntrinsics& camera, Eigen::Index count) {
   Eigen::MatrixXd form = Eigen::MatrixXd::Zero(count, count);
   const std::vector<Eigen::MatrixXd> places = byIntrinsics(camera, count, false);
@@ -188,7 +189,7 @@ class Comparison {
     forEachQuantity(kImuQuantities, [&](const auto& row) { add(row, pair); });
   }
 
-  // A sheet keeps its size to within what damp paper does.
+  // Adds the board; a sheet's allowed drift is the effect of humidity on paper.
   void addBoard() {
     const Pair<BoardState, BoardUncertainty> pair{now_.board_names[0],
                                                   true,
@@ -212,7 +213,7 @@ class Comparison {
     return &out_.quantities.back();
   }
 
-  // False where it is not estimated now. Numbers of a shared sensor are estimated once, under its own name.
+  // False if it is not estimated now. Numbers of a shared sensor are estimated once, under its own name.
   template <class Row, class Sensors>
   bool addNumbers(const Row& row, const Sensors& pair, const Judged& judged, bool tested) {
     const QuantityInfo& info = row.info;

@@ -1,4 +1,4 @@
-// Two results of one rig as two vectors with a covariance, quantity by quantity: what a check compares.
+// Two results of one rig as vectors with a covariance, by quantity, for a check.
 #pragma once
 
 #include "core/data/assessment.h"
@@ -15,19 +15,19 @@
 
 namespace evical {
 
-// What damp paper does to a sheet, relative.
+// Relative size change of a paper sheet with humidity.
 inline constexpr double kStableSheet = 2e-4;
 
 struct ComparedQuantity {
-  Finding shown;  // but for what the tests say
-  // Of the camera whose pixels its numbers move, at the image's border: pixels by numbers in SI units.
+  Finding shown;  // without the results of the tests
+  // Derivatives of pixels at the image border of the affected camera, with respect to numbers in SI units.
   std::vector<Eigen::MatrixXd> at_edge;
 };
 
 struct ComparedQuantities {
   EstimatedChange change;  // in SI units
   std::vector<ChangeGroup> groups;
-  std::vector<ComparedQuantity> quantities;  // as the groups that are tested, which come first
+  std::vector<ComparedQuantity> quantities;  // in the order of the tested groups, which come first
   std::vector<std::string> not_told;         // "time offset of left": not estimated now
 };
 
@@ -37,17 +37,17 @@ struct ComparedResults {
   bool same_board = true;
 };
 
-// How much a quantity may move without a change of the rig, in SI units; of a lens in RMS pixels. Empty for biases,
-// drifts and edge leads, which every calibration estimates anew.
+// Allowed drift of a quantity without a change of the rig, in SI units; for a lens in RMS pixels. Absent for
+// biases, drifts and edge leads, which each calibration estimates again.
 std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options);
 
-// Of a lens's first `count` intrinsics that move its image by so much, by RMS, in no direction more than in others.
+// Covariance of a lens's first `count` intrinsics that moves its image by `rms_px`, isotropically.
 Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px);
 
-// Sensors of both, by name; of `now` all are in `before`.
+// Compares sensors by name; all sensors of `now` must be in `before`.
 ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options);
 
-// With what the test of its group says.
+// Finding of a quantity with the result of its group's test.
 Finding testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
                        const ChangeGroup& group);
 

@@ -10,9 +10,9 @@
 namespace evical {
 namespace {
 
-constexpr double kMissed = 0.05;  // of changes of the size that would be noticed
+constexpr double kMissed = 0.05;  // share of missed changes of the detectable size
 
-// In units of size, so that numbers of all groups compare, and an allowed drift is a ball.
+// Tests in units of size: numbers of all groups are comparable, and the allowed drift is a ball.
 class SingleChanges {
  public:
   SingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups, double false_alarms)
@@ -27,7 +27,7 @@ class SingleChanges {
     covariance_ = congruence(to_size_, estimated.covariance);
   }
 
-  // The group alone, against those of the others that are not set free.
+  // Test of one group, given the other groups that are not free.
   GroupTestResult test(std::size_t tested, const std::vector<bool>& free) const {
     const std::vector<Eigen::Index> kept = keptNumbers(tested, free);
     const auto count = static_cast<Eigen::Index>(kept.size());
@@ -65,10 +65,10 @@ class SingleChanges {
     return all;
   }
 
-  // The distance, in sigmas, from the ball that is no change: while the truth lies in that, it is less than that of
-  // the estimate from the truth, whose square is a sum of as many squares as the group has numbers. A truth
-  // outside is further away than along the one direction that parts it from the ball, so that the power below
-  // is the least there is.
+  // Distance in sigmas from the ball of allowed changes. If the truth is in the ball, it is at most the
+  // distance of the estimate from the truth, whose square is chi-square distributed with the group's size. If
+  // the truth is outside, the distance is at least that along the direction to the ball, so the power below
+  // is a lower bound.
   GroupTestResult judged(const ChangeGroup& group, const Eigen::VectorXd& change,
                          const Eigen::MatrixXd& covariance) const {
     const SymmetricEigen eigen = symmetricEigen(covariance);
@@ -87,7 +87,7 @@ class SingleChanges {
     return test;
   }
 
-  // The point of the ball that is nearest by sigmas is point / (1 + multiplier * variance), by number.
+  // The nearest point of the ball, in sigmas, is point / (1 + multiplier * variance), elementwise.
   static double distanceFromBall(const Eigen::VectorXd& point, const Eigen::VectorXd& variances,
                                  double radius) {
     if (point.norm() <= radius) return 0.0;
@@ -118,7 +118,7 @@ GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<c
   const SingleChanges changes(estimated, groups, false_alarms);
   GroupTestResults tests;
   tests.groups.resize(groups.size());
-  // What has changed says nothing of the others.
+  // Groups that have changed give no information about the others.
   const std::vector<FoundChange> found = findChanges(groups.size(), [&](const std::vector<bool>& free) {
     std::vector<double> beyond(groups.size(), 0.0);
     for (std::size_t g = 0; g < groups.size(); ++g) {

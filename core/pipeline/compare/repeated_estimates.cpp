@@ -16,27 +16,28 @@ namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
-// The first of the direction's two tilts, and what stands behind them.
+// Address of the first of the two tilts of gravity's direction.
 constexpr QuantityAddress kGravityDirection{QuantityOwner::Rig, 0, QuantityId::Gravity, 0};
 constexpr QuantityAddress kGravityNorm{QuantityOwner::Rig, 0, QuantityId::Gravity, 2};
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A recording's estimate with the common values, and their covariance, of all recordings in the place of its own: what
-// is its own follows as its normal equations say (docs/maths.md, 14).
+// Estimate of a recording with its common values and covariance replaced by those of all recordings: its own
+// values follow from its normal equations (docs/maths.md, 14).
 struct FollowingEstimate {
-  std::vector<QuantityAddress> columns;  // the recording's, then common ones that it does not tell
-  Eigen::VectorXd by;                    // what its own numbers move by; 0 for common ones
+  std::vector<QuantityAddress> columns;  // the recording's, then common ones that it does not estimate
+  Eigen::VectorXd by;                    // changes of its own numbers; 0 for common ones
   Eigen::MatrixXd covariance;
 };
 
 struct Following {
-  Indices columns, unknowns;         // of a report, and what they are of all common ones
-  Eigen::MatrixXd as_weighed, gain;  // of the recording; of all common ones by those that it tells
-  Eigen::VectorXd moved;             // by which those that it tells have moved
+  Indices columns, unknowns;         // columns of a report, and their indices among all common ones
+  Eigen::MatrixXd as_weighed, gain;  // of the recording; derivative of all common ones by its own
+  Eigen::VectorXd moved;             // changes of those that it estimates
 };
 
-// From the recording's numbers and the joint common ones to the result's: own - by_common (alone - joint), and joint.
+// Computes the result from the recording's numbers and the joint common ones: own - by_common (alone -
+// joint), and joint.
 FollowingEstimate followingEstimate(const UncertaintyReport& report, const Following& following,
                                     const CombinedEstimate& joint,
                                     const std::vector<QuantityAddress>& unknown_columns) {
@@ -69,7 +70,7 @@ FollowingEstimate followingEstimate(const UncertaintyReport& report, const Follo
   for (std::size_t k = 0; k < further.size(); ++k)
     from_joint(size + static_cast<Eigen::Index>(k), further[k]) = 1.0;
   const Eigen::MatrixXd covariance = report.covariance();
-  // The joint values hold the recording's own errors, by the gain.
+  // The joint values contain the recording's own errors through the gain.
   const Eigen::MatrixXd between =
       productTransposed(covariance(Eigen::all, following.columns), following.gain);
   const Eigen::MatrixXd mixed = product(product(from_own, between), from_joint.transpose());
@@ -90,7 +91,7 @@ void setReport(const FollowingEstimate& estimate, UncertaintyReport& report) {
   report.correlation.diagonal().setOnes();
 }
 
-// The numbers of a quantity among `all`; empty where one is missing.
+// Numbers of a quantity among `all`; empty if one is missing.
 Eigen::VectorXd partsOf(const RigQuantity& quantity, const std::vector<QuantityAddress>& columns,
                         const Eigen::VectorXd& all) {
   Eigen::VectorXd parts(quantity.size());
@@ -131,7 +132,7 @@ RepeatedEstimates::RepeatedEstimates(const Session& session, std::vector<Recorde
   linearise(resultOf(0).state);
   std::vector<std::size_t> everyone(recorded_.size());
   for (std::size_t k = 0; k < everyone.size(); ++k) everyone[k] = k;
-  // Once more where the solution is: what turns and priors are counted from.
+  // Linearise again at the solution, the reference of rotations and priors.
   linearise(moved(combination_->combine(everyone).value, at_));
 }
 
@@ -220,7 +221,7 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
       quantity.move(by, joint.state);
   moveGravity(estimate, joint.state);
   setSigmas(joint.uncertainty);
-  // Of one recording alone, and no longer true.
+  // These belong to one recording and are no longer valid.
   joint.uncertainty.observability.clear();
   joint.uncertainty.directions.clear();
   joint.uncertainty.weakest.clear();
@@ -243,7 +244,8 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
     const auto told = std::ranges::find(told_[recording], *unknown);
     return varying_[recording][told - told_[recording].begin()];
   }
-  // What light does to pixels' delays is in the sigmas of time offsets, and the same every time.
+  // The sigmas of time offsets include the effect of light on pixel delays, which is the same in all
+  // recordings.
   const UncertaintyReport& report = resultOf(recording).uncertainty;
   const double sigma = report.standard_deviations[*columnOf(quantity.address(part), report.columns)];
   if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||

@@ -1,5 +1,5 @@
-// The results of several recordings of one rig beside each other, and as one: extrinsics, lenses, IMU intrinsics and
-// the board are the rig's, while biases, gravity and time offsets are each recording's (docs/maths.md, 14).
+// Results of several recordings of one rig, compared and combined: extrinsics, lenses, IMU intrinsics and the
+// board belong to the rig; biases, gravity and time offsets to each recording (docs/maths.md, 14).
 #pragma once
 
 #include "core/data/repeatability.h"
@@ -14,26 +14,27 @@
 
 namespace evical {
 
-// One recording's.
+// Result of one recording.
 struct RecordedEstimate {
   std::shared_ptr<const CalibrationResult> result;
-  Eigen::MatrixXd as_weighed;       // CalibrationRun::as_weighed; empty: not known, its covariance is taken
-  std::vector<CameraKind> cameras;  // as those of the state
+  Eigen::MatrixXd as_weighed;       // CalibrationRun::as_weighed; empty: unknown, its covariance is used
+  std::vector<CameraKind> cameras;  // in the order of the state
 };
 
 class RepeatedEstimates {
  public:
-  // `recorded`: at least one, of sessions with the same sensors in the same order, of which `session` is one.
+  // `recorded`: at least one, from sessions with the same sensors in the same order; `session` is one of
+  // them.
   RepeatedEstimates(const Session& session, std::vector<RecordedEstimate> recorded);
 
-  // One recording against others, by what they have in common.
+  // Distance of one recording from others, in their common quantities.
   EstimateDistance distance(std::size_t one, std::span<const std::size_t> others) const;
 
-  // The solution of those that are chosen. What each has of its own is that of the last of them, as it follows from
-  // what all say. Its status is Ok; it has no trajectory, and no residuals.
+  // Joint solution of the chosen recordings. Values that belong to each recording are those of the last one,
+  // updated by the joint solution. Its status is Ok; it has neither trajectory nor residuals.
   CalibrationResult joint(std::span<const std::size_t> chosen) const;
 
-  // Numbers of all, statistics and joint values of those that are chosen.
+  // Numbers of all recordings, with statistics and joint values of the chosen ones.
   std::vector<RepeatedQuantity> quantities(std::span<const std::size_t> chosen) const;
 
  private:
@@ -54,12 +55,12 @@ class RepeatedEstimates {
   const Session& session_;
   std::vector<RecordedEstimate> recorded_;
   RigQuantities quantities_;
-  std::vector<Unknowns> unknowns_;        // of the common ones that any recording estimates
+  std::vector<Unknowns> unknowns_;        // common ones that any recording estimates
   std::vector<QuantityAddress> columns_;  // of the unknowns
-  CalibrationState at_;                   // where values are counted from
+  CalibrationState at_;                   // linearisation point
   std::optional<EstimateCombination> combination_;
   std::vector<std::vector<Eigen::Index>> told_;  // unknowns by recording
-  std::vector<Eigen::VectorXd> varying_;         // as those: what sigmas say of how they vary
+  std::vector<Eigen::VectorXd> varying_;         // in the same order: expected variation from sigmas
 };
 
 }  // namespace evical

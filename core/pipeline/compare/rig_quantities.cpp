@@ -33,9 +33,9 @@ QuantityShare shareOf(const QuantityInfo& info) {
   }
 }
 
-// As a check takes it: the stability is what all numbers together may move by.
+// Stability as in a check: allowed drift of all numbers together.
 double ownStability(const QuantityInfo& info, const CheckOptions& options, const PriorOwner& owner) {
-  constexpr double kSheet_m = 1e-4;  // the natural bend of a sheet on a board
+  constexpr double kSheet_m = 1e-4;  // typical bend of a sheet on a board
   if (info.release == QuantityRelease::BoardBow) return kSheet_m / bowHeight_m2(info.id, *owner.board);
   return stabilityOf(info, options).value_or(0.0);
 }
@@ -63,8 +63,8 @@ Eigen::MatrixXd informationOf(const Eigen::VectorXd& sigmas) {
   return sigmas.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
-// Only a given lens has a prior: a lens from the recording adds no information. The information of the estimated
-// coefficients is that with all others fixed.
+// Only a given lens has a prior: a lens from the recording adds no information. The information of the
+// estimated coefficients is conditional on all others.
 void setLensPrior(const OptimisationOptions& options, CameraLens& mean, RigQuantity& quantity) {
   if (!mean.given || !mean.detection_intrinsics) return;
   quantity.prior_information =
@@ -118,7 +118,7 @@ class Listing {
                         ownStability(row.info, *session_.options.check, owner)});
   }
 
-  // As the batch has it, of the quantity that was added last.
+  // Adds the batch's prior to the quantity that was added last.
   template <class Row, class Prior, class State>
   void setPrior(const Row& row, const PriorOwner& owner, const Prior& prior, State& mean) {
     RigQuantity& quantity = out_.all.back();

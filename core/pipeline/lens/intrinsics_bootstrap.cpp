@@ -18,12 +18,12 @@
 namespace evical {
 namespace {
 
-constexpr double kSearched = 0.4;               // of a slice: from there on there are bursts on both sides
-constexpr int kSolveEvery = 3;                  // slices, once there is a camera
+constexpr double kSearched = 0.4;               // share of a slice before the search: bursts on both sides
+constexpr int kSolveEvery = 3;                  // slices, once there is a camera model
 constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
 
-// Equidistant lenses of one parameter stand for all: wide, which shows most
-// boards well enough; none; fisheye; and where a wide model is asked for, one wider still.
+// Generic equidistant lenses of one parameter: wide, which suits most boards; no distortion; fisheye; and one
+// still wider if a wide model is requested.
 std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px, bool wide_model) {
   const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
   CameraIntrinsics lens;
@@ -44,7 +44,7 @@ bool isPlane(const CameraIntrinsics& lens) {
   return lens.model == CameraModel::PinholeRadtan && lens.distortion == CameraIntrinsics{}.distortion;
 }
 
-// What a lens showed of a slice.
+// Detections in a slice with one lens.
 struct Look {
   std::vector<SensorView> views;
   std::size_t circles() const {
@@ -116,15 +116,15 @@ class Pilot {
     if (look.views.empty()) {
       look = throughPlainLenses(bursts);
       if (look.views.empty()) return;
-      rough_.reset();  // it misses what they show
+      rough_.reset();  // it does not show the board that they show
     }
     ++slices_;
     views_.insert(views_.end(), look.views.begin(), look.views.end());
     if (!rough_ || slices_ % kSolveEvery == 0) solve();
   }
 
-  // The lens that showed most the last time alone, if it shows nearly all of the board:
-  // looks that fail take longest.
+  // Tries first the lens that showed most in the last slice, and no others if it shows almost the whole
+  // board: failing searches take longest.
   Look throughPlainLenses(const std::vector<EdgeCrossing>& bursts) {
     constexpr double kNearlyAll = 0.75;
     Look best = through(lenses_.front(), bursts);
@@ -156,7 +156,7 @@ class Pilot {
   }
 
   void solve() {
-    constexpr int kLeastSlices = 3;  // views of one slice are all alike
+    constexpr int kLeastSlices = 3;  // views of one slice are similar
     if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
     solved_views_ = views_.size();
     auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(), options_,
@@ -164,12 +164,12 @@ class Pilot {
     if (rough) rough_ = std::move(rough);
   }
 
-  // A lens that shows the board, if only in parts; none where none did.
+  // A lens that shows the board, or parts of it; absent if none did.
   std::optional<CameraIntrinsics> result() const {
-    context_.progress.log(
-        LogLevel::Debug, fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
-                                     rough_ ? fmt::format(", projection known to {:.2f} px", rough_->sigma_px)
-                                            : std::string(", which make no camera")));
+    context_.progress.log(LogLevel::Debug,
+                          fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
+                                      rough_ ? fmt::format(", projection sigma {:.2f} px", rough_->sigma_px)
+                                             : std::string(", not enough for a camera model")));
     if (rough_) return rough_->intrinsics;
     return isPlane(lenses_.front()) ? std::nullopt : std::optional(lenses_.front());
   }
@@ -180,7 +180,7 @@ class Pilot {
   std::int64_t length_ns_, period_ns_;  // of the slices
   SessionRecording recording_;
   Resolution resolution_px_;
-  std::vector<CameraIntrinsics> lenses_;  // plain ones, first that which showed most the last time
+  std::vector<CameraIntrinsics> lenses_;  // generic ones, first the one that showed most in the last slice
   std::optional<RoughCamera> rough_;
   std::vector<SensorView> views_;
   std::size_t solved_views_ = 0;

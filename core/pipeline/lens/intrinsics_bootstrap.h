@@ -1,7 +1,7 @@
-// A first look at a recording whose camera is not known. Without intrinsics, strong distortion hides most of
-// a board from the front end: it fits all circles together, as a plane. So short slices of the recording are
-// looked at through a few plain lenses until what is seen makes a camera; through that one more is seen,
-// which makes a better camera.
+// Initial intrinsics of an unknown camera. The front end fits all circles together, as a plane. Without
+// intrinsics, strong distortion hides most of a board from it. Short slices of the recording are therefore
+// searched with a few generic lenses until the views suffice for a camera model. With this model more is
+// visible, which improves the model.
 #pragma once
 
 #include "core/base/progress.h"
@@ -11,8 +11,8 @@
 
 namespace evical {
 
-// Of the session's first camera. Reads no further than it must; where the slices make no camera, the lens
-// that showed most, and none if that was none.
+// Initial intrinsics of the session's first camera. Reads only as much as needed. If the slices do not give a
+// camera model: the generic lens that showed most, or none if no lens showed the board.
 std::optional<CameraIntrinsics> lookThroughPlainLenses(const Session& session, const RunContext& context);
 
 }  // namespace evical

@@ -23,9 +23,9 @@
 namespace evical {
 namespace {
 
-// A refit moves centres by less than this part of what the lens changed by. A change c that grows with the
-// third power of the distance from the image's middle, up to L, bends a circle of radius r so that its
-// ellipse's centre moves by about c (r / L)^2; circles are a seventh of L at most.
+// Largest motion of refitted centres relative to the change of the lens. A change c that grows with the third
+// power of the distance from the image centre, up to L, deforms a circle of radius r so that its ellipse's
+// centre moves by about c (r / L)^2; r is at most L / 7.
 constexpr double kRefitShare = 0.02;
 
 Session cameraAlone(const Session& session, std::size_t camera) {
@@ -39,14 +39,14 @@ Session cameraAlone(const Session& session, std::size_t camera) {
   alone.imus.clear();
   alone.reference = alone.cameras.front().name;
   if (!alone.time_range_s) return alone;
-  // It counts from the first event or sample of all sensors.
+  // Times count from the first event or sample of all sensors.
   const double later_s =
       secondsSince(SessionRecording(session).start_ns(), SessionRecording(alone).start_ns());
   for (double& time_s : *alone.time_range_s) time_s -= later_s;
   return alone;
 }
 
-// A board of another size than the session says may fail in any way: that is told first.
+// A wrong board size can cause any failure, so it is reported first.
 IntrinsicsResult estimate(const Session& alone, const DetectionResult& pass,
                           const std::optional<CameraIntrinsics>& start, const RunContext& context,
                           IntrinsicsStory& story) {
@@ -61,12 +61,12 @@ IntrinsicsResult estimate(const Session& alone, const DetectionResult& pass,
   }
 }
 
-// The second pass's views come behind the first's.
+// Appends the views of the second pass to those of the first.
 void append(DetectionResult&& more, DetectionResult& pass) {
   constexpr double kBetween_s = 1.0;
   BoardObservations &all = pass.cameras.front(), &added = more.cameras.front();
   if (more.resolutions_px != pass.resolutions_px)
-    throw badInput(all.camera, "its recordings have other resolutions", "Name recordings of one camera");
+    throw badInput(all.camera, "its recordings have different resolutions", "Give recordings of one camera");
   const double later_s = all.windows.empty() ? 0.0 : all.windows.back().time_s + kBetween_s;
   for (WindowReport& window : added.windows) window.time_s += later_s;
   for (BoardView& view : added.views) {
@@ -79,7 +79,7 @@ void append(DetectionResult&& more, DetectionResult& pass) {
   pass.faults.insert(pass.faults.end(), more.faults.begin(), more.faults.end());
 }
 
-// One after the other; those in which nothing blinks are told and left out, if others do.
+// One recording after the other; recordings without blinking are reported and excluded if others blink.
 DetectionResult passOver(const Session& alone, const RunContext& context) {
   std::optional<DetectionResult> all;
   std::optional<CalibrationError> failure;
@@ -110,7 +110,7 @@ void tellPass(const IntrinsicsRun& run, const RunContext& context) {
   if (context.observer != nullptr) context.observer->intrinsicsPassDone(run.result.passes, run.result);
 }
 
-// Frames, points and flashes are measured on the sensor, whatever the lens: once is enough.
+// Frames, points and flashes are measured in raw pixels, independent of the lens: one pass is enough.
 IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
   IntrinsicsRun run;
@@ -149,7 +149,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
     if (moved) run.result.moved_px = moved->rms_px;
     tellPass(run, context);
     if (!moved) continue;
-    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,
+    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, changed by {:.4f} px", pass,
                                                       run.result.views_found, moved->rms_px));
     if (kRefitShare * moved->rms_px < alone.options.intrinsics->settled_px) break;
   }

@@ -1,5 +1,5 @@
-// A camera's intrinsics from the events of a session: a first look, then the front end and the bundle
-// adjustment in turns, until circles refitted in undistorted pixels change nothing more (docs/maths.md, 7).
+// Intrinsics of a camera from the events of a session: initial intrinsics, then front end and bundle
+// adjustment alternately, until circles refitted in undistorted pixels no longer change (docs/maths.md, 7).
 #pragma once
 
 #include "core/base/progress.h"
@@ -14,13 +14,13 @@ namespace evical {
 
 struct IntrinsicsRun {
   IntrinsicsResult result;
-  IntrinsicsStory story;  // models as the first pass tried them, views as the last one used them
-  DetectionResult pass;   // the last one, of this camera alone
+  IntrinsicsStory story;  // models tried by the first pass, views used by the last one
+  DetectionResult pass;   // the last one, of this camera only
 };
 
-// What the session says of the camera's intrinsics, and its IMUs, are left aside. Progress goes by the stages
-// "first look" and, once a pass, "intrinsics"; who watches sees the windows of a camera 0, in time from the
-// camera's own start. Throws CalibrationError, and Cancelled when asked to stop.
+// Ignores the session's intrinsics of the camera, and its IMUs. Progress has the stages "first look" and, for
+// each pass, "intrinsics". Observers receive the windows as those of camera 0, with times since the camera's
+// own start. Throws CalibrationError, and Cancelled when asked to stop.
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context);
 
 }  // namespace evical

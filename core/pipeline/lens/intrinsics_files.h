@@ -1,4 +1,4 @@
-// What a calibration of a camera alone leaves: files of its lens, and the lens as a result for other programs' formats.
+// Files of an intrinsics calibration, and the lens as a result for other programs' formats.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -15,7 +15,7 @@ namespace evical {
 std::vector<FileContent> intrinsicsFiles(const std::filesystem::path& folder, const NamedIntrinsics& named,
                                          const std::vector<BoardObservations>& seen);
 
-// A rig of this one camera: for exporters (core/report/export), most of which take a lens alone.
+// Rig of this one camera for exporters (core/report/export), most of which accept a single lens.
 NamedResult lensAsResult(const NamedIntrinsics& named, CameraKind kind);
 
 }  // namespace evical

@@ -16,7 +16,7 @@ IntrinsicsResult jointIntrinsics(const IntrinsicsResult& first, std::size_t came
   joint.covariance.setZero();
   joint.covariance.topLeftCorner(covariance.rows(), covariance.cols()) = covariance;
   setSigmas(joint.intrinsics, joint.covariance, joint.image);
-  constexpr bool kConverged = true;  // else the whole calibration is doubtful for that
+  constexpr bool kConverged = true;  // otherwise the whole calibration is doubtful already
   judge(kConverged, options, joint);
   return joint;
 }

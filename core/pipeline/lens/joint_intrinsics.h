@@ -1,5 +1,4 @@
-// Intrinsics that were found first, judged again by what is known once they are
-// solved for with everything else.
+// Intrinsics that were calibrated first, judged again after their refinement in the joint optimisation.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -8,8 +7,8 @@
 
 namespace evical {
 
-// `first` with the intrinsics of the joint solution, its covariance, and the verdict that follows; what the
-// views cover stays as it was. As it is where the report does not hold the camera's intrinsics.
+// `first` with the intrinsics, covariance and verdict of the joint solution; the coverage stays. Unchanged if
+// the report does not contain the camera's intrinsics.
 IntrinsicsResult jointIntrinsics(const IntrinsicsResult& first, std::size_t camera,
                                  const CameraIntrinsics& solved, const UncertaintyReport& report,
                                  const IntrinsicsOptions& options);

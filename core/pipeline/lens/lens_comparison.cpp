@@ -36,7 +36,7 @@ LensComparison compareLenses(const IntrinsicsResult& found, const KnownIntrinsic
   if (other.resolution_px != size_px)
     throw badInput(
         "the other lens",
-        fmt::format("is for an image of {} x {} px, this one for {} x {} px", other.resolution_px.width_px,
+        fmt::format("is for images of {} x {} px, but this one for {} x {} px", other.resolution_px.width_px,
                     other.resolution_px.height_px, size_px.width_px, size_px.height_px),
         "Compare with a lens of the same camera in the same mode");
   const IntrinsicsMatrix other_covariance =
@@ -61,8 +61,8 @@ LensComparison compareLenses(const IntrinsicsResult& found, const KnownIntrinsic
     ++seen;
   }
   if (seen == 0)
-    throw badInput("the other lens", "sees nothing that this one sees",
-                   "Check that it is of this camera, and its focal length and principal point");
+    throw badInput("the other lens", "has no common field of view with this one",
+                   "Check that it belongs to this camera, and check its focal length and principal point");
   out.rms_px = std::sqrt(squares_px2 / seen);
   out.rms_sigmas = std::sqrt(squares / seen);
   return out;

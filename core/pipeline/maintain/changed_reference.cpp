@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kTogether_s = 3.0;  // as exact as times of steps are known
+constexpr double kTogether_s = 3.0;  // accuracy of the times of steps
 
 bool isAlike(const MaintenanceStep& a, const MaintenanceStep& b) {
   return a.quantity == b.quantity && a.against == b.against && std::abs(a.at_s - b.at_s) <= kTogether_s;
@@ -22,7 +22,7 @@ std::set<std::string> sensorsAgainst(const Maintenance& maintenance, const std::
   return sensors;
 }
 
-// The one that was known first, with the size that is known best.
+// The step that was detected first, with the most accurate size.
 MaintenanceStep stepOfReference(const std::vector<MaintenanceStep>& alike) {
   MaintenanceStep step = *std::min_element(alike.begin(), alike.end(), [](const auto& a, const auto& b) {
     return a.change_sigma < b.change_sigma;

@@ -1,12 +1,13 @@
-// What all IMUs do against one of them at the same moment, that one has done.
+// If all IMUs change relative to one of them at the same time, that one has changed.
 #pragma once
 
 #include "core/data/maintenance.h"
 
 namespace evical {
 
-// Steps of one quantity that all pairs have at one moment become one of the IMU that all are held against. Its numbers are
-// left out: in each pair they are in other axes. Of a single pair nothing tells which one it was.
+// Steps of one quantity that all pairs have at the same time become one step of the reference IMU. Its
+// numbers are omitted, since each pair has them in other axes. For a single pair it is ambiguous which IMU
+// has changed.
 void nameChangedReference(Maintenance& maintenance);
 
 }  // namespace evical

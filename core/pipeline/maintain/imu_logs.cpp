@@ -19,7 +19,7 @@ std::vector<std::string> namesOf(const NamedResult& before) {
   return names;
 }
 
-// As a recording names it once its sensors are joined.
+// Name of the stream after its sensors are joined.
 std::string joinedStreamOf(const SensorDescription& imu) {
   return imu.accelerometer_stream.empty() ? imu.stream
                                           : nameOf(SeparateImu{imu.stream, imu.accelerometer_stream});
@@ -38,24 +38,23 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   for (const auto& [name, stream] : settings.streams)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw badInput(howTo(HowTo::NameLogOfImu, {name, stream}), "the old result has no IMU of this name",
-                     names.empty() ? "It has no IMUs at all" : nameAdvice(name, names));
+                     names.empty() ? "It has no IMUs" : nameAdvice(name, names));
   std::size_t streams = 0;
   for (const std::filesystem::path& log : logs)
     streams += imuStreams(streams_.files().emplace_back(Log{log, openLog(log)}));
   match(streams == 1);
   const std::optional<std::int64_t> first_ns = streams_.begin();
   streams_.checkClocks([](double) {
-    return "IMUs can be compared only on clocks that agree to seconds: give each log for itself, or "
-           "record them together";
+    return "Process each log separately, or record the IMUs together: clocks must agree to within seconds";
   });
   if (stop.stop_requested()) return;
   if (!first_ns)
-    throw badInput(logs.front().string(), "there are no IMU samples in it", "Record again, or copy it again");
+    throw badInput(logs.front().string(), "has no IMU samples", "Record again, or copy the file again");
   start_ns_ = *first_ns;
 }
 
-// A table whose header does not identify its columns is assumed to have those of the calibration. If the calibration used
-// separate streams for the two sensors and the log has both, they are joined.
+// A table whose header does not identify its columns is assumed to have those of the calibration. If the
+// calibration used separate streams for the two sensors and the log has both, they are joined.
 std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& log) const {
   try {
     std::unique_ptr<RecordingReader> reader = openRecording(log);
@@ -75,7 +74,8 @@ std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& l
   }
 }
 
-// What is said of a stream, then its name in the calibration, then that of the IMU, then that there is no other.
+// Matches a stream to an IMU: by the settings, by its name in the calibration, by the IMU's name, or as the
+// only one.
 std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& stream, bool only_one) const {
   const std::filesystem::path& log = file.path;
   const bool alone = imuStreams(file) == 1;
@@ -83,7 +83,7 @@ std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& str
     const auto said = settings_.streams.find(before_.imus[i].name);
     if (said == settings_.streams.end()) continue;
     const bool is_log = said->second == log.string() || said->second == log.filename().string();
-    // Of a log with several, the one that is called so.
+    // In a log with several streams, the one with this name.
     if (said->second == stream.name || (is_log && (alone || stream.name == joinedStreamOf(before_.imus[i]))))
       return i;
   }
@@ -100,7 +100,7 @@ std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& str
   return only_one ? onlyOne(open) : std::nullopt;
 }
 
-// As the calibration had them, and as --imu NAME='GYROSCOPE + ACCELEROMETER' names them.
+// From the calibration, and from --imu NAME='GYROSCOPE + ACCELEROMETER'.
 std::vector<SeparateImu> ImuLogs::separateImus() const {
   std::vector<SeparateImu> imus;
   const auto add = [&](const SeparateImu& imu) {
@@ -115,7 +115,7 @@ std::vector<SeparateImu> ImuLogs::separateImus() const {
   return imus;
 }
 
-// Its samples arrive with those of the other sensor, as another stream of the log.
+// True if its samples are part of a joined stream of the log.
 bool ImuLogs::isPartOfJoined(const Log& log, const std::string& stream) const {
   const std::vector<StreamInfo>& streams = log.reader->streams();
   return std::ranges::any_of(separateImus(), [&](const SeparateImu& imu) {
@@ -138,7 +138,7 @@ void ImuLogs::match(bool only_one) {
       if (isPartOfJoined(log, streams[s].name)) continue;
       const auto imu = imuOf(log, streams[s], only_one);
       if (!imu) {
-        notes_.push_back(fmt::format("{}: the stream {} is left out: the old result knows no IMU of it",
+        notes_.push_back(fmt::format("{}: the stream {} is ignored: it matches no IMU of the old result",
                                      log.path.filename().string(), streams[s].name));
         continue;
       }
@@ -153,7 +153,7 @@ void ImuLogs::match(bool only_one) {
     const auto there = [&, wanted = name](std::size_t imu) { return before_.imus[imu].name == wanted; };
     if (std::none_of(imus_.begin(), imus_.end(), there))
       throw badInput(howTo(HowTo::NameLogOfImu, {name, stream}), "there is no such stream or log",
-                     "See the streams' names " + howTo(HowTo::Inspect));
+                     "Check the streams' names " + howTo(HowTo::Inspect));
   }
   std::erase_if(streams_.files(), [](const Log& log) { return log.streams.empty(); });
 }
@@ -164,15 +164,14 @@ void ImuLogs::refuseUnknown() const {
     for (const StreamInfo& stream : log.reader->streams())
       if (stream.type == StreamType::Imu) streams.push_back(stream.name);
   const std::string where = streams_.files().front().path.string();
-  if (streams.empty())
-    throw badInput(where, "there are no IMU samples in it", "Give a log of an IMU that was calibrated");
+  if (streams.empty()) throw badInput(where, "has no IMU samples", "Give a log of a calibrated IMU");
   const std::vector<std::string> names = namesOf(before_);
   if (names.empty())
     throw badInput(where, "the old result has no IMUs", "Give the result of a calibration with IMUs");
   const std::string which =
-      "Say which it is: " + howTo(HowTo::NameLogOfImu, {names.front(), streams.front()});
+      "Specify the IMU: " + howTo(HowTo::NameLogOfImu, {names.front(), streams.front()});
   throw badInput(where,
-                 fmt::format("the old result does not know the IMU of it: streams {}, IMUs of the result {}",
+                 fmt::format("no stream matches an IMU of the old result: streams {}, IMUs of the result {}",
                              joined(streams), joined(names)),
                  streams.size() < 2
                      ? which
@@ -187,8 +186,8 @@ const StreamInfo& ImuLogs::stream(std::size_t imu) const {
   return streams_.files().front().info(streams_.files().front().streams.front());
 }
 
-// Units as the caller says, else as the calibration read them, else as the log does; axes as the calibration read them.
-// A log has its own clock.
+// Units from the caller, else from the calibration, else from the log; axes from the calibration. A log has
+// its own clock.
 SessionImu ImuLogs::readingOf(std::size_t imu) const {
   const auto found = readings_.find(before_.imus[imu].name);
   SessionImu reading = found == readings_.end() ? SessionImu{} : found->second;
@@ -204,16 +203,16 @@ bool ImuLogs::read(SensorPacket& packet) {
   return streams_.read(packet);
 }
 
-// Two logs of one IMU at once are of two IMUs, or the same one twice.
+// Two simultaneous logs of one IMU are of two IMUs, or duplicates.
 void ImuLogs::checkOrder(const Log& log) {
   const std::vector<ImuSample>& samples = log.next.imu_samples;
   Latest& latest = latest_[log.next.sensor];
   if (latest.log != nullptr && latest.log != &log && samples.front().time_ns <= latest.time_ns)
-    throw badInput(log.path.string(),
-                   fmt::format("has samples of the IMU '{}' at times at which another log has some, too",
-                               before_.imus[log.next.sensor].name),
-                   "Say which log is of which IMU: " + howTo(HowTo::NameLogOfImu, {"NAME", "LOG"}) +
-                       "; or give logs that follow each other");
+    throw badInput(
+        log.path.string(),
+        fmt::format("overlaps in time with another log of the IMU '{}'", before_.imus[log.next.sensor].name),
+        "Specify the IMU of each log: " + howTo(HowTo::NameLogOfImu, {"NAME", "LOG"}) +
+            "; or give logs that follow each other");
   latest = {samples.back().time_ns, &log};
 }
 
@@ -224,10 +223,9 @@ std::vector<RecordingFault> ImuLogs::faults() const {
   for (const Log& log : streams_.files())
     for (const MergedStreams::Stream& stream : log.streams) immeasurable += stream.immeasurable;
   if (immeasurable > 0)
-    all.push_back({"imu", FaultKind::NotFinite, 0.0,
-                   fmt::format("{} IMU samples left out, whose values are no numbers, or none that a sensor "
-                               "measures",
-                               immeasurable)});
+    all.push_back(
+        {"imu", FaultKind::NotFinite, 0.0,
+         fmt::format("{} IMU samples excluded, whose values are not finite or not plausible", immeasurable)});
   return all;
 }
 

@@ -1,4 +1,4 @@
-// Logs of IMUs that an old result knows, read as one. Several logs are of several IMUs, or follow each other.
+// Logs of IMUs of an old result, read as one. Several logs are of different IMUs, or follow each other.
 #pragma once
 
 #include "core/data/imu_units.h"
@@ -19,29 +19,31 @@
 namespace evical {
 
 struct ImuLogSettings {
-  std::map<std::string, std::string> streams;  // by the IMU's name: a stream's name, or a log of it
+  std::map<std::string, std::string> streams;  // by the IMU's name: name of a stream or a log
   std::optional<AccelerationUnit> acceleration_unit;
   std::optional<AngularRateUnit> angular_rate_unit;
 };
 
 using ImuReadings =
-    std::map<std::string, SessionImu>;  // by the IMU's name: how the calibration read its samples
+    std::map<std::string, SessionImu>;  // by the IMU's name: reading of its samples in the calibration
 
 class ImuLogs {
  public:
-  // Throws CalibrationError (BadInput) for logs that cannot be read, that hold no IMU of the result, or whose clocks
-  // have nothing to do with each other.
+  // Throws CalibrationError (BadInput) for unreadable logs, logs without an IMU of the result, or unrelated
+  // clocks.
   ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResult& before,
           const ImuLogSettings& settings, const ImuReadings& readings = {}, std::stop_token stop = {});
 
-  const std::vector<std::size_t>& imus() const { return imus_; }  // of the result, ascending, that are there
-  const StreamInfo& stream(std::size_t imu) const;                // of one of these
+  const std::vector<std::size_t>& imus() const {
+    return imus_;
+  }                                                 // indices in the result of existing IMUs, ascending
+  const StreamInfo& stream(std::size_t imu) const;  // of one of these
   std::int64_t start_ns() const { return start_ns_; }
   const std::vector<std::string>& notes() const { return notes_; }
 
   bool read(SensorPacket& packet);  // of an IMU of the result
   double fractionRead() const { return streams_.fractionRead(); }
-  std::vector<RecordingFault> faults() const;  // complete once read() has returned false
+  std::vector<RecordingFault> faults() const;  // complete after read() has returned false
 
  private:
   using Log = MergedStreams::File;

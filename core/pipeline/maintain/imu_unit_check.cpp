@@ -24,26 +24,26 @@ void checkUnits(const ImuMeans& imu) {
   for (const MeansWindow& window : imu.windows) norms.push_back(window.force_m_s2.norm());
   const double norm = medianOf(std::move(norms));
   if (norm > 0.3 && norm < 3.0)
-    throw badInput(imu.name,
-                   fmt::format("its specific force is {:.2f} m/s^2 on average: the log is in g", norm),
+    throw badInput(imu.name, fmt::format("its mean specific force is {:.2f} m/s^2: the log is in g", norm),
                    "Give " + howTo(HowTo::SetAccelerationUnit, {"g"}));
   if (norm > 30.0)
-    throw badInput(imu.name,
-                   fmt::format("its specific force is {:.0f} m/s^2 on average: the log is in m/s^2 already, "
-                               "or in thousandths of g",
-                               norm),
-                   "Give " + howTo(HowTo::SetAccelerationUnit, {"m/s^2"}) + ", or convert the log");
+    throw badInput(
+        imu.name,
+        fmt::format("its mean specific force is {:.0f} m/s^2: the log is already in m/s^2, or in milli-g",
+                    norm),
+        "Give " + howTo(HowTo::SetAccelerationUnit, {"m/s^2"}) + ", or convert the log");
   const double scale = rateScale(imu.windows);
   if (scale > 0.01 && scale < 0.03)
     throw badInput(
         imu.name,
-        fmt::format("gravity turns {:.0f} times more slowly than its gyroscope says: the rates are in deg/s",
-                    1.0 / scale),
+        fmt::format(
+            "gravity rotates {:.0f} times more slowly than the gyroscope measures: the rates are in deg/s",
+            1.0 / scale),
         "Give " + howTo(HowTo::SetAngularRateUnit, {"deg/s"}));
   if (scale > 30.0 && scale < 100.0)
     throw badInput(
         imu.name,
-        fmt::format("gravity turns {:.0f} times faster than its gyroscope says: the rates are in rad/s",
+        fmt::format("gravity rotates {:.0f} times faster than the gyroscope measures: the rates are in rad/s",
                     scale),
         "Give " + howTo(HowTo::SetAngularRateUnit, {"rad/s"}));
 }
@@ -66,11 +66,11 @@ void checkDirection(const ImuMeans& own, const ImuMeans& reference,
   constexpr double kAgainst = -0.5;
   if (cosines.size() < kFewestUnitWindows || medianOf(std::move(cosines)) > kAgainst) return;
   throw badInput(own.name,
-                 fmt::format("its specific force points against that of {}: one of the two logs has the "
-                             "direction of gravity, or that one was mounted upside down",
+                 fmt::format("its specific force is opposite to that of {}: one of the two logs has the "
+                             "direction of gravity, or an IMU was mounted upside down",
                              reference.name),
-                 "Convert the log of that one (" + howTo(HowTo::SetAccelerationUnit, {"-g"}) +
-                     " is for all), or calibrate again");
+                 "Convert the wrong log (" + howTo(HowTo::SetAccelerationUnit, {"-g"}) +
+                     " applies to all logs), or calibrate again");
 }
 
 }  // namespace evical

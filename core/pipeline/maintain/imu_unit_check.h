@@ -1,5 +1,5 @@
-// Whether logs of IMUs are in the units that they say, by what they measure. Each throws CalibrationError (BadInput) that says
-// what to give.
+// Checks of the units of IMU logs from their values. Each throws CalibrationError (BadInput) with the setting
+// to change.
 #pragma once
 
 #include "core/maintenance/stop_detection.h"
@@ -16,10 +16,10 @@ struct ImuMeans {
   std::span<const MeansWindow> windows;
 };
 
-// Forces in g or thousandths of it, rates in deg/s.
+// Detects forces in g or milli-g, and rates in deg/s.
 void checkUnits(const ImuMeans& imu);
 
-// Of an IMU beside another on one body: forces that point against each other. `later_s` is added to its own times.
+// Detects opposite specific forces of two IMUs on one body. `later_s` is added to the own times.
 void checkDirection(const ImuMeans& own, const ImuMeans& reference,
                     const Eigen::Quaterniond& reference_from_own, double later_s);
 

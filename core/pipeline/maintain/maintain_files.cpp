@@ -19,7 +19,8 @@ void writeMaintenanceFiles(const std::filesystem::path& folder, const Maintenanc
   for (std::size_t k = 0; k < maintenance.tracks.size(); ++k)
     files.push_back({fmt::format("track{}.csv", k + 1), trackCsv(maintenance.tracks[k])});
   for (ReportFile& file : reportFiles(maintenance)) files.push_back({file.name, std::move(file.content)});
-  files.push_back({"maintenance.yaml", assessmentYaml(maintenance)});  // the last tells that all are there
+  files.push_back(
+      {"maintenance.yaml", assessmentYaml(maintenance)});  // written last: marks a complete result
   writeExportedFiles(folder, files);
 }
 

@@ -1,5 +1,5 @@
-// What a maintenance leaves in its folder: maintenance.yaml, stops.csv, a CSV for each pair of IMUs, report.html with
-// its tables, log.txt. All appear together, or none.
+// Files of a maintenance: maintenance.yaml, stops.csv, a CSV file for each pair of IMUs, report.html with its
+// tables, log.txt. They are written together or not at all.
 #pragma once
 
 #include "core/data/maintenance.h"

@@ -27,11 +27,11 @@
 namespace evical {
 namespace {
 
-// Variances that are so many times what white noise has: of which a note tells, and of which advice.
+// Variances relative to white noise from which a note, and advice, is given.
 constexpr double kWorthANote = 1.5;
 constexpr double kWorthAdvice = 4.0;
 
-// Times at which one sensor measured.
+// Sample times of one sensor.
 struct SampleTimes {
   double first_s = 0.0, last_s = 0.0, longest_gap_s = 0.0, longest_gap_at_s = 0.0;
   std::uint64_t samples = 0;
@@ -50,7 +50,7 @@ struct SampleTimes {
   }
 };
 
-// Times of both sensors of an IMU, which may be sampled separately.
+// Sample times of both sensors of an IMU, which may be sampled separately.
 struct ImuTimes {
   SampleTimes rates, forces;
 
@@ -65,7 +65,7 @@ struct ImuTimes {
   }
 };
 
-// Of one IMU, over the whole log.
+// Data of one IMU over the whole log.
 struct ImuPass {
   WindowMeans means;
   ImuTimes times;
@@ -76,14 +76,14 @@ struct ImuPass {
   }
 };
 
-// Of the log's beginning.
+// Data of the log's beginning.
 struct InitialSegment {
   AngularSpeedSeries norms;
   ImuTimes times;
   std::vector<ImuSample> samples;
 };
 
-// Refuses streams without one of the sensors: they would look like a large change.
+// Rejects streams without one of the sensors, which would look like a large change.
 void checkBothSensors(const std::string& imu, const std::string& stream,
                       const std::vector<ImuSample>& samples) {
   bool rates = false, forces = false;
@@ -138,9 +138,9 @@ class Maintainer {
   const ImuState& state(std::size_t imu) const { return before().result->state.imus[imu]; }
   const std::string& name(std::size_t imu) const { return before().imus[imu].name; }
 
-  // The first seconds: which IMUs there are, at what rates, and how their clocks lie to each other.
+  // Reads the first seconds: existing IMUs, their rates, and offsets between their clocks.
   void look();
-  // All of it, into means and pairs.
+  // Reads the whole log into means and pairs.
   void readAll();
   void describe();
   void checkLogs() const;
@@ -163,11 +163,11 @@ class Maintainer {
   std::vector<ImuPass> passes_;
   std::vector<std::vector<PairWindow>> windows_;
   std::vector<std::string> disagreeing_;
-  std::string shaken_;  // a pair that noise with a memory parts
+  std::string shaken_;  // a pair with correlated noise between its IMUs
   std::vector<std::string> streams_;
 };
 
-// Of an IMU against the reference, whatever the result's reference is.
+// An IMU relative to the reference, independent of the result's reference.
 PairNominal Maintainer::nominalOf(std::size_t imu) const {
   const ImuState &own = state(imu), &reference = state(imus_.front());
   PairNominal nominal;
@@ -234,11 +234,11 @@ void Maintainer::agreeClocks(const std::vector<InitialSegment>& seen) {
       if (clocks.ratio > 0.8 * wrong && clocks.ratio < 1.25 * wrong)
         throw badInput(
             name(imus_[k]),
-            fmt::format("its rates are {:.1f} times those of {}: one of the two is in deg/s and the "
-                        "log says rad/s, or the other way round",
-                        clocks.ratio, name(imus_.front())),
-            "Convert the log of that one, or give " + howTo(HowTo::SetAngularRateUnit, {"UNIT"}) +
-                " where all are in one unit");
+            fmt::format(
+                "its rates are {:.1f} times those of {}: one of the logs has a wrong unit (deg/s or rad/s)",
+                clocks.ratio, name(imus_.front())),
+            "Convert the wrong log, or give " + howTo(HowTo::SetAngularRateUnit, {"UNIT"}) +
+                " if all logs have the same unit");
     if (std::abs(clocks.later_s) > kNear_s) nominal_[k].time_offset_s += clocks.later_s;
   }
 }
@@ -266,7 +266,7 @@ void Maintainer::readAll() {
   pairs.finish();
   for (ImuPass& pass : passes_) pass.means.finish();
   windows_ = pairs.windows();
-  if (!maintenance_.imus.empty()) return;  // read once more: it is all said
+  if (!maintenance_.imus.empty()) return;  // second reading: already reported
   for (const RecordingFault& fault : logs.faults()) {
     context_.progress.log(LogLevel::Warning, fault.text);
     if (maintenance_.notes.size() < 20) maintenance_.notes.push_back(fault.text);
@@ -286,8 +286,8 @@ void Maintainer::describe() {
     maintenance_.duration_s = std::max(maintenance_.duration_s, imu.to_s);
     if (gaps.longest_gap_s > input_.options->gap_s)
       maintenance_.notes.push_back(
-          fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and perhaps "
-                      "elsewhere; windows with gaps are left out",
+          fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and possibly elsewhere; windows "
+                      "with gaps are excluded",
                       imu.name, gaps.longest_gap_s, gaps.longest_gap_at_s));
   }
 }
@@ -309,7 +309,7 @@ void Maintainer::addStops(double false_alarms) {
     MaintainedImu& imu = maintenance_.imus[k];
     if (found.stops.empty()) {
       maintenance_.notes.push_back(
-          fmt::format("{}: it never stands still for {:g} s", imu.name, input_.options->shortest_stop_s));
+          fmt::format("{}: it is never at rest for {:g} s", imu.name, input_.options->shortest_stop_s));
       continue;
     }
     const MaintainedImu from_stops = maintainedImu(found);
@@ -327,15 +327,15 @@ void Maintainer::addTrajectory(double false_alarms) {
   const TrajectoryRun run = runTrajectory(input_, imu, gravity_m_s2_, context_);
   if (run.later_s != 0.0)
     maintenance_.notes.push_back(
-        fmt::format("the trajectory's clock is {:.1f} ms off that of {}: taken into account",
+        fmt::format("the trajectory's clock differs by {:.1f} ms from that of {}; this is corrected",
                     1e3 * run.later_s, name(imu)));
   if (run.lags.empty())
     maintenance_.notes.push_back(
-        fmt::format("the trajectory has no piece of {:g} s without gaps with samples of {}",
+        fmt::format("the trajectory has no gap-free piece of {:g} s with samples of {}",
                     0.5 * input_.options->lag_s, name(imu)));
   if (run.sum.inflation > kWorthANote)
     maintenance_.notes.push_back(fmt::format(
-        "pieces of the trajectory differ by more than their sigmas, which are {:.1f} times wider for that",
+        "pieces of the trajectory differ by more than their sigmas, which are therefore {:.1f} times larger",
         std::sqrt(run.sum.inflation)));
   addTrajectoryQuantities(run.lags, run.sum, before(), imu, *input_.options, false_alarms, maintenance_);
 }
@@ -356,7 +356,7 @@ PairTrack Maintainer::trackOf(std::size_t k, double false_alarms) const {
   return trackPair(windows_[k], model, false_alarms, *input_.options);
 }
 
-// Whether the pair is as near to where it was linearised as first order is good for.
+// True if the pair is close enough to its linearisation point.
 bool Maintainer::isNearNominal(const PairTrack& track) const {
   constexpr double kRotation_rad = 0.02, kOffset_s = 0.004;
   const auto told = [&](Eigen::Index first, Eigen::Index count) {
@@ -389,7 +389,7 @@ void Maintainer::addPairs(double false_alarms) {
   for (std::size_t k = 1; k < imus_.size(); ++k) {
     const std::string pair = fmt::format("{} against {}", name(imus_[k]), name(imus_.front()));
     if (tracks[k].times_s.empty()) {
-      maintenance_.notes.push_back(pair + ": the two have no time in common");
+      maintenance_.notes.push_back(pair + ": the two do not overlap in time");
       continue;
     }
     addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
@@ -398,42 +398,44 @@ void Maintainer::addPairs(double false_alarms) {
     for (const NoiseAutocorrelation& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
     if (wider > kWorthAdvice) shaken_ = pair;
     if (wider > kWorthANote)
-      maintenance_.notes.push_back(fmt::format(
-          "{}: what is left between the two is no white noise; sigmas are up to {:.1f} times wider for that",
-          pair, std::sqrt(wider)));
+      maintenance_.notes.push_back(
+          fmt::format("{}: the residuals between the two are not white noise; sigmas are therefore up to "
+                      "{:.1f} times larger",
+                      pair, std::sqrt(wider)));
   }
 }
 
 void Maintainer::advise() {
   for (const std::string& imu : disagreeing_) {
-    maintenance_.notes.push_back(fmt::format(
-        "{} does not turn as {} does: their clocks differ by more than {:g} s, or they are not on one body",
-        imu, name(imus_.front()), input_.options->time_offset_search_s));
+    maintenance_.notes.push_back(
+        fmt::format("the rotation of {} does not match that of {}: their clocks differ by more than {:g} s, "
+                    "or they are not on one body",
+                    imu, name(imus_.front()), input_.options->time_offset_search_s));
     maintenance_.advice.emplace_back(
-        "Record the IMUs on one clock, or search further (maintain.time_offset_search_s)");
+        "Record the IMUs with one clock, or increase maintain.time_offset_search_s");
   }
-  // Numbers of IMUs that do not move together mean nothing, changed or not.
+  // Numbers of IMUs that do not move together are not meaningful.
   if (!disagreeing_.empty()) {
     maintenance_.verdict = Verdict::CannotTell;
-    maintenance_.reason =
-        fmt::format("{} does not turn as {} does", disagreeing_.front(), name(imus_.front()));
+    maintenance_.reason = fmt::format("the rotation of {} does not match that of {}", disagreeing_.front(),
+                                      name(imus_.front()));
     return;
   }
   if (maintenance_.verdict != Verdict::CannotTell) return;
   for (const MaintainedImu& imu : maintenance_.imus) {
     if (imu.stops.empty() && imus_.size() < 2)
       maintenance_.advice.emplace_back(
-          "Let the rig stand still for a few seconds in at least nine attitudes, all around");
+          "Keep the rig at rest for a few seconds in each of at least nine different orientations");
     else if (!imu.weakest.empty() && imus_.size() < 2)
       maintenance_.advice.push_back(
-          fmt::format("Stand still in more attitudes: {} is told least of {}", imu.weakest, imu.name));
+          fmt::format("Keep the rig at rest in more orientations: the weakest direction is {} of {}",
+                      imu.weakest, imu.name));
   }
   if (!shaken_.empty())
     maintenance_.advice.push_back(fmt::format(
-        "What is left between {} lasts: mount them more stiffly, or log them without what shakes them",
-        shaken_));
+        "The residuals between {} are correlated: mount them more stiffly, or reduce vibration", shaken_));
   if (imus_.size() > 1)
-    maintenance_.advice.emplace_back("Turn the rig about all its axes, for a minute and briskly");
+    maintenance_.advice.emplace_back("Rotate the rig about all its axes, briskly and for one minute");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Whether IMUs are still as an old calibration says, and when they changed: one pass over their logs, however long.
+// Check of IMUs against an old calibration, with times of changes, in one pass over logs of any length.
 #pragma once
 
 #include "core/base/progress.h"
@@ -20,7 +20,7 @@ struct MaintenanceOptions;
 struct MaintainInput {
   std::vector<std::filesystem::path> logs;
   NamedResult before;
-  std::string before_name;  // as people know it
+  std::string before_name;  // displayed name
   ImuLogSettings settings;
   ImuReadings readings;  // of the calibration
   SharedOptions<MaintenanceOptions> options;
@@ -33,17 +33,17 @@ struct MaintainInput {
 MaintainInput readMaintainInput(const std::vector<std::filesystem::path>& logs,
                                 const std::filesystem::path& result);
 
-// Its stages, as progress names them and as people read them, with their shares of the time.
+// Stages: name in progress, displayed name, share of the time.
 struct MaintainStage {
   const char *name, *title;
   double share;
 };
 inline constexpr std::array kMaintainStages = {
-    MaintainStage{"look", "Look at the logs", 0.1}, MaintainStage{"read", "Read the logs", 0.75},
+    MaintainStage{"look", "Inspect the logs", 0.1}, MaintainStage{"read", "Read the logs", 0.75},
     MaintainStage{"trajectory", "Compare with the trajectory", 0.1},
-    MaintainStage{"follow", "Follow the IMUs", 0.05}};
+    MaintainStage{"follow", "Track the IMUs", 0.05}};
 
-// A log that tells nothing is a verdict, no error. Throws CalibrationError (BadInput) and Cancelled.
+// An uninformative log gives a verdict, not an error. Throws CalibrationError (BadInput) and Cancelled.
 Maintenance maintainImus(const MaintainInput& input, const RunContext& context);
 
 }  // namespace evical

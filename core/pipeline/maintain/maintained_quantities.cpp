@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-// How a block of numbers is called and shown.
+// Name and unit of a block of numbers.
 struct BlockWords {
   const char *name, *title, *unit;
-  double factor;  // from SI
+  double factor;  // from SI units
 };
 constexpr std::array<BlockWords, kPairBlocks.size()> kPairWords = {
     {{"rotation", "rotation", "deg", kDegPerRad},
@@ -34,7 +34,7 @@ constexpr std::array<BlockWords, kAccelerometerBlocks.size()> kStopWords = {
      {"accelerometer_misalignment", "accelerometer misalignment", "1", 1.0}}};
 constexpr std::array<const char*, 3> kMisalignments = {"xy", "xz", "yz"};
 
-// Empty where there is no other.
+// Empty if the block has only one number.
 std::string partName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
   if (count == 1) return {};
   const bool cross = std::string_view(words.name) == "accelerometer_misalignment";
@@ -57,7 +57,7 @@ double sigmaOfNorm(const Eigen::VectorXd& step, const Eigen::MatrixXd& covarianc
   return std::sqrt(std::max(0.0, (step.transpose() * covariance * step)(0, 0))) / norm;
 }
 
-// Size that is ignored, and size that must be detectable, in shown units.
+// Allowed drift and required detectability, in displayed units.
 struct Asked {
   double allowed_drift, required_detectability;
 };
@@ -78,7 +78,7 @@ void setWords(const BlockWords& words, Finding& finding) {
   finding.unit = words.unit;
 }
 
-// One that no number has been put into yet.
+// Finding without numbers.
 Finding findingOf(const BlockWords& words, const std::string& sensor, FindingSource source,
                   const MaintenanceOptions& options) {
   Finding finding;
@@ -98,8 +98,8 @@ void setChange(const BlockWords& words, const BlockChange& change, double limit,
   finding.limit_sigmas = std::sqrt(limit);
 }
 
-// Of a block that was tested with others: as found where it has changed, else as it alone would have.
-// `wider`: by how much variances are larger than the test takes them.
+// Sets the result of a block tested with others: as found if it has changed, else its result alone.
+// `wider`: ratio of the actual variances to those of the test.
 void setTested(const BlockWords& words, const StateBlock& block, const ChangeDetector& test,
                const std::vector<FoundChange>& changes, std::size_t which, double limit, double wider,
                Finding& finding) {
@@ -119,7 +119,7 @@ double squared(double value) {
   return std::isfinite(value) ? value * value : 0.0;
 }
 
-// At rest the gyroscope shows its bias and nothing else.
+// At rest the gyroscope measures only its bias.
 void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, std::size_t imu,
                       const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
   constexpr BlockWords kWords = {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0};
@@ -147,7 +147,7 @@ void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, s
   maintenance.findings.push_back(finding);
 }
 
-// What a source says of an accelerometer.
+// Information of one source about an accelerometer.
 struct AccelerometerEvidence {
   const AccelerometerMatrix& information;  // at the old numbers
   const AccelerometerVector &score, &now;
@@ -181,7 +181,7 @@ void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& 
   }
 }
 
-// The nominal pair with a correction, as what a result has of it: rotation as a vector.
+// Numbers of the corrected nominal pair; rotation as a vector.
 PairVector numbersOf(const PairNominal& nominal, const PairVector& correction) {
   PairVector numbers = correction;
   numbers.head<3>() =
@@ -191,7 +191,7 @@ PairVector numbersOf(const PairNominal& nominal, const PairVector& correction) {
   return numbers;
 }
 
-// What the old result says, about the nominal pair.
+// Old result relative to the nominal pair.
 PairVector beforeFrom(const TrackedPair& pair) {
   PairVector state = PairVector::Zero();
   state.head<3>() = quaternionLog(pair.before.reference_from_imu.rotation *
@@ -252,7 +252,7 @@ void addTrack(const TrackedPair& pair, const NamedResult& before, Maintenance& m
       const Eigen::Index n = kPairBlocks[b].first + i;
       const double at_nominal = numbersOf(pair.before, PairVector::Zero())[n];
       for (std::size_t k = 0; k < track.times_s.size(); ++k) {
-        // Rotations and lever arms as what they differ by from the old result.
+        // Rotations and lever arms are differences from the old result.
         const double now = b == 0 ? (pair.track.values[k] - beforeFrom(pair))[n]
                                   : numbersOf(pair.nominal, pair.track.values[k])[n] - at_nominal;
         number.values.push_back(kPairWords[b].factor * now);
@@ -271,7 +271,7 @@ std::string changeText(const Finding& finding) {
   return finding.alternatives.empty() ? text : fmt::format("{} (or {})", text, joined(finding.alternatives));
 }
 
-// Between IMUs where there are several; of a single one its own.
+// Quantities between IMUs if there are several; otherwise those of the single IMU.
 bool isAsked(const Finding& finding, bool several) {
   const std::string& quantity = finding.quantity;
   if (several)
@@ -384,7 +384,7 @@ void judge(Maintenance& maintenance) {
   bool any = false;
   for (const Finding& finding : findings) {
     if (!isAsked(finding, several)) continue;
-    // What one source does not tell another may.
+    // Another source may be conclusive.
     const auto better = [&](const Finding& other) {
       return other.quantity == finding.quantity && other.sensor == finding.sensor && other.isConclusive();
     };
@@ -395,10 +395,10 @@ void judge(Maintenance& maintenance) {
   }
   maintenance.verdict = any && untold.empty() ? Verdict::Unchanged : Verdict::CannotTell;
   if (maintenance.verdict == Verdict::Unchanged)
-    maintenance.reason = "nothing has changed that would have been noticed";
-  else if (maintenance.reason.empty())  // else the reason is given already
-    maintenance.reason = any ? "the log does not tell enough of " + untold
-                             : "the log has neither stops nor a second IMU nor a trajectory that would tell";
+    maintenance.reason = "no change was detected, and a relevant change would have been detected";
+  else if (maintenance.reason.empty())  // otherwise the reason is already set
+    maintenance.reason = any ? "the log does not sufficiently constrain " + untold
+                             : "the log has neither stops nor a second IMU nor a trajectory for a comparison";
 }
 
 }  // namespace evical

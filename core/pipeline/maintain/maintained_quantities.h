@@ -1,4 +1,5 @@
-// What stops, other IMUs and trajectories say, as quantities and steps for people, and the verdict from them.
+// Results from stops, other IMUs and trajectories as displayed quantities and steps, and the verdict from
+// them.
 #pragma once
 
 #include "core/data/maintenance.h"
@@ -20,12 +21,12 @@ void addStopQuantities(const StopCalibration& found, const NamedResult& before, 
                        const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance);
 MaintainedImu maintainedImu(const StopCalibration& found);
 
-// From a trajectory, and how it went from piece to piece.
+// Quantities from a trajectory, with their course over its pieces.
 void addTrajectoryQuantities(const std::vector<LagEstimate>& lags, const LagSum& sum,
                              const NamedResult& before, std::size_t imu, const MaintenanceOptions& options,
                              double false_alarms, Maintenance& maintenance);
 
-// Of an IMU against the reference, both of the old result; the track is about the nominal pair.
+// An IMU and the reference, both of the old result; the track is relative to the nominal pair.
 struct TrackedPair {
   std::size_t imu = 0, reference = 0;
   PairNominal nominal, before;
@@ -34,8 +35,8 @@ struct TrackedPair {
 void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const MaintenanceOptions& options,
                        double false_alarms, Maintenance& maintenance);
 
-// Which of the quantities must have been told for "nothing has changed": those between IMUs, of a single IMU those
-// of itself.
+// Verdict. "Unchanged" requires conclusive results for quantities between IMUs, or for those of a single IMU
+// itself.
 void judge(Maintenance& maintenance);
 
 }  // namespace evical

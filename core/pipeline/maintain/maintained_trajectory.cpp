@@ -18,8 +18,8 @@
 namespace evical {
 namespace {
 
-constexpr double kTurn_s = 0.05;   // poses between which rates are taken are that far apart
-constexpr double kLook_s = 120.0;  // of the trajectory, for frames and clock
+constexpr double kTurn_s = 0.05;   // distance of poses for angular rates
+constexpr double kLook_s = 120.0;  // part of the trajectory for the check of frames and clock
 
 struct BodyRate {
   double from_s, to_s;
@@ -48,13 +48,13 @@ Eigen::Quaterniond unchanged(const TimedPose& pose) {
 Eigen::Quaterniond inverted(const TimedPose& pose) {
   return pose.world_from_imu.conjugate();
 }
-// Read as if x, y, z, w were w, x, y, z.
+// Quaternion with its numbers read as w, x, y, z instead of x, y, z, w.
 Eigen::Quaterniond realPartFirst(const TimedPose& pose) {
   const Eigen::Vector4d& q = pose.world_from_imu.coeffs();
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
 }
 
-// What the gyroscope has turned by until each sample, by axis, for means over any interval.
+// Integrated angular rate until each sample, by axis, for means over any interval.
 struct TurnedRates {
   std::vector<double> times_s;
   std::vector<Eigen::Vector3d> sums_rad;
@@ -87,7 +87,7 @@ TurnAgreement agreementOf(const std::vector<BodyRate>& rates, const TurnedRates&
   return turnAgreement(body, imu);
 }
 
-// Which sensor of the old result is turned against the IMU as the trajectory's body is.
+// Sensor of the old result with the orientation of the trajectory's body relative to the IMU.
 std::string bodyOf(const NamedResult& before, std::size_t imu, const Eigen::Quaterniond& imu_from_body) {
   constexpr double kNear_rad = 2.0 * kRadPerDeg;
   const Eigen::Quaterniond imu_from_reference =
@@ -111,13 +111,13 @@ class TrajectoryCheck {
   std::string place() const { return input_.trajectory.string(); }
   const std::string& name() const { return input_.before.imus[imu_].name; }
 
-  // Times, then turns.
+  // Compares times, then rotations.
   double agree(std::vector<TimedPose>& poses, const TurnedRates& turned,
                const AngularSpeedSeries& of_imu) const {
     const std::vector<BodyRate> rates = ratesOf(poses, unchanged);
     if (turned.times_s.size() < 2 || rates.empty() || rates.front().from_s > turned.times_s.back() ||
         rates.back().to_s < turned.times_s.front())
-      throw badInput(place(), "has no time in common with the log",
+      throw badInput(place(), "does not overlap in time with the log",
                      "Give its times in seconds since the log's start, or since 1970 as the log has them");
     AngularSpeedSeries of_body;
     for (const BodyRate& rate : rates)
@@ -147,16 +147,15 @@ class TrajectoryCheck {
     const double scale = (run.sum.now.segment<3>(3).array() / old_scale.array()).mean();
     const double sigma = std::sqrt(run.sum.covariance.diagonal().segment<3>(3).mean());
     if (std::abs(scale - 1.0) > input_.options->trajectory_scale + kSigmas * sigma)
-      throw badInput(
-          place(),
-          fmt::format("its positions are {:.3g} times what the accelerometer of {} says: it is not in "
-                      "metres (one camera alone knows no scale)",
-                      1.0 / scale, name()),
-          "Scale it to metres");
+      throw badInput(place(),
+                     fmt::format("its scale is {:.3g} times that of the accelerometer of {}: it is not in "
+                                 "metres (a single camera cannot determine the scale)",
+                                 1.0 / scale, name()),
+                     "Scale it to metres");
     const double lever_m = medianOf(std::move(levers));
     if (far && 1e3 * lever_m > input_.options->trajectory_lever_mm)
       throw badInput(place(),
-                     fmt::format("its positions are those of a point {:.0f} mm from {}, or not in metres",
+                     fmt::format("its positions are of a point {:.0f} mm from {}, or not in metres",
                                  1e3 * lever_m, name()),
                      "Give the trajectory of the IMU itself, in metres");
   }
@@ -170,7 +169,7 @@ class TrajectoryCheck {
     if (angle < kTurned_rad) return;
     const std::string body = bodyOf(input_.before, imu_, agreement.imu_from_body);
     throw badInput(place(),
-                   fmt::format("it is not that of {}, but of another frame, turned by {:.1f} deg{}", name(),
+                   fmt::format("it is not of {}, but of another frame, rotated by {:.1f} deg{}", name(),
                                angle * kDegPerRad, body.empty() ? "" : ": that of " + body),
                    "Give the poses world_from_imu of this IMU");
   }
@@ -180,10 +179,10 @@ class TrajectoryCheck {
     const double of_inverse = agreementOf(ratesOf(poses, inverted), turned).correlation,
                  of_order = agreementOf(ratesOf(poses, realPartFirst), turned).correlation;
     if (of_order > kExplained && of_order > of_inverse)
-      throw badInput(place(), "its quaternions are written w, x, y, z", "Write x, y, z, w");
+      throw badInput(place(), "its quaternions are in the order w, x, y, z", "Write x, y, z, w");
     if (of_inverse > kExplained)
       throw badInput(place(), "its poses are imu_from_world", "Give world_from_imu: the inverse of each");
-    throw badInput(place(), fmt::format("it does not turn as {} does", name()),
+    throw badInput(place(), fmt::format("its rotation does not match that of {}", name()),
                    "Give the trajectory of this log, on its clock");
   }
 
@@ -191,7 +190,7 @@ class TrajectoryCheck {
   std::size_t imu_;
 };
 
-// Calls use(time, sample) of the IMU's samples until it says that it has enough.
+// Calls use(time, sample) for the IMU's samples until it returns that they are enough.
 void forSamples(const MaintainInput& input, std::size_t imu, const RunContext& context,
                 const std::function<bool(double, const ImuSample&)>& use) {
   ImuLogs logs(input.logs, input.before, input.settings, input.readings, context.stop);

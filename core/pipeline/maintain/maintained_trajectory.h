@@ -1,4 +1,5 @@
-// What a trajectory says of the reference IMU's accelerometer; first whether it is this IMU's, in metres, on this clock.
+// Test of the reference IMU's accelerometer with a trajectory; checks first that the trajectory is of this
+// IMU, in metres, and on this clock.
 #pragma once
 
 #include "core/maintenance/trajectory_segment.h"
@@ -13,10 +14,10 @@ namespace evical {
 struct TrajectoryRun {
   std::vector<LagEstimate> lags;
   LagSum sum;
-  double later_s = 0.0;  // what was added to its times
+  double later_s = 0.0;  // offset that was added to its times
 };
 
-// Throws CalibrationError (BadInput) where the trajectory is of another body, frame, scale or time.
+// Throws CalibrationError (BadInput) if the trajectory has another body, frame, scale or time.
 TrajectoryRun runTrajectory(const MaintainInput& input, std::size_t imu, double gravity_m_s2,
                             const RunContext& context);
 

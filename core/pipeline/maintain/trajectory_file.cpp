@@ -18,7 +18,7 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kNumbersInRow = 8;
-// Poses that are nearer than this to each other tell nothing more.
+// Poses closer in time than this are skipped.
 constexpr double kNearest_s = 0.0095;
 constexpr double kEpoch_s = 1e8;
 
@@ -36,7 +36,7 @@ std::array<double, kNumbersInRow> numbersOf(const std::string& line, const std::
     const std::size_t length = std::strcspn(at, " \t,;\r");
     const std::optional<double> read = realFrom({at, length});
     if (!read)
-      throw badInput(place, "has no eight numbers",
+      throw badInput(place, "does not have eight numbers",
                      "Give trajectory.csv of a calibration, or lines 'time x y z qx qy qz qw'");
     number = *read;
     at += length;
@@ -51,7 +51,7 @@ TimedPose poseFrom(const std::array<double, kNumbersInRow>& n, double start_s, c
   pose.world_from_imu = Eigen::Quaterniond(n[7], n[4], n[5], n[6]);
   constexpr double kOff = 0.01;
   if (std::abs(pose.world_from_imu.norm() - 1.0) > kOff)
-    throw badInput(place, "its last four numbers are no rotation: a quaternion x, y, z, w of length 1",
+    throw badInput(place, "its last four numbers are not a rotation: a quaternion x, y, z, w of length 1",
                    "Give lines 'time x y z qx qy qz qw'");
   pose.world_from_imu.normalize();
   return pose;
@@ -76,7 +76,7 @@ std::vector<TimedPose> readTrajectory(const std::filesystem::path& file, std::in
   }
   constexpr std::size_t kFewest = 20;
   if (poses.size() < kFewest)
-    throw badInput(file.string(), fmt::format("has {} poses", poses.size()),
+    throw badInput(file.string(), fmt::format("has only {} poses", poses.size()),
                    "Give trajectory.csv of a calibration, or lines 'time x y z qx qy qz qw'");
   return poses;
 }

@@ -1,5 +1,5 @@
-// A trajectory from elsewhere: trajectory.csv as a calibration writes it, or TUM's format ("time x y z qx qy qz qw", with
-// blanks, lines with # left out).
+// External trajectory: trajectory.csv of a calibration, or TUM's format ("time x y z qx qy qz qw", separated
+// by blanks, lines with # ignored).
 #pragma once
 
 #include "core/maintenance/trajectory_segment.h"
@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// Times are since the log's start where the file has them so (smaller than 1e8), else less that start. Throws
-// CalibrationError (BadInput): unreadable, not in order of time, no poses, rotations that are none.
+// Times below 1e8 are relative to the log's start; from larger ones that start is subtracted. Throws
+// CalibrationError (BadInput) for unreadable files, wrong time order, too few poses, and invalid rotations.
 std::vector<TimedPose> readTrajectory(const std::filesystem::path& file, std::int64_t log_start_ns);
 
 }  // namespace evical

@@ -25,10 +25,10 @@ BlinkViews::BlinkViews(const CameraBatch& first, const ViewRequest& request)
 BoardObservations BlinkViews::finish(std::vector<RecordingFault>& faults) {
   const BoardObservations observations = tracker_.finish();
   const Blink& blink = *tracker_.blink();
-  context_.progress.log(
-      LogLevel::Info, fmt::format("{}: blinks at {:.1f} Hz, {:.0f} % of the events; {} views of {} pictures",
-                                  camera_.name, 1.0 / blink.period_s, 100.0 * blink.share,
-                                  observations.views.size(), observations.windows.size()));
+  context_.progress.log(LogLevel::Info,
+                        fmt::format("{}: blinks at {:.1f} Hz, {:.0f} % of the events; {} views of {} images",
+                                    camera_.name, 1.0 / blink.period_s, 100.0 * blink.share,
+                                    observations.views.size(), observations.windows.size()));
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())
     faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
   return lens_ ? inIdealPixels(observations, *lens_) : observations;
@@ -38,11 +38,11 @@ void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& 
   if (!observations.views.empty()) return;
   throw calibrationFailed(
       observations.camera,
-      fmt::format("something blinks, but a {} of {} x {} was never found in {} pictures of its flashes ({})",
+      fmt::format("something blinks, but a {} of {} x {} was never found in {} images of its flashes ({})",
                   boardTypeName(board.type), board.rows, board.cols, observations.windows.size(),
                   outcomes(observations)),
-      "Check type, rows and columns of the board, that it is in focus and large enough in the image, "
-      "and that the camera all but stands still");
+      "Check type, rows and columns of the board. Check that it is in focus and large enough in the image, "
+      "and that the camera is almost at rest");
 }
 
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera) {
@@ -52,7 +52,7 @@ std::optional<CalibrationError> unexpectedBlink(const Session& session, std::siz
   try {
     opened = std::make_unique<SessionRecording>(session);
   } catch (const CalibrationError&) {
-    return std::nullopt;  // gone since it was detected: it tells nothing
+    return std::nullopt;  // the recording has been removed since the detection
   }
   SessionRecording& recording = *opened;
   if (recording.camera(camera).type != StreamType::Events) return std::nullopt;
@@ -78,11 +78,11 @@ std::optional<CalibrationError> unexpectedBlink(const Session& session, std::siz
   if (!notice.blink()) return std::nullopt;
   return calibrationFailed(
       session.cameras[camera].name,
-      fmt::format("the board was never found, and what is seen blinks at {:.0f} Hz ({:.0f} % of the events)",
+      fmt::format("the board was never found, but something blinks at {:.0f} Hz ({:.0f} % of the events)",
                   1.0 / notice.blink()->period_s, 100.0 * notice.blink()->share),
-      "If the board is on a screen that flashes, " + howTo(HowTo::SayThatBoardFlashes) +
+      "If the board is on a flashing screen, " + howTo(HowTo::SayThatBoardFlashes) +
           " and calibrate the camera " + howTo(HowTo::CalibrateLens) +
-          "; if a lamp flickers, use daylight or a lamp on direct current");
+          ". If a lamp flickers, use daylight or a lamp with direct current");
 }
 
 }  // namespace evical

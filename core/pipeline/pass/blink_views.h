@@ -1,4 +1,4 @@
-// Events of a blinking board as views of it.
+// Views of a blinking board from events.
 #pragma once
 
 #include "core/base/error.h"
@@ -17,7 +17,7 @@ class BlinkViews final : public CameraViews {
 
   void take(const CameraBatch& batch) override { tracker_.add(batch.events); }
   const BoardObservations& soFar() const override { return tracker_.soFar(); }
-  // Throws CalibrationFailed where nothing blinks.
+  // Throws CalibrationFailed if nothing blinks.
   BoardObservations finish(std::vector<RecordingFault>& faults) override;
 
  private:
@@ -27,11 +27,11 @@ class BlinkViews final : public CameraViews {
   BlinkTracker tracker_;
 };
 
-// Why the board was not found in events in which something blinks; nothing where nothing does, or where the
-// session says that the board blinks. Reads the recording's first seconds once more.
+// Error if the board was not found but something blinks; absent if nothing blinks, or if the session's board
+// blinks. Reads the first seconds of the recording again.
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera);
 
-// Throws CalibrationFailed where something blinks, but never showed the board.
+// Throws CalibrationFailed if something blinks, but the board was never found in it.
 void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& board);
 
 }  // namespace evical

@@ -29,8 +29,9 @@ std::vector<bool> circlesSeen(const BoardObservations& observations, const Board
   return seen;
 }
 
-// Counts the views that show both outermost lines, of rows or of columns. A board that is smaller than the session says
-// never has such a view. A board of the right size has some, even if the read-out loses many bursts of events.
+// Counts the views that show both outermost lines, of rows or of columns. A board smaller than the session's
+// never has such a view. A board of the correct size has some, even if the read-out loses many bursts of
+// events.
 int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double least_line) {
   const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
   const double least = std::max(2.0, least_line * in_line);
@@ -52,8 +53,8 @@ bool contradicted(int against, int looked_at, const ExtentOptions& options) {
 
 std::string beyondText(const AxisCheck& axis) {
   return fmt::format(
-      "circles of the same lattice are seen beyond its first or last {} in {:.0f} % of {} views", axis.line,
-      100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view, axis.ends.beyond_in_view);
+      "circles of the same lattice are visible beyond its first or last {} in {:.0f} % of {} views",
+      axis.line, 100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view, axis.ends.beyond_in_view);
 }
 
 std::string missingText(const AxisCheck& axis, std::size_t views) {
@@ -62,9 +63,9 @@ std::string missingText(const AxisCheck& axis, std::size_t views) {
   const auto last = std::find(axis.seen.rbegin(), axis.seen.rend(), true) - axis.seen.rbegin();
   const std::ptrdiff_t never = std::max(first, last);
   if (never == 0 || never == count) {
-    return fmt::format("its first or last {} is missing in {:.0f} % of the {} views that show its place",
-                       axis.line, 100.0 * axis.ends.edge_missing / axis.ends.edge_in_view,
-                       axis.ends.edge_in_view);
+    return fmt::format(
+        "its first or last {} is missing in {:.0f} % of the {} views that contain its position", axis.line,
+        100.0 * axis.ends.edge_missing / axis.ends.edge_in_view, axis.ends.edge_in_view);
   }
   return fmt::format("the {} {} of {} {}s {} never seen in {} views", first > last ? "first" : "last", never,
                      count, axis.line, never == 1 ? "was" : "were", views);
@@ -95,17 +96,17 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board) {
   throw calibrationFailed(observations.camera,
                           fmt::format("the board was never found in {} windows ({})",
                                       observations.windows.size(), outcomes(observations)),
-                          other_board ? fmt::format("Circles in rows are there, but no {} x {} board: check "
-                                                    "rows, columns and circles (dark or bright) {}",
+                          other_board ? fmt::format("Rows of circles are visible, but not a {} x {} board: "
+                                                    "check rows, columns and circles (dark or bright) {}",
                                                     board.rows, board.cols, howTo(HowTo::EditBoard))
                                       : "Check that the board is in view, in focus and moving, and check "
                                         "rows, columns and circles (dark or bright) " +
-                                            howTo(HowTo::EditBoard) + "; look at what is seen " +
+                                            howTo(HowTo::EditBoard) + "; look at the detections " +
                                             howTo(HowTo::LookAtDetections));
 }
 
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
-  if (observations.kind != CameraKind::Events) return;  // whose lattice alone may be laid wrongly
+  if (observations.kind != CameraKind::Events) return;  // only their lattice can be misidentified
   const std::vector<bool> seen = circlesSeen(observations, board);
   const double least_whole =
       std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
@@ -135,8 +136,8 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
   }
   if (text.empty()) return;
   throw calibrationFailed(observations.camera,
-                          fmt::format("the board in view seems {} {} x {}: {}",
-                                      larger && smaller ? "other than"
+                          fmt::format("the visible board seems {} {} x {}: {}",
+                                      larger && smaller ? "different from"
                                       : larger          ? "larger than"
                                                         : "smaller than",
                                       board.rows, board.cols, text),
@@ -151,7 +152,7 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
   if (never == 0) return std::nullopt;
   return RecordingFault{
       observations.camera, FaultKind::BoardSize, 0.0,
-      fmt::format("{}: {} of the board's {} {} were seen in none of {} views: check its {}",
+      fmt::format("{}: {} of the board's {} {} were not seen in any of {} views: check its {}",
                   observations.camera, never, board.pointCount(), board.hasCircles() ? "circles" : "points",
                   observations.views.size(), board.hasPattern() ? "rows and columns" : "points_m")};
 }

@@ -1,5 +1,5 @@
-// Is there a board, and is it the one of the session? A wrong number of rows or columns is found all the
-// same, and may calibrate to something wrong.
+// Checks that the board is visible and matches the session. A board with a wrong number of rows or columns
+// can be detected, too, and would give a wrong calibration.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -12,16 +12,16 @@
 
 namespace evical {
 
-// How many windows ended how, in words.
+// Counts of windows by outcome, as text.
 std::string outcomes(const BoardObservations& observations);
 
-// Throws CalibrationFailed where the board was never found.
+// Throws CalibrationFailed if the board was never found.
 void checkBoardSeen(const BoardObservations& observations, const Board& board);
 
-// Throws CalibrationFailed where the views contradict the number of rows or columns.
+// Throws CalibrationFailed if the views contradict the number of rows or columns.
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options);
 
-// Circles that were never seen, though many views were: worth a warning.
+// Warning about circles that were never seen in many views.
 std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board);
 
 const char* measurementsOf(CameraKind kind);  // "events", "frames", "points"

@@ -1,4 +1,4 @@
-// Hands values from one thread to another; the sender waits while the receiver is behind.
+// Queue between two threads; the sender waits while the queue is full.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +15,7 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // False once closed: nobody will take it.
+  // False after closing: the value is discarded.
   bool push(Value value) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || values_.size() < capacity_; });
@@ -25,7 +25,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Nothing once closed and empty.
+  // Absent if closed and empty.
   std::optional<Value> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return closed_ || !values_.empty(); });

@@ -1,4 +1,4 @@
-// What the reading thread hands to the window thread: what one camera saw.
+// Data of one camera that the reading thread passes to the window thread.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -18,10 +18,10 @@ struct CameraBatch {
   std::size_t camera = 0;
   std::vector<EdgeCrossing> bursts;
   std::int64_t first_event_ns = 0, complete_until_ns = 0;
-  std::vector<Event> events;  // of a blinking board, in the place of bursts
+  std::vector<Event> events;  // for a blinking board, instead of bursts
   std::vector<Frame> frames;
-  std::vector<MeasuredPoint> points;  // of one time
-  // With a camera's first batch.
+  std::vector<MeasuredPoint> points;  // with the same timestamp
+  // Set in a camera's first batch.
   std::optional<Resolution> opened_px;
   CameraKind kind = CameraKind::Events;
   std::int64_t start_ns = 0;

@@ -40,15 +40,15 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
   const Board& board = session.boardOf(first.camera);
   if (!board.hasPattern())
     throw badInput(session.cameras[first.camera].name,
-                   "its board is a table of points, which has no pattern that could be found",
-                   "Give the camera points that another program has found (points: FILE), or another board");
+                   "its board is a table of points, which has no detectable pattern",
+                   "Give the camera points from another program (points: FILE), or use another board");
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
   if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
   if (!board.hasCircles())
     throw badInput(
         session.cameras[first.camera].name,
-        std::string("an event camera in motion cannot see a board of type ") + boardTypeName(board.type),
-        "Use a grid of circles; or show this board on a screen that flashes (a page that does is made " +
+        std::string("a moving event camera cannot detect a board of type ") + boardTypeName(board.type),
+        "Use a circle grid, or show this board on a flashing screen (create a page for it " +
             howTo(HowTo::MakeFlashingPage) + "), " + howTo(HowTo::SayThatBoardFlashes) +
             " and calibrate the camera " + howTo(HowTo::CalibrateLens));
   return std::make_unique<EventViews>(first, request);

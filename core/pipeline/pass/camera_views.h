@@ -1,5 +1,5 @@
-// One camera's views of the board, gathered from its batches as they come: by the front end from events, or as
-// another program has measured them. For the window thread.
+// Views of the board of one camera, collected from its batches: by the front end from events, or measured by
+// another program. Used by the window thread.
 #pragma once
 
 #include "core/base/progress.h"
@@ -19,13 +19,13 @@ class CameraViews {
   virtual ~CameraViews() = default;
   virtual void take(const CameraBatch& batch) = 0;
   virtual const BoardObservations& soFar() const = 0;
-  // In the ideal pixels of the lens, or in the sensor's own where none is known. What is odd is appended.
+  // Observations in ideal pixels, or in raw pixels if the lens is unknown. Appends faults.
   virtual BoardObservations finish(std::vector<RecordingFault>& faults) = 0;
-  // What frames tell themselves; unknown of all else.
+  // Resolution of frames; otherwise unknown.
   virtual Resolution resolution_px() const { return {}; }
 };
 
-// For whom the first batch of a camera opens; all of it must live as long as the views are gathered.
+// Inputs for a camera's views, which the first batch opens; all of them must outlive the views.
 struct ViewRequest {
   const Session& session;
   const CameraLens& lens;

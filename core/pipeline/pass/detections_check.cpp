@@ -19,9 +19,8 @@ namespace {
 
 std::string otherFolder() {
   return "Give the folder of a run of this session, or leave " + howTo(HowTo::UseDetections) +
-         " out to detect the board anew";
+         " out to detect the board again";
 }
-
 std::string inQuotes(const std::string& text) {
   return "'" + text + "'";
 }
@@ -29,13 +28,12 @@ std::string inQuotes(const std::string& text) {
 void checkSame(const YamlNode& map, const char* key, const std::string& session, const char* what) {
   const YamlNode node = map[key];
   if (node.text() != session)
-    throw node.error(fmt::format("the detections are of {} {}, the session is of {}", what,
+    throw node.error(fmt::format("the detections are of {} {}, but the session is of {}", what,
                                  inQuotes(node.text()), inQuotes(session)),
                      otherFolder());
 }
 
-// A board that was measured once more is still the same one: what is held against it is how its sizes are to each
-// other.
+// Compares ratios of sizes only: a board that was measured again is still the same board.
 void checkSizes(const YamlNode& map, const Board& board) {
   constexpr double kMeasuredAgain = 0.05;
   const double spacing_m = map["spacing_m"].real(1e-6, 100.0, "m");
@@ -44,30 +42,28 @@ void checkSizes(const YamlNode& map, const Board& board) {
     const double then = node.real(0.0, 100.0, "m") / spacing_m, now = session_m / board.spacing_m;
     if (std::abs(then - now) > kMeasuredAgain * std::max(then, now))
       throw node.error(
-          fmt::format("the detections are of a board on which it is {:.3f} of the spacing, in the "
-                      "session it is {:.3f}",
-                      then, now),
+          fmt::format("it is {:.3f} of the spacing for the detections, but {:.3f} in the session", then, now),
           otherFolder());
   };
   check("radius_m", board.radius_m);
   check("tag_size_m", board.tag_size_m);
 }
 
-// Points that were measured once more are a little elsewhere.
+// Compares points with a tolerance, since they may have been measured again.
 void checkPoints(const YamlNode& said, const Board& board) {
-  constexpr double kMeasuredAgain = 0.05;  // of what lies between neighbours
+  constexpr double kMeasuredAgain = 0.05;  // relative to the distance of neighbours
   const YamlNode node = said["points_m"];
   const std::vector<Eigen::Vector2d> then_m = pointsFrom(node);
   if (then_m.size() != board.given_m.size())
-    throw node.error(fmt::format("the detections are of a board of {} points, the session's has {}",
+    throw node.error(fmt::format("the detections are of a board with {} points, but the session's has {}",
                                  then_m.size(), board.given_m.size()),
                      otherFolder());
   for (std::size_t i = 0; i < then_m.size(); ++i)
     if ((then_m[i] - board.given_m[i]).norm() > kMeasuredAgain * board.spacing_m)
       throw node.error(
-          fmt::format("the detections are of a board whose point {} is at {}, {} m, in the session it "
-                      "is at {}, {} m",
-                      i, then_m[i].x(), then_m[i].y(), board.given_m[i].x(), board.given_m[i].y()),
+          fmt::format(
+              "point {} of the board is at {}, {} m for the detections, but at {}, {} m in the session", i,
+              then_m[i].x(), then_m[i].y(), board.given_m[i].x(), board.given_m[i].y()),
           otherFolder());
 }
 
@@ -79,10 +75,10 @@ void checkTimeRange(const YamlNode& root, const Session& session) {
   if (wanted_s && (*wanted_s)[0] >= seen_s[0] && (*wanted_s)[1] <= seen_s[1]) return;
   throw node->error(
       fmt::format(
-          "the detections are of {} to {} s, the session is of {}", seen_s[0], seen_s[1],
-          wanted_s ? fmt::format("{} to {} s", (*wanted_s)[0], (*wanted_s)[1]) : "all of the recording"),
+          "the detections cover {} to {} s, but the session covers {}", seen_s[0], seen_s[1],
+          wanted_s ? fmt::format("{} to {} s", (*wanted_s)[0], (*wanted_s)[1]) : "the whole recording"),
       "Give the session " + howTo(HowTo::LimitTime) + " within it, or leave " + howTo(HowTo::UseDetections) +
-          " out to detect the board anew");
+          " out to detect the board again");
 }
 
 void logOptions(const YamlNode& map, const Session& session, const RunContext& context) {
@@ -100,7 +96,7 @@ void logOptions(const YamlNode& map, const Session& session, const RunContext& c
     if (!map.has(row.name)) differing += " " + row.name;
   if (!differing.empty())
     context.progress.log(LogLevel::Warning,
-                         "The detections were made with other options, and stay as they are:" + differing);
+                         "The detections were made with other options and stay unchanged:" + differing);
 }
 
 }  // namespace
@@ -108,23 +104,23 @@ void logOptions(const YamlNode& map, const Session& session, const RunContext& c
 YamlNode loadDetections(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "detections.yaml";
   if (!isThere(file))
-    throw badInput(file.string(), "is not there",
-                   "Give the result folder of a calibration or a detection; what an earlier version wrote "
-                   "has to be detected once more");
+    throw badInput(file.string(), "does not exist",
+                   "Give the result folder of a calibration or a detection. Detect again if an earlier "
+                   "version wrote it");
   YamlNode root = YamlNode::load(file);
   if (!root.isMap() || !root.has("evical_detections"))
-    throw root.error("holds no detections: the key evical_detections is missing", otherFolder());
+    throw root.error("does not contain detections: the key evical_detections is missing", otherFolder());
   root["evical_detections"].integer(1, 1);
   const YamlNode start = root["start_ns"];
-  if (!isTime(start.nanoseconds())) throw start.error("is no time", otherFolder());
+  if (!isTime(start.nanoseconds())) throw start.error("is not a valid time", otherFolder());
   return root;
 }
 
 void checkBoard(const YamlNode& said, const Board& board) {
   checkSame(said, "type", boardTypeName(board.type), "a board of type");
   if (!board.hasPattern()) return checkPoints(said, board);
-  checkSame(said, "rows", std::to_string(board.rows), "a board whose rows are");
-  checkSame(said, "cols", std::to_string(board.cols), "a board whose columns are");
+  checkSame(said, "rows", std::to_string(board.rows), "a board with rows:");
+  checkSame(said, "cols", std::to_string(board.cols), "a board with columns:");
   if (board.hasCircles())
     checkSame(said, "circles", board.circles == CircleShade::Dark ? "dark" : "bright", "circles that are");
   checkSizes(said, board);
@@ -136,8 +132,7 @@ void checkSession(const YamlNode& detections, const Session& session, const RunC
   const std::string recording = detections["recording"].text(), own = session.recording.filename().string();
   if (recording != own)
     context.progress.log(LogLevel::Warning,
-                         fmt::format("The detections are of a recording that was called {}; the "
-                                     "session's is called {}",
+                         fmt::format("The detections are of a recording named {}; the session's is named {}",
                                      inQuotes(recording), inQuotes(own)));
 }
 
@@ -148,13 +143,13 @@ YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera) 
     std::string names;
     for (const std::string& name : cameras.keys()) names += (names.empty() ? "" : ", ") + name;
     throw cameras.error(
-        fmt::format("the session's camera {} is missing; there are: {}", inQuotes(camera.name), names),
+        fmt::format("the session's camera {} is missing; existing cameras: {}", inQuotes(camera.name), names),
         otherFolder());
   }
   checkSame(*map, "stream", camera.stream, "the stream");
   const YamlNode offset = (*map)["clock_offset_s"];
   if (offset.real() != camera.clock_offset_s)
-    throw offset.error(fmt::format("the detections are of a clock_offset_s of {}, the session is of {}",
+    throw offset.error(fmt::format("the detections have a clock_offset_s of {}, but the session has {}",
                                    offset.real(), camera.clock_offset_s),
                        otherFolder());
   return *map;
@@ -170,9 +165,9 @@ Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera) {
                              ? camera.resolution_px
                              : camera.intrinsics->resolution_px;
   if (own.known() && own != seen)
-    throw node.error(
-        fmt::format("the detections are of {}, the session's camera has {}", sizeText(seen), sizeText(own)),
-        otherFolder());
+    throw node.error(fmt::format("the detections are of {}, but the session's camera has {}", sizeText(seen),
+                                 sizeText(own)),
+                     otherFolder());
   return seen;
 }
 
@@ -180,14 +175,13 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
   const auto node = map.find("detection_intrinsics");
   if (!node)
     throw map.error(
-        "was detected without intrinsics, and other places would be found with them",
-        "Start from the folder of a calibration, or give the camera its intrinsics and detect once "
-        "more");
+        "was detected without intrinsics, which would change the positions",
+        "Start from the folder of a calibration, or give the camera's intrinsics and detect again");
   CameraIntrinsics detection_intrinsics = readIntrinsics(*node);
   if (!camera.intrinsics) {
     if (!map.has("found_first"))
       throw node->error(
-          "the detections are of given intrinsics, the session gives none",
+          "the detections were made with given intrinsics, but the session gives none",
           "Give the session the same intrinsics, or leave " + howTo(HowTo::UseDetections) + " out");
     return detection_intrinsics;
   }
@@ -198,9 +192,9 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
                                         detection_intrinsics.resolution_px.known() &&
                                         projectionDifference(detection_intrinsics, given).max_px < kSame_px);
   if (!same)
-    throw node->error(
-        "the detections are of other intrinsics than the session gives",
-        "Give the session these, or leave " + howTo(HowTo::UseDetections) + " out to detect the board anew");
+    throw node->error("the detections were made with intrinsics other than the session's",
+                      "Use these in the session, or leave " + howTo(HowTo::UseDetections) +
+                          " out to detect the board again");
   return detection_intrinsics;
 }
 
@@ -216,12 +210,11 @@ void checkOverlap(const Session& session, const DetectionResult& pass) {
     const double begin_s = secondsSince(pass.start_ns, imu.samples.front().time_ns),
                  end_s = secondsSince(pass.start_ns, imu.samples.back().time_ns);
     if (begin_s > last_s + apart_s || end_s < first_s - apart_s)
-      throw badInput(
-          imu.name,
-          fmt::format("its samples lie at {:.3f} to {:.3f} s, the detections at {:.3f} to {:.3f} s: they "
-                      "are of another recording",
-                      begin_s, end_s, first_s, last_s),
-          otherFolder());
+      throw badInput(imu.name,
+                     fmt::format("its samples cover {:.3f} to {:.3f} s, but the detections {:.3f} to {:.3f} "
+                                 "s: they are of another recording",
+                                 begin_s, end_s, first_s, last_s),
+                     otherFolder());
   }
 }
 

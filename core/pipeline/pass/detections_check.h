@@ -1,5 +1,5 @@
-// Whether an earlier run's detections are those of a session. All of it throws CalibrationError (BadInput) that says
-// which key of detections.yaml contradicts the session.
+// Checks that an earlier run's detections match a session. All functions throw CalibrationError (BadInput)
+// with the key of detections.yaml that contradicts the session.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,26 +12,26 @@
 
 namespace evical {
 
-// detections.yaml of a run's folder.
+// Reads detections.yaml of a run's folder.
 YamlNode loadDetections(const std::filesystem::path& folder);
 
-// The board that a camera sees, by what is said of it.
+// Compares a camera's board with its description.
 void checkBoard(const YamlNode& said, const Board& board);
 
-// The time range. That options of detection differ, which change nothing now, and that the recording
-// has another name is only logged.
+// Checks the time range. Different detection options, which have no effect any more, and another name of the
+// recording are only logged.
 void checkSession(const YamlNode& detections, const Session& session, const RunContext& context);
 
-// The camera's map, of the same stream and clock.
+// Map of a camera, with stream and clock checked.
 YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera);
 Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera);
-// What the camera was seen with, which is what the session gives, or was found where it gives nothing.
+// Lens used for the detection: the session's, or the calibrated one if the session gives none.
 CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera);
 
-// IMUs whose samples lie elsewhere in time are of another recording.
+// Checks that IMU samples overlap the detections in time; otherwise they are of another recording.
 void checkOverlap(const Session& session, const DetectionResult& pass);
 
-// Those that decide what is detected, where they are not at their defaults.
+// Options that affect the detection and differ from their defaults.
 std::vector<OptionRow> detectionOptions(const CalibrationOptions& options);
 
 bool isOfImu(const RecordingFault& fault, const Session& session);

@@ -44,29 +44,29 @@ std::optional<CameraBatch> EventIntake::finish() {
 void EventIntake::report(std::vector<RecordingFault>& faults) const {
   if (unsorted_ > 0) {
     faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
-                      fmt::format("{}: {} events out of order, sorted", session_.stream, unsorted_)});
+                      fmt::format("{}: {} events out of order were sorted", session_.stream, unsorted_)});
   }
   if (late_ > 0) {
-    faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
-                      fmt::format("{}: time runs backwards: {} events left out", session_.stream, late_)});
+    faults.push_back(
+        {session_.stream, FaultKind::BackwardTime, 0.0,
+         fmt::format("{}: time runs backwards: {} events were excluded", session_.stream, late_)});
   }
   if (const double step_s = stampStep_s(); step_s > 0.0)
-    faults.push_back(
-        {session_.stream, FaultKind::Encoding, 0.0,
-         fmt::format(
-             "{}: time stamps of events step by {:.3g} ms, so the time offset is uncertain by half of that",
-             session_.stream, 1e3 * step_s)});
+    faults.push_back({session_.stream, FaultKind::Encoding, 0.0,
+                      fmt::format("{}: timestamps of events have a resolution of {:.3g} ms, so the time "
+                                  "offset is uncertain by half of that",
+                                  session_.stream, 1e3 * step_s)});
   if (const ReadOutLoad::Limit limit = load_.limit(); limit.share > 0.0)
     faults.push_back(
         {session_.stream, FaultKind::SaturatedReadOut, 0.0,
          fmt::format(
              "{}: for {:.0f} % of the time, events arrive at {:.2g} million per second and never faster. The "
              "read-out is at its limit: events are lost, and others have late timestamps, which shifts the "
-             "time offset. Move more slowly, or raise the camera's contrast thresholds",
+             "time offset. Move more slowly, or increase the camera's contrast thresholds",
              session_.stream, 100.0 * limit.share, 1e-6 * limit.rate_hz)});
   if (outside_ > 0) {
     faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
-                      fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,
+                      fmt::format("{}: {} events outside {} x {} px were excluded", session_.stream, outside_,
                                   resolution_px_.width_px, resolution_px_.height_px)});
   }
 }
@@ -82,13 +82,13 @@ void EventIntake::putInOrder(std::vector<Event>& events) {
     return event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
   });
   late_ += std::erase_if(events, [&](const Event& event) { return event.time_ns < last_ns_; });
-  // A few stray coordinates are a broken packet; many are a wrong resolution.
+  // A few invalid coordinates indicate a damaged packet, many a wrong resolution.
   constexpr std::uint64_t kEnough = 1000;
   if (seen_ >= kEnough && 20 * outside_ > seen_) {
     throw badInput(session_.name,
-                   fmt::format("resolution_px {} x {} is too small: {} of {} events lie outside",
+                   fmt::format("resolution_px {} x {} is too small: {} of {} events are outside",
                                resolution_px_.width_px, resolution_px_.height_px, outside_, seen_),
-                   "Give the sensor's own resolution, and intrinsics that belong to it");
+                   "Give the resolution of the sensor, and intrinsics for it");
   }
 }
 

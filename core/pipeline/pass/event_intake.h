@@ -1,5 +1,5 @@
-// One camera's events on their way from the recording to the front end: checked, sorted, turned into bursts; or
-// handed on as they are, where the board blinks.
+// Processing of one camera's events between recording and front end: checked, sorted, converted into bursts;
+// or passed on unchanged if the board blinks.
 #pragma once
 
 #include "core/data/event.h"
@@ -17,7 +17,7 @@
 
 namespace evical {
 
-// So many are put in order together: packets are as long as each format has them.
+// Number of events that are sorted together, since the packets of formats have different lengths.
 inline constexpr std::size_t kBatchEvents = 50'000;
 
 enum class EventUse { Bursts, Raw };
@@ -32,7 +32,7 @@ class EventIntake {
         resolution_px_(resolution_px),
         use_(use) {}
 
-  // Nothing where no event is left. Throws BadInput where too many lie outside the resolution.
+  // Absent if no event remains. Throws BadInput if too many are outside the resolution.
   std::optional<CameraBatch> take(std::vector<Event>& events);
   std::optional<CameraBatch> finish();
 
@@ -48,7 +48,7 @@ class EventIntake {
   BurstOptions burst_options_;
   Resolution resolution_px_;
   EventUse use_;
-  std::uint64_t count_ = 0;  // handed on
+  std::uint64_t count_ = 0;  // passed on
   StampStep stamp_step_;
   ReadOutLoad load_;
   std::optional<BurstExtractor> extractor_;

@@ -49,7 +49,7 @@ ImageMap imageFrom(const YamlNode& map) {
   for (const YamlNode& item : map["circles"].items())
     image.cells.emplace_back().circles = item.integer(0, kMostCount);
   if (image.cells.size() != static_cast<std::size_t>(image.columns * image.rows))
-    throw map.error("has not a count for each cell");
+    throw map.error("does not have a count for each cell");
   return image;
 }
 

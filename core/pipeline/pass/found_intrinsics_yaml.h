@@ -1,4 +1,4 @@
-// Intrinsics as they were calibrated first, with all that reports tell of them, as YAML.
+// Intrinsics that were calibrated first, with all data for reports, as YAML.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -8,7 +8,7 @@
 
 namespace evical {
 
-// But for the intrinsics themselves. One key a line, each indented by `indent` blanks.
+// Without the intrinsics themselves. One key per line, each indented by `indent` blanks.
 std::string foundIntrinsicsYaml(const IntrinsicsResult& found, int indent);
 IntrinsicsResult foundIntrinsicsFrom(const YamlNode& map, const CameraIntrinsics& intrinsics);
 

@@ -52,14 +52,14 @@ void FrameViews::checkSize(const GrayImage& image) {
   if (image.size_px != resolution_px_)
     throw badInput(camera_.name,
                    fmt::format("its frames have {}, {} {}", size(image.size_px),
-                               decoded_ == 0 ? "but its resolution_px says" : "but those before had",
+                               decoded_ == 0 ? "but its resolution_px is" : "but earlier frames had",
                                size(resolution_px_)),
-                   "Give frames of one camera, and its own resolution_px and intrinsics");
+                   "Give frames of one camera, with its resolution_px and intrinsics");
   if (lens_ && lens_->resolution_px.known() && lens_->resolution_px != image.size_px)
     throw badInput(camera_.name,
                    fmt::format("its intrinsics are for {}, but its frames have {}",
                                size(lens_->resolution_px), size(image.size_px)),
-                   "Use intrinsics of this camera at this resolution, or leave them out to calibrate them");
+                   "Use intrinsics of this camera at this resolution, or remove them to calibrate them");
 }
 
 BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {

@@ -1,4 +1,4 @@
-// Frames as views of the board: decoded at the rate that is wanted, searched, followed.
+// Views of the board from frames: decoded at the requested rate, searched, tracked.
 #pragma once
 
 #include "core/frames/frame_tracker.h"
@@ -13,7 +13,8 @@ class FrameViews final : public CameraViews {
  public:
   FrameViews(const CameraBatch& first, const ViewRequest& request);
 
-  // Throws BadInput where pictures have another size than the session says, or change it, and where none can be read.
+  // Throws BadInput if images have another size than the session's, if their size changes, or if none can be
+  // read.
   void take(const CameraBatch& batch) override;
   const BoardObservations& soFar() const override { return so_far_; }
   BoardObservations finish(std::vector<RecordingFault>& faults) override;
@@ -29,7 +30,7 @@ class FrameViews final : public CameraViews {
   std::optional<CameraIntrinsics> lens_;
   FrameTracker tracker_;
   Resolution resolution_px_;
-  BoardObservations so_far_;  // without views, which are known at the end
+  BoardObservations so_far_;  // without views, which are added at the end
   std::uint64_t decoded_ = 0, unreadable_ = 0;
   std::string first_problem_;
 };

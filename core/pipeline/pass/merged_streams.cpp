@@ -18,7 +18,7 @@ namespace {
 using Stream = MergedStreams::Stream;
 using File = MergedStreams::File;
 
-// Calls visit(items) with what the packet holds of each kind.
+// Calls visit(items) for each kind of item in the packet.
 template <class SomePacket, class Visitor>
 void forEachKind(SomePacket& packet, Visitor&& visit) {
   visit(packet.events);
@@ -40,14 +40,14 @@ void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vecto
   toSi(raw, imu.acceleration_unit.value_or(info.acceleration_unit),
        imu.angular_rate_unit.value_or(info.angular_rate_unit), samples);
   for (ImuSample& sample : samples) {
-    // A message's own statement of what it measured counts only if the session names separate streams.
+    // measured_by of a message is used only if the session names separate streams.
     if (imu.accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
     sample.angular_rate_rad_s = readAs(imu.gyroscope_axes, sample.angular_rate_rad_s);
     sample.specific_force_m_s2 = readAs(imu.accelerometer_axes, sample.specific_force_m_s2);
   }
 }
 
-// What the session says of the sensor's clock: its rate, and how far it is off.
+// Applies the session's clock scale and offset of the sensor.
 void setClock(Stream& stream, SensorPacket& packet) {
   const double scale = stream.clock_scale;
   if (stream.clock_offset_s == 0.0 && scale == 1.0) return;
@@ -60,15 +60,15 @@ void setClock(Stream& stream, SensorPacket& packet) {
       if (scale != 1.0 && std::abs(since_ns) < static_cast<double>(kLatestTime_ns))
         item.time_ns = *first_ns + std::llround(since_ns);
       if (!__builtin_add_overflow(item.time_ns, offset_ns, &item.time_ns) && isTime(item.time_ns)) continue;
-      throw badInput(
-          stream.name,
-          "with clock_offset_s and clock_scale its times are centuries away from those of any recording",
-          "Correct these two " + howTo(HowTo::EditSession));
+      throw badInput(stream.name,
+                     "with clock_offset_s and clock_scale its times are implausible, centuries from those of "
+                     "any recording",
+                     "Correct these two " + howTo(HowTo::EditSession));
     }
   });
 }
 
-// Units and clock; the storage changes hands.
+// Converts units and clock; moves the storage.
 void toSessionUnitsAndClock(File& file, Stream& stream) {
   SensorPacket& packet = file.next;
   packet.sensor = stream.sensor;
@@ -91,7 +91,7 @@ void filterImplausible(Stream& stream, SensorPacket& packet) {
   stream.points.filter(packet.points);
 }
 
-// What a stream's stamps were waiting for has not come.
+// Flushes the samples that a stream's filter still holds at the end of the file.
 bool flushNext(File& file) {
   while (file.flushed < file.streams.size()) {
     Stream& stream = file.streams[file.flushed++];
@@ -140,9 +140,8 @@ void MergedStreams::checkClocks(const std::function<std::string(double)>& advice
     if (std::abs(later_s) < kFurthestStarts_s) continue;
     throw badInput(
         file.path.string(),
-        fmt::format(
-            "its clock has nothing to do with that of {}: it starts at {:.3f} s, the other at {:.3f} s",
-            first.path.string(), secondsSince(0, file.time_ns()), secondsSince(0, first.time_ns())),
+        fmt::format("its clock is unrelated to that of {}: it starts at {:.3f} s, the other at {:.3f} s",
+                    first.path.string(), secondsSince(0, file.time_ns()), secondsSince(0, first.time_ns())),
         advice(later_s));
   }
 }
@@ -161,7 +160,7 @@ bool MergedStreams::read(SensorPacket& packet) {
   return true;
 }
 
-// The next packet that holds something.
+// Reads the next packet that is not empty.
 void MergedStreams::advance(File& file) {
   while (!file.read_out) {
     file.read_out = stop_.stop_requested() || !file.reader->read(file.raw);

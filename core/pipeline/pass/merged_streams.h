@@ -1,6 +1,6 @@
-// Streams of several recordings read as one, each a sensor's: in packets, with known clock offsets added and IMU samples in
-// SI units. What no sensor can have measured, and time stamps that no others bear out, stay outside. Of several files the
-// one that is furthest behind is read next, so memory stays that of a packet a file.
+// Streams of several recordings read as one, each of one sensor: in packets, with known clock offsets added
+// and IMU samples in SI units. Implausible values and isolated wrong timestamps are removed. The file that is
+// furthest behind in time is read next, so that only one packet per file is in memory.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -19,7 +19,7 @@
 
 namespace evical {
 
-// Some events, frames or points of a camera or samples of an IMU.
+// Events, frames or points of a camera, or samples of an IMU.
 struct SensorPacket {
   std::size_t sensor = 0;
   std::vector<Event> events;
@@ -34,16 +34,16 @@ class MergedStreams {
  public:
   struct Stream {
     std::size_t in_file = 0, sensor = 0;
-    std::string name;  // the sensor's
+    std::string name;  // of the sensor
     double clock_offset_s = 0.0, clock_scale = 1.0;
-    std::optional<SessionImu> imu = {};  // how its samples are to be read; none of a camera
+    std::optional<SessionImu> imu = {};  // interpretation of its samples; absent for a camera
 
-    // What does not come in.
+    // Filters and counts of removed data.
     StampFilter<Event> events{kEventStamps};
     StampFilter<ImuSample> samples{kSampleStamps};
     StampFilter<Frame> frames{kSampleStamps};
     StampFilter<MeasuredPoint> points{kPointStamps};
-    std::optional<std::int64_t> first_ns = {};  // of its own clock
+    std::optional<std::int64_t> first_ns = {};  // in its own clock
     std::uint64_t immeasurable = 0;
     std::int64_t immeasurable_ns = 0;  // the first
   };
@@ -51,10 +51,10 @@ class MergedStreams {
     std::filesystem::path path;
     std::unique_ptr<RecordingReader> reader;
     std::vector<Stream> streams = {};
-    Packet raw = {};  // as the reader hands it out
+    Packet raw = {};  // from the reader
     SensorPacket next = {};
-    bool read_out = false;    // then only what its streams still hold back is left
-    std::size_t flushed = 0;  // of its streams
+    bool read_out = false;    // true: only samples held in the filters remain
+    std::size_t flushed = 0;  // number of flushed streams
     bool finished = false;
 
     void add(std::size_t in_file, std::size_t sensor, const SessionCamera& camera);
@@ -63,23 +63,25 @@ class MergedStreams {
     std::int64_t time_ns() const;
   };
 
-  // Asked to stop, it ends as if the files did.
+  // When asked to stop, it behaves as at the end of the files.
   explicit MergedStreams(std::stop_token stop) : stop_(std::move(stop)) {}
 
   std::vector<File>& files() { return files_; }
   const std::vector<File>& files() const { return files_; }
 
-  // Reads the first packet of each file, whose streams are known by now. The time of the first item; none if there is none.
+  // Reads the first packet of each file; all streams must be known. Returns the time of the first item, if
+  // any.
   std::optional<std::int64_t> begin();
-  // Throws CalibrationError (BadInput), with this advice, for a file whose clock has nothing to do with that of the first,
-  // which starts so much later. Files of the same sensors follow each other, however much later.
+  // Throws CalibrationError (BadInput), with this advice, for a file whose clock is unrelated to that of the
+  // first file, which starts later by the argument. Files of the same sensors may follow each other after any
+  // time.
   void checkClocks(const std::function<std::string(double first_later_s)>& advice) const;
 
   // The file of the next packet; null at the end.
   const File* behind() const;
   bool read(SensorPacket& packet);
   double fractionRead() const;
-  // Appends those of the readers.
+  // Appends the faults of the readers.
   void addFaults(std::vector<RecordingFault>& faults) const;
 
  private:

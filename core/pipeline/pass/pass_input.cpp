@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-// Initialisation must hold what the batch holds.
+// Fixes time offsets in the initialisation that are fixed in the batch.
 void holdTimeOffsets(CalibrationInput& input) {
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
     if (!input.isReferenceCamera(k))

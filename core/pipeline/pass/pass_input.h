@@ -1,4 +1,4 @@
-// What initialisation and the batch are given of a pass.
+// Input of initialisation and batch from a pass.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -7,11 +7,11 @@
 
 namespace evical {
 
-// With what the session says of its sensors. Takes what cameras and IMUs saw out of the pass: of long recordings that
-// is most of the memory.
+// Combines the data with the session's sensors. Moves the data of cameras and IMUs out of the pass: in long
+// recordings they are most of the memory.
 CalibrationInput makeInput(const Session& session, DetectionResult& pass);
 
-// Gives it back; an input that took nothing changes nothing.
+// Moves the data back; an empty input has no effect.
 void restorePass(CalibrationInput input, DetectionResult& pass);
 
 }  // namespace evical

@@ -29,7 +29,7 @@ bool PointViews::belongs(const MeasuredPoint& point) {
     ++unknown_;
     return false;
   }
-  // Pixels reach half a pixel beyond their centres.
+  // Pixels extend half a pixel around their centres.
   const bool inside = point.x_px >= -0.5F && point.y_px >= -0.5F &&
                       point.x_px <= static_cast<float>(resolution_px_.width_px) - 0.5F &&
                       point.y_px <= static_cast<float>(resolution_px_.height_px) - 0.5F;
@@ -37,25 +37,25 @@ bool PointViews::belongs(const MeasuredPoint& point) {
   return inside;
 }
 
-// A few are somebody's mistakes; many are of another board or another camera.
+// A few invalid points are errors of the other program; many are of another board or another camera.
 void PointViews::checkShare() const {
   constexpr std::uint64_t kEnough = 200, kMostShare = 20;
   if (seen_ < kEnough) return;
   if (kMostShare * unknown_ > seen_)
     throw badInput(
         stream_,
-        fmt::format("{} of {} points have indices that this board does not have: up to {}, but the "
-                    "board's points are 0 to {}",
-                    unknown_, seen_, largest_, board_.pointCount() - 1),
+        fmt::format(
+            "{} of {} points have indices beyond this board's: up to {}, but the board's points are 0 to {}",
+            unknown_, seen_, largest_, board_.pointCount() - 1),
         board_.hasPattern()
-            ? "Check type, rows and columns of the board; points are counted row by row, an "
-              "AprilGrid's four a tag from the bottom left one"
-            : "Give all of the board's points in board.points_m, counted as the cameras' are");
+            ? "Check type, rows and columns of the board. Points are counted row by row; an AprilGrid has "
+              "four per tag, from the bottom left one"
+            : "Give all points of the board in board.points_m, with the same indices as the camera's points");
   if (kMostShare * outside_ > seen_)
     throw badInput(stream_,
-                   fmt::format("{} of {} points lie outside {} x {} px", outside_, seen_,
+                   fmt::format("{} of {} points are outside {} x {} px", outside_, seen_,
                                resolution_px_.width_px, resolution_px_.height_px),
-                   "Give the camera's own resolution_px, and points in its own pixels");
+                   "Give the camera's resolution_px, and points in its raw pixels");
 }
 
 // Each point once, in order of their indices.
@@ -104,13 +104,13 @@ BoardObservations PointViews::finish(std::vector<RecordingFault>& faults) {
       faults.push_back({stream_, kind, 0.0, fmt::format("{}: {} points {}", stream_, count, what)});
   };
   if (!std::is_sorted(frames_.begin(), frames_.end(), earlier))
-    faults.push_back({stream_, FaultKind::BackwardTime, 0.0, stream_ + ": views out of order, sorted"});
+    faults.push_back({stream_, FaultKind::BackwardTime, 0.0, stream_ + ": views out of order were sorted"});
   std::stable_sort(frames_.begin(), frames_.end(), earlier);
   BoardObservations observations = so_far_;
   std::stable_sort(observations.windows.begin(), observations.windows.end(), earlier);
-  say(FaultKind::Corrupt, unknown_, "left out that the board does not have");
-  say(FaultKind::OutsideResolution, outside_, "outside the sensor left out");
-  say(FaultKind::Corrupt, twice_, "left out that were measured twice at the same time");
+  say(FaultKind::Corrupt, unknown_, "excluded: the board does not have them");
+  say(FaultKind::OutsideResolution, outside_, "excluded: outside the sensor");
+  say(FaultKind::Corrupt, twice_, "excluded: measured twice at the same time");
   for (ViewFromFrame& made : viewsFromFrames(frames_, board_.pointCount()))
     observations.views.push_back(std::move(made.view));
   return throughLens(std::move(observations), resolution_px_.height_px, lens_);

@@ -1,4 +1,5 @@
-// Points of the board that another program has measured, as views: those of one time are one view.
+// Views from points of the board that another program has measured: points with the same timestamp form a
+// view.
 #pragma once
 
 #include "core/frames/views_from_frames.h"
@@ -14,7 +15,7 @@ class PointViews final : public CameraViews {
  public:
   PointViews(const CameraBatch& first, const ViewRequest& request);
 
-  // Throws BadInput where points are not this board's, or not this sensor's.
+  // Throws BadInput if points do not belong to this board or this sensor.
   void take(const CameraBatch& batch) override;
   const BoardObservations& soFar() const override { return so_far_; }
   BoardObservations finish(std::vector<RecordingFault>& faults) override;
@@ -30,10 +31,10 @@ class PointViews final : public CameraViews {
   std::int64_t start_ns_;
   double unsaid_sigma_px_;
   std::optional<CameraIntrinsics> lens_;
-  BoardObservations so_far_;  // without views, which are known at the end
+  BoardObservations so_far_;  // without views, which are added at the end
   std::vector<PointsInFrame> frames_;
   std::uint64_t seen_ = 0, unknown_ = 0, outside_ = 0, twice_ = 0;
-  int largest_ = 0;  // index of a point that the board does not have
+  int largest_ = 0;  // largest index that the board does not have
 };
 
 }  // namespace evical

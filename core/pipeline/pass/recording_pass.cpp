@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t kQueuedBatches = 16;
 
-// The window thread: what each camera saw of the board.
+// Window thread: collects the views of each camera.
 class WindowWorker {
  public:
   WindowWorker(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
@@ -53,7 +53,7 @@ class WindowWorker {
     if (failure_) std::rethrow_exception(failure_);
   }
   double busy_s() const { return busy_s_; }
-  // Before it finishes; of frames, where nothing else says it.
+  // Resolutions of frames, if not known otherwise; called before finishing.
   void tellResolutions(std::vector<Resolution>& resolutions_px) const {
     for (std::size_t k = 0; k < views_.size(); ++k)
       if (views_[k] && !resolutions_px[k].known()) resolutions_px[k] = views_[k]->resolution_px();
@@ -88,10 +88,10 @@ class WindowWorker {
   double busy_s_ = 0.0;
 };
 
-// Reading: packets to intakes and IMUs, within the session's time range.
+// Reads packets and passes them to intakes and IMUs, within the session's time range.
 class ReadingPass {
  public:
-  // `start_ns`: of the whole session, where not all of its sensors are read; its time range counts from there.
+  // `start_ns`: start of the whole session, if not all of its sensors are read; origin of the time range.
   ReadingPass(const Session& session, const RunContext& context, DetectionResult& result,
               std::optional<std::int64_t> start_ns = {})
       : session_(session),
@@ -138,7 +138,7 @@ class ReadingPass {
     result_.faults.insert(result_.faults.end(), faults.begin(), faults.end());
   }
 
-  // Of events, frames or points.
+  // Number of events, frames or points.
   std::uint64_t count(std::size_t camera) const {
     const Intake& intake = intakes_[camera];
     return intake.events ? intake.events->eventCount() : intake.count;
@@ -154,7 +154,7 @@ class ReadingPass {
     CameraKind kind = CameraKind::Events;
     std::optional<EventIntake> events;
     std::vector<Event> pending;
-    std::uint64_t count = 0;  // of all else
+    std::uint64_t count = 0;  // of other types
   };
 
   void addSamples(const SensorPacket& packet) {
@@ -205,7 +205,7 @@ class ReadingPass {
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
       result_.faults.push_back({session.joinedStream(), FaultKind::BackwardTime, 0.0,
-                                session.joinedStream() + ": samples out of order, sorted"});
+                                session.joinedStream() + ": samples out of order were sorted"});
       std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
@@ -277,7 +277,7 @@ DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> le
     if (result.cameras[k].events > 0) continue;
     throw badInput(
         session.recording.string(),
-        fmt::format("stream {} holds no {}{}", session.cameras[k].stream, measurementsOf(reading.kind(k)),
+        fmt::format("stream {} has no {}{}", session.cameras[k].stream, measurementsOf(reading.kind(k)),
                     session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
         "Check the recording " + howTo(HowTo::Inspect));
   }

@@ -1,4 +1,4 @@
-// One pass over a recording: every camera's events through the front end, every IMU's samples into memory.
+// One pass over a recording: events of all cameras are processed by the front end, IMU samples are stored.
 #pragma once
 
 #include "core/base/progress.h"
@@ -18,24 +18,24 @@ class FrontEndObserver;
 struct DetectionResult {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams
   std::vector<BoardObservations> cameras;
-  std::vector<CameraLens> lenses;  // by camera: what the observations were seen with
+  std::vector<CameraLens> lenses;  // by camera: used for the observations
   std::vector<ImuData> imus;       // SI units, in time order
   std::vector<Resolution> resolutions_px;
   std::vector<RecordingFault> faults;
-  double read_s = 0.0, detect_s = 0.0;  // the threads' own times, which overlap
-  // By camera, in time order: what a person left out and may take back. Empty where nobody did.
+  double read_s = 0.0, detect_s = 0.0;  // times of the threads, which overlap
+  // By camera, in time order: views that were rejected by hand and can be restored. Empty if none were.
   std::vector<std::vector<BoardView>> rejected_views = {};
 };
 
-// Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
-// events. Throws BadInput for streams that are missing, empty, or do not fit the session.
+// Reads and extracts bursts in one thread, searches windows in another. Memory does not grow with the number
+// of events. Throws BadInput for streams that are missing, empty, or do not fit the session.
 DetectionResult readAndDetect(const Session& session, const RunContext& context);
 
-// The same through these lenses, one a camera, whatever the session gives.
+// The same with these lenses, one per camera, instead of the session's.
 DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> lenses,
                               const RunContext& context);
 
-// The IMUs alone, of a recording whose start is known: what cameras saw is not read.
+// Reads only the IMUs of a recording with a known start; data of cameras are not read.
 DetectionResult readImus(const Session& session, std::int64_t start_ns, const RunContext& context);
 
 }  // namespace evical

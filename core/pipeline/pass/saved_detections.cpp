@@ -63,7 +63,7 @@ std::string cameraYaml(const SessionCamera& camera, const DetectionResult& pass,
   return text;
 }
 
-// Those of IMUs are found again.
+// Faults, without those of IMUs, which are detected again.
 std::string faultsYaml(const Session& session, const DetectionResult& pass) {
   std::string text;
   for (const RecordingFault& fault : pass.faults)
@@ -94,7 +94,7 @@ std::string detectionsYaml(const Session& session, const DetectionResult& pass,
   return text + faultsYaml(session, pass);
 }
 
-// What was known of the lens, and what the camera was seen with: its sensor's lens.
+// Given lens and lens used for the detection: that of the camera's sensor.
 CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_t k) {
   const SessionCamera& sensor = session.sensor(k);
   CameraLens lens = givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty);
@@ -106,7 +106,7 @@ CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_
   return lens;
 }
 
-// What detections.yaml says of one of the session's cameras.
+// Restores one of the session's cameras from detections.yaml.
 void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
                    RestoredDetections& restored) {
   const SessionCamera& camera = session.cameras[k];
@@ -136,7 +136,7 @@ std::vector<RecordingFault> faultsFrom(const YamlNode& list) {
   return faults;
 }
 
-// Of a shorter time range than the detections': what lies within it.
+// Removes items outside the session's time range, if it is shorter than the detections'.
 template <class Items>
 void keepWithin(const std::optional<std::array<double, 2>>& range_s, Items& items) {
   if (!range_s) return;

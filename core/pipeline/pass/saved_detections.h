@@ -1,6 +1,6 @@
-// What a run has found of the board, kept beside its result, so that a later run of the same session starts from it
-// instead of from the recording's events and frames: detections.csv and windows.csv hold views and windows,
-// detections.yaml all else, and the IMUs' samples are read again.
+// Detections of a run, stored with its result, from which a later run of the same session can start instead
+// of from the recording's events and frames. detections.csv and windows.csv contain views and windows,
+// detections.yaml the rest; IMU samples are read again.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -16,18 +16,18 @@
 
 namespace evical {
 
-// The three files of a pass. `intrinsics`: of lenses that were calibrated first, by camera; empty where none was.
+// The three files of a pass. `intrinsics`: lenses that were calibrated first, by camera; empty if none.
 std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& pass,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics);
 
 struct RestoredDetections {
   DetectionResult pass;
-  std::vector<std::optional<IntrinsicsResult>> intrinsics;  // as the run had them
+  std::vector<std::optional<IntrinsicsResult>> intrinsics;  // of the run
 };
 
-// Throws CalibrationError (BadInput) where a file is missing or damaged, and where the detections are not those of
-// this session: another board, a camera that is missing, another stream, resolution, lens or clock, or a longer
-// time range. Cameras that the session does not have are left out.
+// Throws CalibrationError (BadInput) if a file is missing or damaged, and if the detections do not match this
+// session: another board, a missing camera, another stream, resolution, lens or clock, or a longer time
+// range. Cameras that the session does not have are ignored.
 RestoredDetections restoreDetections(const std::filesystem::path& folder, const Session& session,
                                      const RunContext& context);
 

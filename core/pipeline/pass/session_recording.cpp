@@ -27,8 +27,8 @@ SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
   checkTimed();
   streams_.checkClocks([](double first_later_s) {
     return fmt::format(
-        "Give clock_offset_s for its streams, what to add to their times: {:.3f} if both recordings began "
-        "at the same moment, and prior.time_offset_search_s as large as that is uncertain",
+        "Give clock_offset_s for its streams, which is added to their times: {:.3f} if both recordings began "
+        "at the same moment. Set prior.time_offset_search_s to the uncertainty of this value",
         first_later_s);
   });
 }
@@ -51,7 +51,7 @@ bool SessionRecording::isIn(const std::filesystem::path& path, const Sensor& sen
   return own == path || std::filesystem::equivalent(own, path, ignored);
 }
 
-// What the session says of the tables in this recording.
+// The session's column names for tables in this recording.
 ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) const {
   ColumnNames names;
   const auto add = [&](const auto& sensor, const std::string& stream) {
@@ -81,7 +81,7 @@ void SessionRecording::addSensor(const Sensor& sensor, const std::string& stream
     file.add(findStream(*file.reader, stream, types), places_.size(), sensor);
   } catch (const CalibrationError& error) {
     std::string problem = error.problem();
-    for (const RecordingFault& fault : file.reader->faults())  // perhaps the stream was in what is lost
+    for (const RecordingFault& fault : file.reader->faults())  // the stream may have been in the lost part
       problem += (problem.ends_with('.') ? " " : ". ") + fault.text;
     if (problem.ends_with('.')) problem.pop_back();
     throw badInput(fmt::format("{}: {}", path.string(), error.place()), problem, error.advice());
@@ -93,12 +93,11 @@ void SessionRecording::checkTimed() const {
   if (session_.cameras.size() == 1 && session_.imus.empty()) return;
   for (std::size_t camera = 0; camera < session_.cameras.size(); ++camera) {
     if (info(camera).timed) continue;
-    throw badInput(
-        session_.cameras[camera].name,
-        "its pictures have no times, so nothing can be calibrated against them",
-        "Name them by their times in ns, or give a data.csv as EuRoC has it; or, for its intrinsics, "
-        "calibrate the camera " +
-            howTo(HowTo::CalibrateLens));
+    throw badInput(session_.cameras[camera].name,
+                   "its images have no timestamps, so other sensors cannot be calibrated relative to it",
+                   "Use timestamps in ns as file names, or add a data.csv as in EuRoC. To calibrate only its "
+                   "intrinsics, calibrate the camera " +
+                       howTo(HowTo::CalibrateLens));
   }
 }
 
@@ -123,16 +122,16 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
   const Resolution stated = info(camera).resolution_px;
   if (lens && stated.known() && lens->resolution_px.known() && lens->resolution_px != stated) {
     throw badInput(own.name,
-                   fmt::format("its intrinsics are for {} x {} px, but the recording is of {} x {}",
+                   fmt::format("its intrinsics are for {} x {} px, but the recording has {} x {}",
                                lens->resolution_px.width_px, lens->resolution_px.height_px, stated.width_px,
                                stated.height_px),
-                   "Use intrinsics of this camera at this resolution, or leave them out to calibrate them");
+                   "Use intrinsics of this camera at this resolution, or remove them to calibrate them");
   }
   if (own.resolution_px.known()) return own.resolution_px;
   if (stated.known()) return stated;
   if (lens && lens->resolution_px.known()) return lens->resolution_px;
-  if (info(camera).type == StreamType::Frames) return {};  // the first that is decoded tells
-  throw badInput(own.name, "the recording does not say the sensor's resolution",
+  if (info(camera).type == StreamType::Frames) return {};  // known after the first one is decoded
+  throw badInput(own.name, "the recording does not contain the sensor's resolution",
                  howTo(HowTo::GiveResolution));
 }
 
@@ -151,8 +150,8 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
     const double away_s = secondsSince(filter.strayFrom_ns(), filter.strayTime_ns());
     faults.push_back(
         {stream, FaultKind::Corrupt, secondsSince(start_ns_, filter.strayFrom_ns()),
-         fmt::format("{}: {} {} left out, whose time stamps are far from those around them (the first "
-                     "is {:.3f} s {}, at {:.3f} s)",
+         fmt::format("{}: {} {} excluded, whose timestamps are far from neighbouring ones (the first is "
+                     "{:.3f} s {}, at {:.3f} s)",
                      stream, filter.strays(), items, std::abs(away_s), away_s < 0.0 ? "behind" : "ahead",
                      secondsSince(start_ns_, filter.strayFrom_ns()))});
   };
@@ -162,11 +161,10 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
   sayStrays(gate.points, "points");
   if (gate.immeasurable == 0) return;
   const double at_s = secondsSince(start_ns_, gate.immeasurable_ns);
-  faults.push_back(
-      {stream, FaultKind::NotFinite, at_s,
-       fmt::format("{}: {} IMU samples left out, whose values are no numbers, or none that a sensor "
-                   "measures (the first at {:.3f} s)",
-                   stream, gate.immeasurable, at_s)});
+  faults.push_back({stream, FaultKind::NotFinite, at_s,
+                    fmt::format("{}: {} IMU samples excluded, whose values are not finite or not plausible "
+                                "(the first at {:.3f} s)",
+                                stream, gate.immeasurable, at_s)});
 }
 
 }  // namespace evical

@@ -1,4 +1,4 @@
-// The recordings of a session read as one: the streams of its sensors.
+// Recordings of a session read as one: the streams of its sensors.
 #pragma once
 
 #include "core/pipeline/pass/merged_streams.h"
@@ -13,28 +13,28 @@
 
 namespace evical {
 
-// The first camera's packets are of sensor 0, the first IMU's of that behind the last camera's.
+// Sensor numbers of packets: cameras from 0, then IMUs.
 class SessionRecording {
  public:
-  // Opens the files and reads the first packet of each. Throws CalibrationError (BadInput) for files and
-  // streams that are not there, and for files whose clocks have nothing to do with each other.
-  // Asked to stop, it ends as if the files did.
+  // Opens the files and reads the first packet of each. Throws CalibrationError (BadInput) for missing files
+  // and streams, and for files with unrelated clocks. When asked to stop, it behaves as at the end of the
+  // files.
   explicit SessionRecording(const Session& session, std::stop_token stop = {});
 
   std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 
   const StreamInfo& camera(std::size_t camera) const { return info(camera); }
   CameraKind kind(std::size_t camera) const;
-  // The session's, the recording's, or the intrinsics': whichever is known first. Throws where none is, but of
-  // frames, which tell it themselves.
+  // The session's, the recording's, or the intrinsics': the first one that is known. Throws if none is,
+  // except for frames, which have it themselves.
   Resolution resolution_px(std::size_t camera) const;
 
-  // Time of the first event or sample in any file; 0 where there is none.
+  // Time of the first event or sample in any file; 0 if there is none.
   std::int64_t start_ns() const { return start_ns_; }
 
   bool read(SensorPacket& packet) { return streams_.read(packet); }
   double fractionRead() const { return streams_.fractionRead(); }
-  // Of the files, and what was kept outside; complete once read() has returned false.
+  // Faults of the files, and removed data; complete after read() has returned false.
   std::vector<RecordingFault> faults() const;
 
  private:
@@ -53,7 +53,7 @@ class SessionRecording {
   const Session& session_;
   MergedStreams streams_;
   std::vector<std::pair<std::size_t, std::size_t>>
-      places_;  // by sensor: of the file, and of the stream among its own
+      places_;  // by sensor: indices of the file, and of the stream in the file
   std::int64_t start_ns_ = 0;
 };
 

@@ -14,7 +14,7 @@ bool SessionTimeRange::holds(std::int64_t time_ns) const {
 
 bool SessionTimeRange::isOver(const SensorPacket& packet) {
   if (!session_.time_range_s) return false;
-  constexpr double kMargin_s = 1.0;  // more than packets of a file are out of order
+  constexpr double kMargin_s = 1.0;  // larger than the disorder of packets in files
   const auto behind = [&](const auto& items) {
     return !items.empty() &&
            secondsSince(start_ns_, items.front().time_ns) > (*session_.time_range_s)[1] + kMargin_s;

@@ -1,4 +1,4 @@
-// The part of a recording that a session asks for, and when a recording is so far behind it that no more need be read.
+// Time range of a session, and the decision when the rest of a recording need not be read.
 #pragma once
 
 #include "core/pipeline/pass/session_recording.h"
@@ -12,14 +12,15 @@ namespace evical {
 
 class SessionTimeRange {
  public:
-  // `sensors`: that packets are numbered by.
+  // `sensors`: number of sensors.
   SessionTimeRange(const Session& session, std::size_t sensors, std::int64_t start_ns)
       : session_(session), start_ns_(start_ns), behind_(sensors) {}
 
-  // Everything where the session asks for no part.
+  // True for all times if the session has no time range.
   bool holds(std::int64_t time_ns) const;
 
-  // True once all sensors have come well behind; a stamp that is wrong is followed by right ones. All packets in turn.
+  // True after all sensors are well beyond the range: a wrong timestamp is followed by correct ones. Must be
+  // called with all packets in order.
   bool isOver(const SensorPacket& packet);
 
  private:

@@ -15,7 +15,7 @@ bool earlier(const BoardView& a, const BoardView& b) {
   return a.time_s < b.time_s;
 }
 
-// Each view is of one window: of the same middle.
+// Updates the report of a view's window, which has the same centre time.
 void reportAs(WindowOutcome outcome, double time_s, std::vector<WindowReport>& windows) {
   const auto window =
       std::lower_bound(windows.begin(), windows.end(), time_s,
@@ -80,7 +80,7 @@ std::string rejectedSentence(const BoardObservations& camera) {
   const std::vector<double> times_s = rejectedTimes_s(camera);
   if (times_s.empty()) return {};
   const std::size_t shown = std::min(times_s.size(), kMostTimes);
-  std::string text = fmt::format("{}: a person rejected {} window{} with the board, at", camera.camera,
+  std::string text = fmt::format("{}: {} window{} with the board rejected by hand, at", camera.camera,
                                  times_s.size(), times_s.size() == 1 ? "" : "s");
   for (std::size_t i = 0; i < shown; ++i) text += fmt::format("{} {:.3f}", i == 0 ? "" : ",", times_s[i]);
   if (times_s.size() > shown) text += fmt::format(" and {} more", times_s.size() - shown);

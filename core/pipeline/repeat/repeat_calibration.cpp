@@ -32,9 +32,9 @@ struct One {
   Eigen::MatrixXd as_weighed;
 };
 
-// What a copy of a file under another name gives: the same to the last bit.
+// True if results are identical to the last bit, as for a copy of a recording.
 bool sameData(const CalibrationResult& a, const CalibrationResult& b) {
-  // Of the reference, where it is a camera, all recordings say the same.
+  // Skip a reference camera, whose pose is the same in all recordings.
   const auto same = [](const CameraState& left, const CameraState& right) {
     return left.reference_from_camera.translation_m == right.reference_from_camera.translation_m &&
            left.time_offset_s == right.time_offset_s;
@@ -42,7 +42,7 @@ bool sameData(const CalibrationResult& a, const CalibrationResult& b) {
   return a.start_ns == b.start_ns && std::ranges::equal(a.state.cameras, b.state.cameras, same);
 }
 
-// Residuals and the like take most of a result's memory, and nothing of them is needed.
+// Result without residuals and similar data, which need most of the memory.
 std::shared_ptr<const CalibrationResult> withoutCurves(const CalibrationResult& result) {
   auto kept = std::make_shared<CalibrationResult>(result);
   kept->circle_residuals.clear();
@@ -82,7 +82,7 @@ class Repeat {
   }
 
  private:
-  using Chosen = std::vector<std::size_t>;  // of ones_
+  using Chosen = std::vector<std::size_t>;  // indices into ones_
 
   Repeatability& out() { return run_.repeatability; }
   const CheckOptions& options() const { return *input_.sessions.front().options.check; }
@@ -98,8 +98,7 @@ class Repeat {
     const auto run = std::make_shared<const CalibrationRun>(std::move(*outcome.run));
     for (const One& before : ones_)
       if (sameData(*before.named.result, run->result))
-        return failOne(fmt::format("is the same recording as {} once more: it says nothing new",
-                                   input_.names[before.recording]),
+        return failOne(fmt::format("duplicates {}: it adds no information", input_.names[before.recording]),
                        recording);
     if (const std::string other = otherLens(run->result); !other.empty()) return failOne(other, recording);
     recording.status = run->result.status;
@@ -110,7 +109,7 @@ class Repeat {
     ones_.push_back({k, session, std::move(named), run->as_weighed});
   }
 
-  // Where lens models were found from each recording they may differ: then their numbers mean different things.
+  // Lens models that were selected from each recording may differ: then their parameters are not comparable.
   std::string otherLens(const CalibrationResult& result) const {
     if (ones_.empty()) return {};
     const CalibrationState& first = ones_.front().named.result->state;
@@ -119,7 +118,7 @@ class Repeat {
             &other = first.cameras[k].lens.inUse();
       if (!own || !other || own->model == other->model) continue;
       return fmt::format(
-          "its lens of camera {} came out as {}, that of {} as {}, so the two cannot be combined: set "
+          "its lens model of camera {} is {}, but that of {} is {}, so they cannot be combined: set "
           "intrinsics.model in all sessions",
           ones_.front().session.cameras[k].name, cameraModelTitle(own->model),
           input_.names[ones_.front().recording], cameraModelTitle(other->model));
@@ -135,12 +134,12 @@ class Repeat {
   }
 
   void fail() {
-    std::string reason = fmt::format("{} of {} recordings could be calibrated, at least {} are needed",
+    std::string reason = fmt::format("{} of {} recordings could be calibrated, at least {} are required",
                                      ones_.size(), out().recordings.size(), kFewest);
     for (const RepeatedRecording& each : out().recordings)
       if (each.outcome == RepeatOutcome::Failed) reason += fmt::format("; {}: {}", each.name, each.reason);
     out().reason = reason;
-    out().advice.emplace_back("See the reasons, and record again");
+    out().advice.emplace_back("Fix the problems of the failed recordings, and record again");
   }
 
   void compare() {
@@ -180,7 +179,7 @@ class Repeat {
                              [&](std::size_t a, std::size_t b) { return excess(a) < excess(b); });
   }
 
-  // Each recording is tested, so that each may be called far only so often.
+  // Probability of a false alarm per recording, since each recording is tested.
   double falseAlarms() const { return options().false_alarms / static_cast<double>(ones_.size()); }
   bool isFar(const EstimateDistance& distance) const { return probabilityBeyond(distance) < falseAlarms(); }
 
@@ -196,7 +195,7 @@ class Repeat {
     recording.findings = differences(k, rest);
   }
 
-  // What a check would say of it against the others.
+  // Findings of a check of one recording against the others.
   std::vector<Finding> differences(std::size_t k, const Chosen& rest) const {
     const NamedResult before = namedJoint(rest);
     ComparedQuantities compared = compareQuantities({before, ones_[k].named, true}, options());
@@ -209,14 +208,14 @@ class Repeat {
     std::stable_sort(all.begin(), all.end(), [](const Finding& a, const Finding& b) {
       return a.sigmas / a.limit_sigmas > b.sigmas / b.limit_sigmas;
     });
-    // Where no single one explains it: that which comes nearest.
+    // If no single quantity explains it: the one that comes closest.
     const auto end =
         std::stable_partition(all.begin(), all.end(), [](const auto& each) { return each.changed; });
     if (!all.empty()) all.erase(std::max(end, all.begin() + 1), all.end());
     return all;
   }
 
-  // They are each recording's own.
+  // Time offsets are separate for each recording.
   static void leaveOffsetsOut(ComparedQuantities& compared) {
     const char* const offset = quantityInfo(QuantityOwner::Camera, QuantityId::TimeOffset).name;
     ComparedQuantities kept;
@@ -264,8 +263,9 @@ class Repeat {
     for (const std::size_t k : fitting_) names.push_back(input_.names[ones_[k].recording]);
     result->notes.push_back("solution of " + std::to_string(names.size()) +
                             " recordings together: " + listed(names));
-    result->notes.push_back("biases, gravity and time offsets are each recording's own: these are those of " +
-                            out().own_values_of);
+    result->notes.push_back(
+        "biases, gravity and time offsets are separate for each recording: those of this result are from " +
+        out().own_values_of);
     for (const std::size_t k : fitting_)
       if (const RepeatedRecording& one = recordingOf(k); one.status == CalibrationStatus::Doubtful)
         flagDoubtful(one.name + ": " + one.reason, *result);
@@ -274,11 +274,11 @@ class Repeat {
     run_.joint = std::move(named);
   }
 
-  // What a calibration is for, and all recordings together do not tell well enough.
+  // Reason for doubt if the joint result does not meet the required sigmas.
   std::string sigmaDoubt(const CalibrationResult& result) const {
     const OptimisationOptions& needs = *input_.sessions.front().options.optimisation;
     const auto doubt = [](const std::string& what, double sigma, double needed, const char* unit) {
-      return sigma > needed ? fmt::format("{} is known to {} {} only, {} {} are needed", what,
+      return sigma > needed ? fmt::format("the sigma of {} is {} {}, but {} {} is required", what,
                                           html::significant(sigma, 2), unit, html::plain(needed), unit)
                             : std::string();
     };
@@ -309,7 +309,7 @@ class Repeat {
     if (far.empty())
       out().reason = fmt::format("{} recordings agree", fitting_.size());
     else if (fitting_.size() <= kFewest && ones_.size() == kFewest)
-      out().reason = "the two recordings do not agree, and which of them is right only a third one tells: " +
+      out().reason = "the two recordings disagree, and a third one is needed to decide which is correct: " +
                      changeOfFirst();
     else
       out().reason = fmt::format("{} of {} recordings do not fit the others: {}", far.size(), ones_.size(),
@@ -327,14 +327,14 @@ class Repeat {
 
   std::string changeOfFirst() {
     const std::vector<Finding>& findings = recordingOf(fitting_.front()).findings;
-    return findings.empty() ? "all of it" : changeOfSensorText(findings.front());
+    return findings.empty() ? "all quantities together" : changeOfSensorText(findings.front());
   }
 
   const RepeatInput& input_;
   const RunContext& context_;
   const Stopwatch stopwatch_;
   RepeatRun run_;
-  std::vector<One> ones_;  // those that were calibrated
+  std::vector<One> ones_;  // successful calibrations
   std::optional<RepeatedEstimates> estimates_;
   Chosen fitting_;
 };

@@ -1,4 +1,5 @@
-// Several recordings of one rig: each calibrated alone, then all together; and which of them do not fit the others.
+// Repeated calibration of one rig: each recording alone, then all jointly; recordings that do not fit the
+// others are identified.
 #pragma once
 
 #include "core/base/progress.h"
@@ -18,22 +19,22 @@ namespace evical {
 
 struct RepeatRun {
   Repeatability repeatability;
-  // Of all that fit; as a result it is read, compared and exported like any other.
+  // Joint result of all recordings that fit; it can be read, compared and exported like any other.
   std::optional<NamedResult> joint;
-  std::size_t own_values_of = 0;  // the recording that the joint result has biases, gravity and offsets of
+  std::size_t own_values_of = 0;  // recording of the joint result's biases, gravity and time offsets
 };
 
-// Its stages, as progress tells them: those of a calibration of each recording as a part, then
-// the comparison.
+// Name of a recording's part in progress: each part has the stages of a calibration, then the comparison
+// follows.
 std::string partOfRepeat(const RepeatInput& input, std::size_t recording);
 inline constexpr const char* kComparingStage = "compare";
 
-// The session as each recording is calibrated; that a short one leaves sigmas large is judged of all together.
+// Session for the calibration of each recording; large sigmas are judged only in the joint result.
 Session sessionOfRepeat(Session session);
 
-// How one recording is calibrated: of its number, and the session that it is calibrated with.
+// Calibrates one recording, given its index and session.
 using CalibrateOne = std::function<CalibrationOutcome(std::size_t, const Session&, const RunContext&)>;
-// Told of each that is done, before the next one begins.
+// Called after each recording, before the next one begins.
 using RecordingDone =
     std::function<void(std::size_t, const Session&, const std::shared_ptr<const CalibrationRun>&)>;
 
@@ -41,7 +42,7 @@ using RecordingDone =
 RepeatRun repeatCalibration(const RepeatInput& input, const CalibrateOne& calibrate,
                             const RecordingDone& done, const RunContext& context);
 
-// From recordings.
+// The same with the standard calibration of each recording.
 RepeatRun repeatCalibration(const RepeatInput& input, const RecordingDone& done, const RunContext& context);
 
 }  // namespace evical

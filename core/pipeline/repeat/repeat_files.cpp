@@ -22,9 +22,8 @@ constexpr const char* kRepeat = "repeat.yaml";
 
 void checkRepeatFolder(const std::filesystem::path& folder) {
   if (isThere(folder / kResultFile) && !isThere(folder / kRepeat))
-    throw badInput(folder.string(),
-                   "holds the result of a calibration, which a repeat would take the place of",
-                   "Name another folder");
+    throw badInput(folder.string(), "contains the result of a calibration, which the repeat would overwrite",
+                   "Choose another folder");
 }
 
 std::filesystem::path folderOf(const std::filesystem::path& folder, const RepeatInput& input,
@@ -45,7 +44,7 @@ void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& in
     std::error_code ignored;
     std::filesystem::remove(folder / kResultFile, ignored);
   }
-  files.push_back({kRepeat, assessmentYaml(repeat.repeatability)});  // the last tells that all are there
+  files.push_back({kRepeat, assessmentYaml(repeat.repeatability)});  // written last: marks a complete result
   writeExportedFiles(folder, files);
 }
 
@@ -54,7 +53,7 @@ RepeatRun repeatInto(const std::filesystem::path& folder, const RepeatInput& inp
                      const RunContext& context) {
   checkRepeatFolder(folder);
   const NewFolder made(folder);
-  std::size_t logged = 0;  // of the recordings before
+  std::size_t logged = 0;  // of the previous recordings
   const auto keep = [&](std::size_t k, const Session& session,
                         const std::shared_ptr<const CalibrationRun>& one) {
     const std::filesystem::path of_one = folderOf(folder, input, k);

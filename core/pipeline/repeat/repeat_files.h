@@ -1,5 +1,5 @@
-// What a repeat leaves in its folder: repeat.yaml, repeat.csv, report.html with its tables, log.txt, the session and
-// result.yaml of all recordings together; and a folder for each recording (folderOf), as a calibration leaves it.
+// Files of a repeat: repeat.yaml, repeat.csv, report.html with its tables, log.txt, session and result.yaml
+// of the joint solution; and a folder for each recording (folderOf) with the files of a calibration.
 #pragma once
 
 #include "core/pipeline/repeat/repeat_calibration.h"
@@ -11,19 +11,20 @@
 
 namespace evical {
 
-// Throws CalibrationError (BadInput) where the folder holds a calibration of its own, which would be lost.
+// Throws CalibrationError (BadInput) if the folder contains a calibration, which would be overwritten.
 void checkRepeatFolder(const std::filesystem::path& folder);
 
 std::filesystem::path folderOf(const std::filesystem::path& folder, const RepeatInput& input,
                                std::size_t recording);
 
-// All but the recordings' folders, together or not at all. Without a joint result an older one goes.
+// Writes all files except the recordings' folders, together or not at all. Without a joint result an older
+// one is removed.
 void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& input, const RepeatRun& repeat,
                       const std::string& log);
 
-// A repeat whose files appear in `folder`, of each recording as soon as it is done: one that is stopped keeps what was
-// done until then. `log`: all that was said so far. Throws as checkRepeatFolder and repeatCalibration; a folder that was
-// made for it goes away again where nothing came of it.
+// Repeat with files in `folder`, written after each recording: a stopped repeat keeps the finished ones.
+// `log`: all messages so far. Throws as checkRepeatFolder and repeatCalibration; a new folder is removed
+// again if nothing was written.
 RepeatRun repeatInto(const std::filesystem::path& folder, const RepeatInput& input,
                      const std::string& version, const std::function<std::string()>& log,
                      const RunContext& context);

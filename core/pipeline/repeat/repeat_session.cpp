@@ -21,11 +21,10 @@ namespace {
 
 [[noreturn]] void throwOther(const Session& session, const Session& first, const std::string& what,
                              const std::string& own, const std::string& other) {
-  throw badInput(
-      session.source.string(),
-      fmt::format("{} {}, that of {} {}: these are not recordings of one rig before one board", what, own,
-                  first.source.string(), other),
-      "Repeat only what was recorded with the same sensors, by the same names, and the same board");
+  throw badInput(session.source.string(),
+                 fmt::format("{} {}, that of {} {}: these are not recordings of one rig and one board", what,
+                             own, first.source.string(), other),
+                 "Use only recordings with the same sensors, the same names and the same board");
 }
 
 template <class Sensors>
@@ -36,7 +35,7 @@ std::string namesOf(const Sensors& sensors) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-// In the first one's order: a session lists them as it likes.
+// Sorts sensors in the order of the first session.
 template <class Sensors>
 void sortAs(const Sensors& first, const std::string& what, const Session& first_session,
             const Session& session, Sensors& sensors) {
@@ -68,19 +67,20 @@ void checkCameras(const Session& first, const Session& session) {
                  std::string("is ") + cameraModelTitle(other.intrinsics->model));
     if (own.same_sensor_as != other.same_sensor_as || own.shutter != other.shutter ||
         own.board != other.board)
-      throwOther(session, first, camera, "has another board, shutter or same_sensor_as", "has not");
+      throwOther(session, first, camera, "has another board, shutter or same_sensor_as", "does not");
   }
 }
 
-// What both were told beforehand must be the same, as it counts once.
+// Priors must be the same in all sessions, since they are counted once.
 void checkPriors(const Session& first, const Session& session) {
   const auto samePrior = [](const auto& a, const auto& b) { return a.prior == b.prior; };
   if (!std::equal(session.cameras.begin(), session.cameras.end(), first.cameras.begin(), samePrior) ||
       !std::equal(session.imus.begin(), session.imus.end(), first.imus.begin(), samePrior))
-    throwOther(session, first, "its prior", "is not", "is: give all the same");
+    throwOther(session, first, "its prior", "differs", "is another one: give the same prior in all");
 }
 
-// Options after detection decide what a result and its sigmas mean, so that all must have been computed with the same.
+// Options after the detection affect the meaning of a result and its sigmas, so they must be the same for
+// all.
 void checkOptions(const Session& first, const Session& session) {
   const auto rowsOf = [](const Session& of) {
     std::map<std::string, std::string> rows;
@@ -102,8 +102,9 @@ void checkOptions(const Session& first, const Session& session) {
     if (valueIn(own, name) != valueIn(other, name))
       throw badInput(
           session.source.string(),
-          fmt::format("{} is {}, in {} it is {}: results computed with different options cannot be combined",
-                      name, valueIn(own, name), first.source.string(), valueIn(other, name)),
+          fmt::format(
+              "{} is {}, but in {} it is {}: results computed with different options cannot be combined",
+              name, valueIn(own, name), first.source.string(), valueIn(other, name)),
           "Give all sessions the same options");
 }
 
@@ -145,7 +146,7 @@ std::set<std::filesystem::path> filesOf(const Session& session) {
   return files;
 }
 
-// Parts of one recording are recordings of their own where they do not overlap.
+// Parts of one recording count as separate recordings if they do not overlap.
 bool overlap(const Session& a, const Session& b) {
   if (!a.time_range_s || !b.time_range_s) return true;
   return (*a.time_range_s)[0] < (*b.time_range_s)[1] && (*b.time_range_s)[0] < (*a.time_range_s)[1];
@@ -158,11 +159,11 @@ void checkApart(const std::vector<Session>& sessions) {
       const auto twice =
           std::find_if(own.begin(), own.end(), [&](const auto& file) { return other.contains(file); });
       if (twice == own.end() || !overlap(sessions[k], sessions[j])) continue;
-      throw badInput(
-          twice->string(),
-          fmt::format("is there twice ({} and {}): a recording says nothing new the second time",
-                      sessions[j].source.string(), sessions[k].source.string()),
-          "Name each recording once, or parts of it that do not overlap by " + howTo(HowTo::LimitTime));
+      throw badInput(twice->string(),
+                     fmt::format("is listed twice ({} and {}): a duplicate adds no information",
+                                 sessions[j].source.string(), sessions[k].source.string()),
+                     "Name each recording once, or select parts of it that do not overlap by " +
+                         howTo(HowTo::LimitTime));
     }
 }
 
@@ -177,12 +178,12 @@ std::vector<std::string> namesFor(const std::vector<Session>& sessions) {
 RepeatInput repeatOf(std::vector<Session> sessions) {
   if (sessions.size() < 2)
     throw badInput(sessions.empty() ? std::string("repeat") : sessions.front().source.string(),
-                   "is one recording only: there is nothing to compare it with",
+                   "is a single recording, which cannot be compared with others",
                    "Give two or more sessions, or one with a list of recordings");
   for (Session& session : sessions) {
     if (session.board_blinks)
-      throw badInput(session.source.string() + ": board.blinking", "a board that blinks calibrates no rig",
-                     "Repeat recordings before a printed board");
+      throw badInput(session.source.string() + ": board.blinking",
+                     "a blinking board is not suitable for a rig", "Record with a printed board");
     if (&session != &sessions.front()) makeLike(sessions.front(), session);
   }
   checkApart(sessions);
@@ -211,8 +212,7 @@ RepeatInput readRepeat(std::span<const std::filesystem::path> files, const std::
       continue;
     }
     if (!rig)
-      throw badInput(files[k].string(),
-                     "is a recording: which sensors it is of, and which board, is not said",
+      throw badInput(files[k].string(), "is a recording without a description of its sensors and its board",
                      "Add a session of one of the recordings, or open one");
     Session session = *rig;
     setRecording(files[k], session);

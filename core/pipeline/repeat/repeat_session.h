@@ -1,4 +1,4 @@
-// What a repeat starts from: sessions of several recordings of one rig before one board.
+// Input of a repeat: sessions of several recordings of one rig and one board.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -13,18 +13,18 @@ namespace evical {
 
 struct RepeatInput {
   std::vector<Session> sessions;   // with the same sensors in the same order
-  std::vector<std::string> names;  // of their recordings, each another one, fit for folders
+  std::vector<std::string> names;  // of their recordings, unique and suitable for folders
 };
 
-// Sessions, or one that lists `recordings`. Throws CalibrationError (BadInput): fewer than two recordings, one that is
-// missing or there twice, rigs or boards that are not the same.
+// Reads sessions, or one that lists `recordings`. Throws CalibrationError (BadInput) for fewer than two
+// recordings, missing or duplicate ones, and different rigs or boards.
 RepeatInput readRepeat(std::span<const std::filesystem::path> files);
 
-// The same of sessions and recordings. Of a recording the sensors and the board are those of `like`; where there is none,
-// of the first session among the files. Throws CalibrationError (BadInput) where no session says them.
+// The same for sessions and recordings. A recording has the sensors and the board of `like`, or of the first
+// session among the files. Throws CalibrationError (BadInput) if there is no session.
 RepeatInput readRepeat(std::span<const std::filesystem::path> files, const std::optional<Session>& like);
 
-// The same of sessions that are there already.
+// The same for given sessions.
 RepeatInput repeatOf(std::vector<Session> sessions);
 
 }  // namespace evical

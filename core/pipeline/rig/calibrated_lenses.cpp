@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-// Of a lens that the batch did not solve for again.
+// Copies the sigmas of a lens that the batch did not refine.
 void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
   const IntrinsicsVector sigmas = found.standardDeviations();
   std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
@@ -34,7 +34,7 @@ void tellLenses(const Session& session, CalibrationRun& run) {
           lens.solved ? jointIntrinsics(*run.intrinsics[k], k, *lens.solved, run.result.uncertainty,
                                         *session.options.intrinsics)
                       : *run.intrinsics[k];
-      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
+      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection sigma {:.3f} px",
                                   name, found.views_used, found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
       if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
@@ -42,10 +42,10 @@ void tellLenses(const Session& session, CalibrationRun& run) {
         doubt = fmt::format("{}: {}", name, found.reason);
     }
     if (!lens.solved) continue;
-    if (lens.given_with) notes.push_back(name + ": weighed by the sigmas that they were given with");
+    if (lens.given_with) notes.push_back(name + ": estimated, with the given values and sigmas as prior");
     notes.push_back(
-        fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
-                    projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px));
+        fmt::format("{}: refined in the joint optimisation, which changed the projection by {:.3f} px RMS",
+                    name, projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
   flagDoubtful(doubt, run.result, "first_look_at_lens");

@@ -1,11 +1,11 @@
-// What a run says of lenses that it has calibrated itself, or solved for again with everything else.
+// Results for lenses that a run has calibrated first, or refined in the batch.
 #pragma once
 
 #include "core/pipeline/rig/calibration_pipeline.h"
 
 namespace evical {
 
-// Notes, sigmas and doubts of the result.
+// Adds notes, sigmas and warnings to the result.
 void tellLenses(const Session& session, CalibrationRun& run);
 
 }  // namespace evical

@@ -26,8 +26,8 @@
 namespace evical {
 namespace {
 
-// Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
-// when it is absurd.
+// Checks units: of accelerations by their median norm, with bounds that allow shaking at several g; of
+// angular rates only by implausible values.
 void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   std::vector<double> norms;
   double rate2 = 0.0;
@@ -41,20 +41,21 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
     const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
     throw badInput(
         imu.name,
-        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
-                    g ? ": they look like g" : ""),
+        fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}", norm,
+                    g ? ": the unit seems to be g" : ""),
         g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
         .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
   if (rms > options.largest_rotation_rate_rad_s) {
-    throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
+    throw badInput(imu.name,
+                   fmt::format("the angular rates are {:.0f} rad/s RMS: the unit seems to be deg/s", rms),
                    "Set angular_rate_unit: deg/s for this IMU")
         .repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", "deg/s"});
   }
 }
 
-// Two streams may be exchanged, empty, or of different times.
+// Separate streams: they may be swapped, empty, or from different times.
 void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
   const auto spanOf = [&](const std::string& stream, const char* sensor, auto measures,
                           Eigen::Vector3d ImuSample::*value) {
@@ -64,7 +65,7 @@ void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
         span_ns = {span_ns ? span_ns->first : sample.time_ns, sample.time_ns};
     if (!span_ns)
       throw badInput(imu.name, fmt::format("the stream {} has no measurements of the {}", stream, sensor),
-                     "Check the lines gyroscope: and accelerometer: of the session: they may be exchanged");
+                     "Check gyroscope: and accelerometer: in the session: they may be swapped");
     return *span_ns;
   };
   const auto rates =
@@ -78,13 +79,13 @@ void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
       std::max(secondsSince(rates.first, rates.second), secondsSince(forces.first, forces.second));
   if (shared_s < kLeastShared * whole_s)
     throw badInput(imu.name,
-                   fmt::format("{} and {} share only {:.2f} s of {:.2f} s", session.stream,
+                   fmt::format("{} and {} overlap for only {:.2f} s of {:.2f} s", session.stream,
                                session.accelerometer_stream, std::max(shared_s, 0.0), whole_s),
-                   "Check the timestamps of the two streams, or give " + howTo(HowTo::LimitTime) +
-                       " where both have samples");
+                   "Check the timestamps of the two streams, or set " + howTo(HowTo::LimitTime) +
+                       " to a part in which both have samples");
 }
 
-// Drivers that publish the two sensors separately set the values of the other sensor to 0.
+// Detects drivers that publish both sensors separately and set the other sensor's values to 0.
 void checkBothSensors(const ImuData& imu, const SessionImu& session) {
   if (!session.accelerometer_stream.empty()) return checkSeparateSensors(imu, session);
   const ImuStreamKind kind = imuStreamKind(imu.samples);
@@ -94,9 +95,10 @@ void checkBothSensors(const ImuData& imu, const SessionImu& session) {
   throw badInput(
       imu.name,
       gyroscope && accelerometer
-          ? fmt::format("each message of {} is of the gyroscope or of the accelerometer, the rest is 0",
-                        session.stream)
-          : fmt::format("the messages of {} hold {} only, the rest is 0", session.stream,
+          ? fmt::format(
+                "each message of {} has either angular rates or accelerations, the other values are 0",
+                session.stream)
+          : fmt::format("the messages of {} have only {}, the other values are 0", session.stream,
                         gyroscope ? "angular rates" : "accelerations"),
       howTo(HowTo::NameSeparateStreams,
             {gyroscope ? session.stream : "STREAM", accelerometer ? session.stream : "STREAM"}));
@@ -116,9 +118,9 @@ void checkDuration(const Session& session, const DetectionResult& pass) {
     throw withClockRate(
         calibrationFailed(
             sensor,
-            fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
+            fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are required{}", duration_s,
                         least_s, session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
-            "Record 20 s or more of varied motion"),
+            "Record at least 20 s of varied motion"),
         session, pass.cameras.front(), pass.imus);
   };
   for (const BoardObservations& camera : pass.cameras) check(camera.camera, durationOf(camera));
@@ -137,7 +139,7 @@ void logDetections(const DetectionResult& pass, const RunContext& context) {
   }
 }
 
-// Of a pass that comes from a run before, they may be known.
+// Adds a fault unless it is already listed: a pass from an earlier run may have it.
 void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
   const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
   if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
@@ -158,20 +160,19 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
     const auto found = std::find_if(kFactors.begin(), kFactors.end(),
                                     [&](double each) { return std::abs(factor / each - 1.0) < kNear; });
     if (found == kFactors.end()) continue;
-    // An IMU with a usual rate of samples is right, except that a doubled clock looks usual too.
+    // An IMU with a usual sampling rate has the correct clock, except that a doubled clock looks usual, too.
     const double rate_hz = static_cast<double>(imu.samples.size()) / imu_s;
     const bool usual = rate_hz > kSlowestImu_hz && rate_hz < kFastestImu_hz && (*found > 2.0 || *found < 0.5);
     const std::string& camera = seen.camera;
     const std::string wrong = usual ? camera : imu.name;
     const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);
     const std::string key = fmt::format("{}.{}.clock_scale", usual ? "cameras" : "imus", wrong);
-    return CalibrationError(
-               error.kind(), error.place(),
-               fmt::format(
-                   "{}; the times of {} span {:.3f} s and those of {} {:.3f} s, so the clock of {} may "
-                   "count {:g} times as much as it should",
-                   error.problem(), imu.name, imu_s, camera, camera_s, wrong, usual ? *found : 1.0 / *found),
-               fmt::format("If so, set {} to {}", key, scale))
+    return CalibrationError(error.kind(), error.place(),
+                            fmt::format("{}; the times of {} span {:.3f} s and those of {} {:.3f} s, so the "
+                                        "clock of {} may run {:g} times too fast",
+                                        error.problem(), imu.name, imu_s, camera, camera_s, wrong,
+                                        usual ? *found : 1.0 / *found),
+                            fmt::format("If so, set {} to {}", key, scale))
         .repairedBy(Repair{key, scale});
   }
   return error;
@@ -179,25 +180,22 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
 
 void checkSession(const Session& session) {
   if (session.board_blinks)
-    throw badInput(
-        session.source.string() + ": board.blinking",
-        "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
-        "the sensors' clocks, and the camera must all but stand still before it",
-        "Calibrate each camera's intrinsics " + howTo(HowTo::CalibrateLens) +
-            ", then move the sensors before a printed board of circles");
+    throw badInput(session.source.string() + ": board.blinking",
+                   "a flashing board cannot determine time offsets: the flash times on the sensors' clocks "
+                   "are unknown, and the camera must be almost at rest",
+                   "Calibrate each camera's intrinsics " + howTo(HowTo::CalibrateLens) +
+                       ", then move the sensors in front of a printed circle grid");
   if (session.imus.empty() && session.cameras.size() == 1) {
-    throw badInput(
-        session.source.string() + ": imus", "there is neither an IMU nor a second camera",
-        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics, calibrate it " +
-            howTo(HowTo::CalibrateLens));
+    throw badInput(session.source.string() + ": imus", "the session has neither an IMU nor a second camera",
+                   "Add an IMU or a second camera. To calibrate only the camera's intrinsics, calibrate it " +
+                       howTo(HowTo::CalibrateLens));
   }
   for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
     if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
     throw badInput(
         session.source.string() + ": board",
-        "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
-        "against each other",
-        "Use an asymmetric board with an odd number of rows; for its intrinsics, calibrate each camera " +
+        "the board looks the same when turned by 180 degrees, so the poses between cameras are ambiguous",
+        "Use an asymmetric board with an odd number of rows. For intrinsics, calibrate each camera " +
             howTo(HowTo::CalibrateLens));
   }
 }

@@ -1,5 +1,4 @@
-// What stands against a calibration before anything is estimated: in the session, and in what a pass has read and
-// detected.
+// Checks before the estimation: of the session, and of the data that a pass has read and detected.
 #pragma once
 
 #include "core/base/error.h"
@@ -11,15 +10,16 @@
 
 namespace evical {
 
-// Throws CalibrationError where there is nothing to be calibrated, or not with this board.
+// Throws CalibrationError if there is nothing to calibrate, or if the board is not suitable.
 void checkSession(const Session& session);
 
-// Throws CalibrationError where the recording itself shows that the session or the recording is unfit: units, stamps,
-// dead axes, its length, a board that is not seen. Lesser faults are added to the pass's, and told with what was found.
+// Throws CalibrationError if the data show that the session or the recording is unsuitable: units,
+// timestamps, dead axes, length, a board that is never seen. Lesser faults are added to those of the pass and
+// logged.
 void checkPass(const Session& session, const RunContext& context, DetectionResult& pass);
 
-// Where a sensor's times span a suspicious multiple of another's (2, 1000, or a part), because a driver doubles time or ms are
-// read as us: the error with this cause and the repair. Else the error as it is.
+// Adds cause and repair to the error if a sensor's times span a suspicious multiple (2, 1000, or the inverse)
+// of another's: a driver doubles times, or ms are read as us. Otherwise returns the error unchanged.
 CalibrationError withClockRate(const CalibrationError& error, const Session& session,
                                const BoardObservations& camera, std::span<const ImuData> imus);
 

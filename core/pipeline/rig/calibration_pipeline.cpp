@@ -38,7 +38,7 @@
 namespace evical {
 namespace {
 
-// A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
+// Not a separate verdict: each half has less data than the whole, and less accurate sigmas.
 void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
                       CalibrationResult& result) {
   result.split_half_check = checkHalves(input, result.state, *session.options.optimisation,
@@ -47,13 +47,13 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
   context.progress.log(
       LogLevel::Info,
       validation.failure.empty()
-          ? fmt::format("halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
+          ? fmt::format("the halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
           : "halves of the recording: " + validation.failure);
 }
 
-// Leaves the views out that lie on the smaller part's side of a step, and those near it. Returns their share.
+// Removes views on the smaller part's side of a step, and those close to it. Returns their share.
 double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
-  constexpr double kMargin_s = 1.5;  // as well as it is known where it is
+  constexpr double kMargin_s = 1.5;  // accuracy of the step's time
   const auto before = static_cast<double>(views.size());
   std::erase_if(views, [&](const BoardView& view) {
     return step.larger_part_first ? view.time_s > step.at_s - kMargin_s : view.time_s < step.at_s + kMargin_s;
@@ -61,7 +61,7 @@ double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
   return 1.0 - static_cast<double>(views.size()) / std::max(before, 1.0);
 }
 
-// One run: what its stages hand on to each other, and what each of them does.
+// One run: its stages, and the data that they share.
 class Calibration {
  public:
   Calibration(const Session& session, const RunContext& context) : session_(session), context_(context) {}
@@ -103,7 +103,7 @@ class Calibration {
     CalibrationStage stage;
     void (Calibration::*work)();
   };
-  static const std::array<StageWork, 4> kWork;  // those of cameras without intrinsics come before
+  static const std::array<StageWork, 4> kWork;  // intrinsics, if not given, are calibrated before
 
   template <class Work>
   CalibrationOutcome outcomeOf(const Work& work) {
@@ -153,7 +153,7 @@ class Calibration {
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);
   }
 
-  // What the input took of it, and what was left out of that.
+  // Returns the input's data to the pass, with the views that were removed.
   void returnPass() {
     restorePass(std::exchange(input_, {}), run_.pass);
     for (std::size_t k = 0; k < whole_views_.size(); ++k)
@@ -174,7 +174,7 @@ class Calibration {
     for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
   }
 
-  // Where clocks step, one offset holds for a part of the recording only.
+  // If clocks step, one time offset is valid for a part of the recording only.
   void dropViewsAcrossClockStep() {
     std::string doubt;
     for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
@@ -185,8 +185,8 @@ class Calibration {
       whole_views_[k] = views;
       const double share = keepBeside(*step, views);
       doubt += fmt::format(
-          "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
-          "start: {:.0f} % of the views lie on the other side and are left out",
+          "{}{}: the offset between its clock and the IMU's steps by {:.1f} ms about {:.1f} s after the "
+          "start: {:.0f} % of the views, those on the shorter side, are excluded",
           doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
     }
     if (doubt.empty()) return;
@@ -206,13 +206,12 @@ class Calibration {
     result.reason = uncertainty.reason;
     if (!result.reason.empty()) result.causes = {QualityWarning{result.reason, {}, "observability"}};
     if (!solution.converged && result.status == CalibrationStatus::Ok)
-      flagDoubtful(
-          QualityWarning{
-              "the optimisation did not converge: raise optimisation.solver.max_iterations, "
-              "or see the residuals",
-              Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)},
-              "not_converged"},
-          result);
+      flagDoubtful(QualityWarning{"the optimisation did not converge: increase "
+                                  "optimisation.solver.max_iterations, or check the residuals",
+                                  Repair{"optimisation.solver.max_iterations",
+                                         std::to_string(2 * options.max_iterations)},
+                                  "not_converged"},
+                   result);
     flagDoubtful(uncertainty.other_sensors, result, "another_sensor");
     flagDoubtful(uncertainty.rolling_shutters, result, "rolling_shutter");
     flagDoubtful(priors.doubt, result, "prior");
@@ -238,11 +237,12 @@ class Calibration {
       notes_.insert(notes_.end(), more->begin(), more->end());
   }
 
-  // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look is
-  // led astray by a stretch, or by a lens or a late accelerometer that the batch has put right since.
+  // Doubt about the board's size. The initialisation detects large errors, since no prior pulls it towards
+  // the given size. It is misled by a stretched board, and by an inaccurate lens or a late accelerometer that
+  // the batch has corrected since.
   std::string boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
-    // Chosen by size, not measured: 1 px at the edge of a 346x260 image is 0.6 % of focal length, as much as a board's spacing
-    // that is said wrongly; and 2 ms are 10 % of an acceleration that swings at 8 Hz.
+    // Chosen by size, not measured: 1 px at the edge of a 346x260 image is 0.6 % of focal length, which
+    // corresponds to a wrong board spacing; 2 ms are 10 % of an acceleration that oscillates at 8 Hz.
     constexpr double kAnotherLens_px = 1.0, kLate_s = 2e-3;
     const bool led_astray =
         !uncertainty.stretch_doubt.empty() ||
@@ -256,7 +256,7 @@ class Calibration {
     return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
   }
 
-  // Of what is held. A prior that is far off looks like a turned gyroscope, too.
+  // Doubt about fixed parameters. A prior with a large error has the same effect as a misaligned gyroscope.
   static QualityWarning heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
     if (!uncertainty.bent_board.empty())
       return {uncertainty.bent_board, kFreeBow, causeName(CauseKind::BentBoard)};
@@ -266,8 +266,9 @@ class Calibration {
     return {uncertainty.wandering_imus, {}, "wandering_imu"};
   }
 
-  // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
-  // much that is not modelled looks like it, a bent board, too.
+  // The cause of a misfit comes before the misfit, and a change within the recording before other causes. A
+  // misaligned gyroscope is reported only if nothing else is: many unmodelled effects look like it, such as a
+  // bent board.
   void judge(const BatchSolution& solution, const QualityWarning& held, const QualityWarning& change) {
     const OptimisationOptions& options = *session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
@@ -312,7 +313,7 @@ class Calibration {
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     Timing& timing = result.timing;
-    timing.read_s = run_.pass.read_s;  // of the threads, which overlap; also where the pass came from before
+    timing.read_s = run_.pass.read_s;  // of overlapping threads; also for a pass of an earlier run
     timing.detect_s = run_.pass.detect_s;
     timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
@@ -321,15 +322,15 @@ class Calibration {
 
   const Session& session_;
   const RunContext& context_;
-  std::vector<CameraLens> lenses_;  // that the front end is to see with
+  std::vector<CameraLens> lenses_;  // used by the front end
   CalibrationRun run_;
   CalibrationInput input_;
   Initialisation initial_;
   const Stopwatch stopwatch_;
-  double before_s_ = 0.0;                                           // that a pass took that comes from before
-  std::string clock_doubt_;                                         // that clocks step
+  double before_s_ = 0.0;                                           // time of a pass of an earlier run
+  std::string clock_doubt_;                                         // of a clock step
   std::vector<std::string> notes_;                                  // of the batch
-  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, where some were left out
+  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, if views were removed
 };
 
 const std::array<Calibration::StageWork, 4> Calibration::kWork = {

@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-// Only what detection depends on.
+// The session with only those settings that affect detection.
 Session withoutLaterStages(Session session) {
   session.options.initialisation = InitialisationOptions();
   session.options.optimisation = OptimisationOptions();
@@ -34,7 +34,7 @@ FoundLenses findLenses(const Session& session, const RunContext& context) {
   std::vector<CameraLens>& lenses = found.lenses;
   const auto missing = [](const CameraLens& lens) { return !lens.given; };
   if (std::none_of(lenses.begin(), lenses.end(), missing)) return found;
-  SessionRecording{session};  // streams that are missing are missed now, not after minutes
+  SessionRecording{session};  // reports missing streams now, not after minutes
   found.intrinsics.resize(lenses.size());
   for (std::size_t k = 0; k < lenses.size(); ++k) {
     if (lenses[k].given || session.sensorOf(k) != k) continue;

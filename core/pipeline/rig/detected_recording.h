@@ -1,5 +1,4 @@
-// What the front end found in a recording, ready for a calibration to start from: made before anybody asks for one, or
-// by an earlier run.
+// Detections of a recording, from which a calibration can start: made in advance, or by an earlier run.
 #pragma once
 
 #include "core/base/progress.h"
@@ -17,21 +16,21 @@ struct DetectedRecording {
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // as CalibrationRun has them
 };
 
-// All lenses of a session, with those calibrated that it leaves out.
+// All lenses of a session; those that it does not give are calibrated.
 struct FoundLenses {
   std::vector<CameraLens> lenses;
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // empty: it gives all
 };
 FoundLenses findLenses(const Session& session, const RunContext& context);
 
-// As a calibration of this session begins. Throws CalibrationError, and Cancelled when asked to stop.
+// First stage of a calibration of this session. Throws CalibrationError, and Cancelled when asked to stop.
 DetectedRecording detectRecording(const Session& session, const RunContext& context);
 
-// Whether what was detected for one session is what the other would detect: they differ, if at all, in what comes
-// later, as noise, priors, the optimisation, exports.
+// True if both sessions have the same detections: they differ only in later stages (noise, priors,
+// optimisation, exports).
 bool detectsTheSame(const Session& one, const Session& other);
 
-// For a session that detects the same: with its noise.
+// Detections with the IMU noise of `session`, which must detect the same.
 DetectedRecording forSession(DetectedRecording detected, const Session& session);
 
 }  // namespace evical

@@ -44,8 +44,8 @@ std::string turnWords(const CalibrationInput& input, const BatchSolution& freed)
   for (std::size_t k = 1; k < input.imus.size(); ++k)
     if (turn_deg(k) > turn_deg(most)) most = k;
   return fmt::format(
-      "{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
-      "rotations may be off by as much",
+      "{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg, and other rotations "
+      "may have errors of the same size",
       input.imus[most].name, turn_deg(most));
 }
 
@@ -56,7 +56,7 @@ bool aLensIsHeld(const BatchSolution& solution, const OptimisationOptions&) {
 void releaseLenses(OptimisationOptions& options) {
   options.camera_intrinsics = CameraIntrinsicsChoice::Free;
 }
-// A board that is stretched or bent looks much like another lens.
+// A stretched or bent board has almost the same effect as a wrong lens.
 std::string lensWords(const CalibrationInput& input, const BatchSolution& freed) {
   std::string text;
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
@@ -67,8 +67,8 @@ std::string lensWords(const CalibrationInput& input, const BatchSolution& freed)
         idealFocalLength_px(*solved).array() / idealFocalLength_px(given).array() - 1.0;
     const Eigen::Vector2d centre_px = solved->principal_point_px - given.principal_point_px;
     text += fmt::format(
-        "{}{}: the lens, or the board's shape, is not as the session says: focal lengths seem {:+.2f} and "
-        "{:+.2f} %, the principal point ({:+.1f}, {:+.1f}) px off",
+        "{}{}: the lens or the board's shape differs from the session's: focal lengths by {:+.2f} and "
+        "{:+.2f} %, the principal point by ({:+.1f}, {:+.1f}) px",
         text.empty() ? "" : ", ", input.cameras[k].name, 100.0 * focal.x(), 100.0 * focal.y(), centre_px.x(),
         centre_px.y());
   }
@@ -91,7 +91,7 @@ std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& f
 
 const std::array<Trial, 3> kTrials = {
     {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
-      "lay it on glass, or calibrate with optimisation.model.board_bow: true", kFreeBow},
+      "mount it on glass, or calibrate with optimisation.model.board_bow: true", kFreeBow},
      {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
       "calibrate with optimisation.model.camera_intrinsics: free, and measure the board", kFreeLenses},
      {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
@@ -106,8 +106,8 @@ const char* causeName(CauseKind kind) {
 
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context) {
-  constexpr double kExplains = 0.7;         // at most this share of the misfit's logarithm may be left
-  constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times what was given
+  constexpr double kExplains = 0.7;         // largest share of the misfit's logarithm that may remain
+  constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times the expected ones
   const double before = totalMisfit(solution);
   if (before < kWorthExplaining) return std::nullopt;
   double least = kExplains * before;
@@ -122,12 +122,13 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
       const double after = totalMisfit(refit);
       if (after >= least) continue;
       least = after;
-      best = Cause{trial.kind,
-                   fmt::format("{} (residuals fall from {:.2g} to {:.2g} times what was given); {}",
-                               trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
-                   trial.repair, 1.0 - after / before};
+      best = Cause{
+          trial.kind,
+          fmt::format("{} (freeing this reduces residuals from {:.2g} to {:.2g} times the expected size); {}",
+                      trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
+          trial.repair, 1.0 - after / before};
     } catch (const CalibrationError&) {
-      continue;  // what cannot be solved explains nothing
+      continue;  // a trial without a solution explains nothing
     }
   }
   return best;

@@ -1,5 +1,5 @@
-// What could explain a misfit is tried: the batch is solved once more with each of some things free that it holds
-// (docs/maths.md, 10.7), and the one that explains most of the misfit is told, with its number.
+// Diagnosis of a misfit (docs/maths.md, 10.7): the batch is solved again with one fixed group of parameters
+// free at a time. The group that explains most of the misfit is reported with its estimate.
 #pragma once
 
 #include "core/base/progress.h"
@@ -18,13 +18,13 @@ struct Cause {
   CauseKind kind;
   std::string text;
   Repair repair;
-  double explains = 0.0;  // the share of the misfit's logarithm that is gone where it is let free
+  double explains = 0.0;  // share of the misfit's logarithm that freeing it removes
 };
 const char* causeName(CauseKind kind);
-// What sets free that is held otherwise.
+// Settings that free parameters which are fixed by default.
 extern const Repair kFreeLenses, kFreeTurn, kFreeBow;
 
-// Nothing where none of them explains much.
+// Absent if none of the groups explains a large share.
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context);
 

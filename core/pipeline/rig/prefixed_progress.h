@@ -1,4 +1,4 @@
-// Progress of one part of long work, whose stages have the names that other parts have, too.
+// Progress of one part of a long run; prefixes distinguish it from parts with the same stage names.
 #pragma once
 
 #include "core/base/progress.h"

@@ -24,25 +24,26 @@ namespace {
 
 const char* const kStage = "assess";
 
-// What is said of a recording is chosen to agree with the report's advice after a calibration.
+// Thresholds that agree with the report's advice after a calibration.
 constexpr double kGood_s = 15.0;
 constexpr double kGoodBoard = 0.6, kFairBoard = 0.3;         // of the windows
 constexpr double kGoodCoverage = 0.6, kFairCoverage = 0.35;  // of the image
 constexpr double kGoodSpeed_px_s = 40.0, kFairSpeed_px_s = 20.0, kFast_px_s = 600.0;
-constexpr double kFairSigma = 3.0;  // times what is needed
+constexpr double kFairSigma = 3.0;  // times the required sigma
 
 constexpr double kGoodTurn_rad_s = 0.3, kFairTurn_rad_s = 0.1;                // RMS
 constexpr double kGoodAcceleration_m_s2 = 0.3, kFairAcceleration_m_s2 = 0.1;  // the same
-// How far the work is.
+// Progress after each step.
 constexpr double kUntilState = 0.3, kUntilBatch = 0.7;
 
-// Sigmas change little on the last steps to the solution, and each step takes as long as the first. Where a motion
-// leaves much open the first steps are not enough: residuals that are still large make sigmas several times too large.
+// Options that stop early: sigmas change little on the last steps, and each step takes as long as the first.
+// If the motion leaves directions unobservable, the first steps are not enough: large residuals make sigmas
+// several times too large.
 OptimisationOptions shortened(OptimisationOptions options) {
   constexpr double kNear = 1e-5, kNearInStage = 1e-3;
   options.stage_tolerance = std::max(options.stage_tolerance, kNearInStage);
   options.function_tolerance = std::max(options.function_tolerance, kNear);
-  options.threads = 1;  // it runs beside what people do
+  options.threads = 1;  // runs in the background
   return options;
 }
 
@@ -52,7 +53,7 @@ Light lightOf(double value, double good, double fair) {
 
 class Assessor {
  public:
-  // `no_lens`: why one that is not given could not be found, so that circles are in the sensor's own pixels.
+  // `no_lens`: why a lens that is not given could not be calibrated; circles are then in raw pixels.
   Assessor(const Session& session, const DetectedRecording& detected, const RunContext& context,
            const CalibrationError* no_lens = nullptr)
       : session_(session), pass_(detected.pass), detected_(detected), context_(context), no_lens_(no_lens) {}
@@ -82,7 +83,7 @@ class Assessor {
     result_.all.push_back(
         {thing, sensor, light, std::move(measured), light == Light::Good ? std::string() : advice});
   }
-  // Else it is the lens alone that can be calibrated.
+  // If false, only the lens can be calibrated.
   bool isRig() const { return session_.imus.size() + session_.cameras.size() >= 2; }
 
   void assessRig() {
@@ -138,13 +139,13 @@ class Assessor {
       add(AssessedThing::Coverage, camera.camera,
           lightOf(measures.coveredShare(), kGoodCoverage, kFairCoverage),
           fmt::format("{:.0f} % of the image", 100.0 * measures.coveredShare()),
-          empty.empty() ? "Move the board through all of the image, to its corners."
-                        : "Move the board through all of the image; it was hardly ever at: " + empty + ".");
+          empty.empty() ? "Move the board through the whole image, into its corners."
+                        : "Move the board through the whole image. Hardly covered: " + empty + ".");
     }
     assessSpeed(camera);
   }
 
-  // Of frames none is too slow.
+  // Event cameras only: frames need no speed.
   void assessSpeed(const BoardObservations& camera) {
     if (camera.kind != CameraKind::Events) return;
     std::vector<double> speeds_px_s;
@@ -155,8 +156,8 @@ class Assessor {
     add(AssessedThing::Speed, camera.camera,
         fast ? Light::Fair : lightOf(speed_px_s, kGoodSpeed_px_s, kFairSpeed_px_s),
         fmt::format("{:.0f} px/s", speed_px_s),
-        fast ? "Move more slowly: circles that cross the image in a second or two are best."
-             : "Move faster: circles that cross the image in a second or two are best.");
+        fast ? "Move more slowly: circles should cross the image in one or two seconds."
+             : "Move faster: circles should cross the image in one or two seconds.");
   }
 
   void assessLenses() {
@@ -167,7 +168,7 @@ class Assessor {
       for (const std::string& each : found->advice) advice += (advice.empty() ? "" : ". ") + each;
       add(AssessedThing::Lens, session_.cameras[k].name,
           found->status == CalibrationStatus::Ok ? Light::Good : Light::Fair,
-          fmt::format("projection known to {:.2g} px", found->image.rms_px), advice);
+          fmt::format("projection sigma {:.2g} px", found->image.rms_px), advice);
     }
   }
 
@@ -176,11 +177,11 @@ class Assessor {
     const ImuData& imu = pass_.imus[session_.referenceImu()];
     const AssessedMotion motion = assessMotion(imu, pass_.start_ns, state);
     static constexpr std::array<const char*, 3> kTurn = {"Turn the camera up and down.",
-                                                         "Turn the camera to the left and to the right.",
-                                                         "Turn the camera about the lens's axis."};
+                                                         "Turn the camera left and right.",
+                                                         "Turn the camera about its optical axis."};
     static constexpr std::array<const char*, 3> kMove = {
-        "Move the camera to the left and to the right, briskly.", "Move the camera up and down, briskly.",
-        "Move the camera nearer and farther, briskly."};
+        "Move the camera left and right, briskly.", "Move the camera up and down, briskly.",
+        "Move the camera towards the board and back, briskly."};
     const auto assess = [&](AssessedThing thing, const Eigen::Vector3d& spread, double good, double fair,
                             const char* unit, const std::array<const char*, 3>& remedies, const char* verb) {
       Eigen::Index axis = 0;
@@ -197,7 +198,7 @@ class Assessor {
            kFairAcceleration_m_s2, "m/s\u00b2", kMove, "Accelerate along");
   }
 
-  // The estimator's own covariance, at a state that is near the solution's.
+  // Covariance of the estimator at a state close to the solution.
   void expectSigmas(const InitialisedCalibration& start) {
     const OptimisationOptions& options = *session_.options.optimisation;
     const RunContext unobserved = context_.unobserved();
@@ -218,28 +219,28 @@ class Assessor {
     const OptimisationOptions& options = *session_.options.optimisation;
     const auto say = [&](AssessedThing thing, double sigma, double needed, const char* unit,
                          const char* remedy) {
-      // What is no number is not known at all.
+      // NaN counts as Poor.
       const Light light = sigma <= needed                ? Light::Good
                           : sigma <= kFairSigma * needed ? Light::Fair
                                                          : Light::Poor;
-      add(thing, sigmas.sensor, light, fmt::format("\u00b1{:.2g} {}, needed {:.2g}", sigma, unit, needed),
-          fmt::format("{} Least is known of the {}.", remedy, weakest));
+      add(thing, sigmas.sensor, light, fmt::format("\u00b1{:.2g} {}, required {:.2g}", sigma, unit, needed),
+          fmt::format("{} The weakest direction is {}.", remedy, weakest));
     };
     say(AssessedThing::Rotation, sigmas.rotation_deg, options.needed_rotation_deg, "deg",
         "Turn the camera about all three axes, faster and for longer.");
     say(AssessedThing::Translation, sigmas.translation_mm, options.needed_translation_mm, "mm",
-        "Turn the camera about all three axes, briskly: it is turns that show how far apart the sensors "
-        "are.");
+        "Turn the camera about all three axes, briskly: only rotations determine the distance between the "
+        "sensors.");
     say(AssessedThing::TimeOffset, sigmas.time_offset_ms, options.needed_time_offset_ms, "ms",
         "Move faster, and change direction more often.");
   }
 
   void addObstacle(const CalibrationError& error) {
-    if (!result_.board_seen) return;  // which is said already, and the reason for all else
+    if (!result_.board_seen) return;  // already reported, and the cause of all other problems
     add(AssessedThing::Obstacle, error.place(), Light::Poor, error.problem(), error.advice());
   }
 
-  // What cannot be mended by looking again decides; all else takes the best light away only.
+  // Obstacles and expected sigmas decide; other measures reduce the light to Fair at most.
   void conclude() {
     for (const Assessed& one : result_.all) {
       const bool decides = one.thing == AssessedThing::Obstacle || one.thing == AssessedThing::Rotation ||
@@ -258,7 +259,7 @@ class Assessor {
   RecordingAssessment result_;
 };
 
-// By the sensor's own pixels, of cameras whose lens nobody knows.
+// Detections in raw pixels, for cameras with unknown lenses.
 DetectedRecording detectWithoutLens(const Session& session, const RunContext& context) {
   Session seen = session;
   for (SessionCamera& camera : seen.cameras) camera.intrinsics.reset();
@@ -286,7 +287,7 @@ CheckedRecording checkRecording(const Session& session, const RunContext& contex
     return {std::move(assessment), std::move(detected)};
   } catch (const CalibrationError& error) {
     if (error.kind() == ErrorKind::BadInput) throw;
-    // What is seen of the board without a lens may say why none was found.
+    // Detections without a lens may show why it could not be calibrated.
     const DetectedRecording detected = detectWithoutLens(session, context);
     return {Assessor(session, detected, context, &error).run(), {}};
   }

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-// One thing that can be too large.
+// A ratio with its bounds and the text that reports it.
 struct Measure {
   double size, doubtful, failed;
   std::string words;
@@ -23,24 +23,24 @@ std::vector<Measure> measuresOf(const CalibrationInput& input, const BatchSoluti
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const std::string& name = input.cameras[k].name;
     const double spread = solution.scales.circles[k];
-    all.push_back(
-        {spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
-         fmt::format(
-             "{}: circles lie {:.2g} times as far from where they should as their own sigmas say: the board "
-             "is not flat, or the lens not of the model that the session says",
-             name, spread)});
+    all.push_back({spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
+                   fmt::format("{}: circle residuals are {:.2g} times their sigmas: the board is not flat, "
+                               "or the lens model does not fit",
+                               name, spread)});
     const CameraFit& fit = solution.cameras[k];
     const double outliers =
         static_cast<double>(fit.circles_rejected) / std::max(1, fit.circles_rejected + fit.circles_used);
-    all.push_back({outliers, options.doubtful_outliers, options.failed_outliers,
-                   fmt::format("{}: {:.0f} % of the circles contradict the others and were left out", name,
-                               100.0 * outliers)});
+    all.push_back(
+        {outliers, options.doubtful_outliers, options.failed_outliers,
+         fmt::format("{}: {:.0f} % of the circles contradict the others and were rejected as outliers", name,
+                     100.0 * outliers)});
   }
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     const auto add = [&](double times, const char* what) {
-      all.push_back({times, options.doubtful_imu_misfit, options.failed_imu_misfit,
-                     fmt::format("{}: {} are {:.2g} times as far off as their noise density says",
-                                 input.imus[k].name, what, times)});
+      all.push_back(
+          {times, options.doubtful_imu_misfit, options.failed_imu_misfit,
+           fmt::format("{}: residuals of the {} are {:.2g} times those expected from the noise density",
+                       input.imus[k].name, what, times)});
     };
     add(solution.scales.gyroscopes[k], "angular rates");
     add(solution.scales.accelerometers[k], "accelerations");
@@ -48,7 +48,7 @@ std::vector<Measure> measuresOf(const CalibrationInput& input, const BatchSoluti
   return all;
 }
 
-// The words of those beyond their bound, the worst first.
+// Texts of the measures beyond their bound, the worst first.
 std::string wordsBeyond(const std::vector<Measure>& measures, double Measure::*bound) {
   std::vector<const Measure*> beyond;
   for (const Measure& each : measures)
@@ -75,8 +75,8 @@ std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions
   for (const QuantityDifference& each : validation.quantities)
     if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
   return fmt::format(
-      "the two halves of the recording differ by {:.1f} sigmas (RMS), the most in {}: "
-      "something moved, or is not as the session says",
+      "the two halves of the recording differ by {:.1f} sigmas (RMS), the most in {}: a sensor has moved, or "
+      "the session is incorrect",
       validation.rms_sigmas, worst->name);
 }
 
@@ -88,12 +88,12 @@ std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const 
     if (!delay) continue;
     const double later_ms = 1e3 * delay->later_s;
     if (!(std::abs(later_ms) > options.slow_pixels_ms + kCertain_sigmas * 1e3 * delay->std_s)) continue;
-    notes.push_back(fmt::format(
-        "{}: edges that {} the image are seen {:.1f} ms later than those that {} it: pixels are slow. The "
-        "time offset holds their delay at this light: record where it is brighter, or with "
-        "faster biases",
-        camera.name, later_ms > 0.0 ? "brighten" : "darken", std::abs(later_ms),
-        later_ms > 0.0 ? "darken" : "brighten"));
+    notes.push_back(
+        fmt::format("{}: edges that {} the image are seen {:.1f} ms later than those that {} it: the pixels "
+                    "are slow. The time offset includes their delay at this light level. Record in brighter "
+                    "light or with faster biases",
+                    camera.name, later_ms > 0.0 ? "brighten" : "darken", std::abs(later_ms),
+                    later_ms > 0.0 ? "darken" : "brighten"));
   }
   return notes;
 }
@@ -107,11 +107,13 @@ std::string saturationIn(const CalibrationInput& input, const VerdictOptions& op
       const double share = static_cast<double>(unfit.saturated[axis].size()) /
                            std::max(1.0, static_cast<double>(imu.samples.size() - others));
       if (share <= options.saturated_share) continue;
-      words += fmt::format("{}{}: {} is at its limit for {:.0f} % of the samples", words.empty() ? "" : ", ",
+      words += fmt::format("{}{}: {} is saturated in {:.0f} % of the samples", words.empty() ? "" : ", ",
                            imu.name, kImuAxes[axis].name, 100.0 * share);
     }
   }
-  return words.empty() ? words : words + ", which were left out: move less fast, or widen the IMU's range";
+  return words.empty()
+             ? words
+             : words + ", which were excluded: move more slowly, or increase the IMU's measuring range";
 }
 
 double totalMisfit(const BatchSolution& solution) {

@@ -1,5 +1,5 @@
-// How far a solution is from what was measured, in units of what was given for it. Sigmas follow what is found, but
-// they do not tell of what the model leaves out: a misfit is a sign of it, and part of the verdict.
+// Residuals of a solution relative to their expected size. Sigmas are scaled by the residuals, but do not
+// include errors of the model. A misfit indicates such errors and is part of the verdict.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -12,22 +12,22 @@
 namespace evical {
 
 struct MisfitVerdict {
-  std::string failure;  // beyond the larger bounds: what comes out of this is no result
+  std::string failure;  // beyond the larger bounds: the estimate is not usable
   std::string doubt;    // beyond the smaller ones
 };
 MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& solution,
                           const VerdictOptions& options);
 
-// Where the halves of a recording are further apart than their sigmas allow; empty where they are not.
+// Reason for doubt if the halves of a recording differ by more than their sigmas allow; otherwise empty.
 std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options);
 
-// IMUs that were at a limit for long; empty without any. No doubt of its own, but the cause of most others.
+// IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others.
 std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);
 
-// Event cameras whose pixels tell of brightening and of darkening edges with different delays: a note for each.
+// A note for each event camera whose ON and OFF events have different delays.
 std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options);
 
-// The misfits of all sensors as one number, 0 where none exceeds what was given: for comparing explanations.
+// Misfits of all sensors as one number, 0 if none exceeds its expected size. Compares explanations.
 double totalMisfit(const BatchSolution& solution);
 
 }  // namespace evical

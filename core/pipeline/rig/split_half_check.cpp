@@ -32,7 +32,7 @@ class Blocks {
 
   double length_s() const { return length_s_; }
 
-  // -1: too close to a border for either.
+  // Half of a time; -1: too close to a border.
   int halfAt(double time_s, double margin_knots) const {
     const double place = (time_s - start_s_) / length_s_;
     const double block = std::floor(place);
@@ -45,14 +45,14 @@ class Blocks {
   double start_s_, knot_s_, length_s_ = 0.0;
 };
 
-constexpr double kMargin_knots = 0.5;  // for what moves with a time offset
+constexpr double kMargin_knots = 0.5;  // for shifts by a time offset
 
 std::vector<BoardView> viewsOfHalf(const BoardObservations& all, const CameraState& camera,
                                    const Blocks& blocks, int half) {
   std::vector<BoardView> views;
   for (const BoardView& view : all.views) {
     BoardView part{view.time_s, view.kind, {}};
-    part.circles.reserve(view.circles.size());  // most are of one half
+    part.circles.reserve(view.circles.size());  // most views are in one half
     std::ranges::copy_if(view.circles, std::back_inserter(part.circles),
                          [&](const CircleObservation& circle) {
                            return blocks.halfAt(circleTime_s(camera, circle), kMargin_knots) == half;
@@ -67,7 +67,7 @@ std::vector<ImuSample> samplesOfHalf(const CalibrationInput& input, std::size_t 
   const double margin_knots = imu == input.reference_imu ? 0.0 : kMargin_knots;
   std::vector<ImuSample> samples;
   samples.reserve(input.imus[imu].samples.size() / 2);
-  // A stamp's force may have been measured before a border, and its rate after it.
+  // With a delay, the force of a sample may belong to one side of a border and the rate to the other.
   std::ranges::copy_if(input.imus[imu].samples, std::back_inserter(samples), [&](const ImuSample& sample) {
     const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
     return blocks.halfAt(referenceTime_s(state, stamp_s), margin_knots) == half &&
@@ -76,7 +76,7 @@ std::vector<ImuSample> samplesOfHalf(const CalibrationInput& input, std::size_t 
   return samples;
 }
 
-// What is kept of one.
+// Estimate from one half.
 struct Half {
   CalibrationState state;
   UncertaintyReport uncertainty;
@@ -86,7 +86,7 @@ Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
                   const OptimisationOptions& options, const RunContext& context) {
   for (const CameraData& camera : input.cameras)
     if (camera.observations.views.empty())
-      throw calibrationFailed(camera.name, "one half of the recording does not show the board");
+      throw calibrationFailed(camera.name, "the board is not visible in one half of the recording");
   Half half;
   BatchSolution solution = refineBatch(input, solved, options, context);
   half.uncertainty = estimateSigmas(input, solution, options, context);
@@ -94,8 +94,8 @@ Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
   return half;
 }
 
-// At the same time they need as much memory again as the whole: of long recordings, one after the other. Four minutes
-// of one camera at usual rates.
+// Both halves in parallel need as much additional memory as the whole recording. Long recordings (over four
+// minutes of one camera at usual rates) are estimated one half after the other.
 bool atTheSameTime(const CalibrationInput& input) {
   constexpr std::size_t kMany = 250'000;
   std::size_t circles = 0;
@@ -104,8 +104,8 @@ bool atTheSameTime(const CalibrationInput& input) {
   return circles < kMany;
 }
 
-// Board and gravity are the same in both, and mostly by their priors: no difference would show their errors,
-// which are in the sigmas. Threads are for those that run at the same time.
+// Options of a half. Board and gravity are the same in both halves, mostly from priors: their errors are part
+// of the sigmas but would not appear as differences. Parallel halves share the threads.
 OptimisationOptions ofHalves(OptimisationOptions options, bool both) {
   options.free_board_size = options.free_gravity_norm = false;
   if (both) options.threads = std::max(1, options.threads / 2);
@@ -139,7 +139,7 @@ std::vector<QuantityDifference> differences(const CalibrationInput& input,
   even.uncertainty = differenceUncertainty(even.uncertainty, odd.uncertainty);
   std::vector<QuantityDifference> all = difference(even, odd);
   if (input.imus.empty()) return all;
-  // Of two tilts, each with this sigma, the length.
+  // Length of two tilts with this sigma each.
   const double sigma_rad = std::sqrt(2.0) * even.uncertainty.gravity_direction_std_rad;
   all.push_back({"gravity.direction", "deg", kDegPerRad * gravityDirectionDifference_rad(even, odd),
                  kDegPerRad * sigma_rad});

@@ -1,5 +1,6 @@
-// Structs as HDF5 datasets and back, bit by bit: a group for each struct, a dataset for each of its fields. Of a list of
-// structs each field is one column over all of them. What a file lacks of a struct keeps its default.
+// Lossless conversion of structs to HDF5 datasets and back: a group for each struct, a dataset for each
+// field. For a list of structs, each field is one column. Fields that are missing in a file keep their
+// defaults.
 #pragma once
 
 #include "core/base/error.h"
@@ -20,7 +21,7 @@
 
 namespace evical::columns {
 
-// The names and members of a struct.
+// Names and members of a struct.
 template <class Struct>
 struct Fields;
 
@@ -32,7 +33,7 @@ struct Fields;
 #define EVICAL_NEXT() EVICAL_EACH
 #define EVICAL_EACH(NAME, ...) \
   std::pair{#NAME, &Struct::NAME} __VA_OPT__(, EVICAL_NEXT EVICAL_PARENTHESES (__VA_ARGS__))
-// EVICAL_FIELDS(struct, its members in their order): a struct that grows does not compile until its new member is here.
+// EVICAL_FIELDS(struct, its members in order): compilation fails if a member of the struct is missing here.
 #define EVICAL_FIELDS(STRUCT, ...)                                         \
   template <>                                                              \
   struct Fields<STRUCT> {                                                  \
@@ -45,15 +46,15 @@ struct Fields;
   }
 // clang-format on
 
-// The last enumerator: larger numbers are damage.
+// Last enumerator: larger numbers indicate damage.
 template <class Enum>
 inline constexpr Enum kLast = Enum{};
 
-// What is not kept: every run takes it from its session anew.
+// Types that are not stored: each run takes them from its session.
 template <class T>
 inline constexpr bool kLeftOut = false;
 
-// How many numbers a value of fixed size has; 0: it is none.
+// Count of numbers in a value of fixed size; 0 for other types.
 template <class T>
 inline constexpr int kWidth = 0;
 template <class T, std::size_t Size>
@@ -76,7 +77,7 @@ inline constexpr bool kIsSized = kIsOptional<T> || kIsMatrix<T> || requires(T& v
   value.emplace_back();
 };
 
-// As what a column holds numbers or texts.
+// Storage type of a column of numbers or texts.
 template <class T>
 using Stored = std::conditional_t<std::is_same_v<T, std::string>, std::string,
                                   std::conditional_t<std::is_floating_point_v<T>, double, std::int64_t>>;
@@ -105,14 +106,14 @@ class Writer {
   const Hdf5Sink& sink_;
 };
 
-// Throws CalibrationError (BadInput) where a column is no value of its type.
+// Throws CalibrationError (BadInput) if a column is not a valid value of its type.
 class Reader {
  public:
   static constexpr bool kReads = true;
   Reader(const Hdf5Source& source, std::size_t most)
       : source_(source), left_(static_cast<std::int64_t>(most)) {}
 
-  // False where there is none.
+  // False if it is absent.
   template <class T>
   bool column(const std::string& path, std::size_t, const std::vector<T*>& values) const {
     const std::optional<Hdf5Dataset> found = source_(path);
@@ -123,7 +124,7 @@ class Reader {
     return true;
   }
 
-  // All lists and matrices together are no longer than `most`.
+  // The total length of all lists and matrices is limited to `most`.
   template <class T>
   void resize(T& value, std::int64_t rows, std::int64_t columns) {
     if (rows < 0 || columns < 0 || (columns > 0 && rows > left_ / columns)) throw damaged();
@@ -157,7 +158,7 @@ class Reader {
   std::int64_t left_;
 };
 
-// What there is in one that holds several, or perhaps one.
+// Element type of a container or an optional.
 template <class T>
 auto spanOf(T& value) {
   if constexpr (kIsOptional<T>)
@@ -202,7 +203,7 @@ bool visitSized(Io& io, const std::string& path, const std::vector<T*>& values) 
   return true;
 }
 
-// One column, or several below `path`. False where there is none to be read.
+// One column, or several below `path`. False if there is none to be read.
 template <class Io, class T>
 bool visit(Io& io, const std::string& path, const std::vector<T*>& values) {
   using Value = std::remove_const_t<T>;
@@ -233,7 +234,8 @@ void write(const std::string& path, const T& value, const Hdf5Sink& sink) {
   visit(writer, path, std::vector{&value});
 }
 
-// Throws CalibrationError (BadInput) where this is no such value, or its lists are longer than `most` together.
+// Throws CalibrationError (BadInput) if this is not such a value, or its lists are longer than `most` in
+// total.
 template <class T>
 void read(const std::string& path, T& value, const Hdf5Source& source, std::size_t most) {
   Reader reader(source, most);

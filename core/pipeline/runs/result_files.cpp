@@ -65,7 +65,7 @@ void addReport(const Session& session, const NamedResult& named, const Detection
   for (FileContent& file : reportOf(session, named, pass, intrinsics)) files.push_back(std::move(file));
 }
 
-// What cannot be exported is said, and costs nobody the result.
+// Failing exports are reported and do not affect the result.
 ExportRemarks addExports(const NamedResult& named, const Session& session, std::vector<FileContent>& files) {
   std::set<std::string> targets(session.exports.begin(), session.exports.end());
   targets.insert("kalibr");
@@ -117,7 +117,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
                                const std::string& version, const std::string& log) {
   const CalibrationRun& run = *shared_run;
   const NamedResult named = namedRun(session, shared_run, version);
-  // Tables of long recordings are large: each is written before the next is made.
+  // Tables of long recordings are large: each is written before the next is created.
   FilesTogether files;
   const auto write = [&](const FileContent& file) { files.writeInto(folder, file); };
   const auto writeAll = [&](const std::vector<FileContent>& contents) {
@@ -141,7 +141,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   const auto now_s =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
   writeAll(runFiles(folder, session, run, now_s.count()));
-  write({"result.yaml", resultYaml(named)});  // the last tells that all are there
+  write({"result.yaml", resultYaml(named)});  // written last: marks a complete result
   files.place();
   return remarks;
 }

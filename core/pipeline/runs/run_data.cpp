@@ -114,8 +114,8 @@ namespace {
 
 constexpr std::string_view kMagic = "evical run data\n";
 
-// A line with name, length and check sum, and then so many bytes of an HDF5 file: each part is damaged by itself, and the
-// library gets no bytes that are.
+// A line with name, length and checksum, followed by the bytes of an HDF5 file: parts are checked
+// independently, and the library does not receive damaged bytes.
 struct Part {
   std::string name;
   std::size_t size = 0;
@@ -131,13 +131,13 @@ unsigned long sumOf(std::string_view bytes) {
 template <class T>
 void addPart(const std::string& name, const T& value, const TextSink& sink) {
   const auto fill = [&](const Hdf5Sink& add) { columns::write(name, value, add); };
-  writeHdf5(fill, "Of a run: " + name, [&](std::string_view bytes) {
+  writeHdf5(fill, "run: " + name, [&](std::string_view bytes) {
     sink(Part{name, bytes.size(), sumOf(bytes)}.line());
     sink(bytes);
   });
 }
 
-// Those before the place at which the file is cut off or damaged.
+// Parts before the position at which the file is truncated or damaged.
 std::map<std::string, Hdf5Source> partsOf(std::string_view content) {
   std::map<std::string, Hdf5Source> parts;
   if (!content.starts_with(kMagic)) return parts;
@@ -170,7 +170,7 @@ bool isWhole(const BiasDrift& drift) {
          (drift.knots() == 0 || drift.knot_spacing_s > 0.0);
 }
 
-// Lists that go with each other are of one size, and indices are of what there is.
+// Related lists must have the same size, and indices must be valid.
 bool isWhole(const CalibrationResult& result) {
   const CalibrationState& state = result.state;
   const UncertaintyReport& uncertainty = result.uncertainty;
@@ -235,7 +235,7 @@ bool isWhole(const DetectionResult& pass) {
          std::all_of(pass.imus.begin(), pass.imus.end(), whole);
 }
 
-// Residuals are of views and circles.
+// Residuals must refer to existing views and circles.
 bool fits(const CalibrationResult& result, const DetectionResult& pass) {
   return result.state.cameras.size() == pass.cameras.size() && result.state.imus.size() == pass.imus.size() &&
          std::all_of(result.circle_residuals.begin(), result.circle_residuals.end(),
@@ -256,14 +256,14 @@ bool isWhole(const std::vector<std::optional<IntrinsicsResult>>& intrinsics) {
   });
 }
 
-// Reads a part, and says of what it leaves people without.
+// Reads a part, and lists the missing data if that fails.
 template <class T>
 bool readWhole(const Hdf5Source& datasets, std::size_t most, const std::string& name, const char* what,
                T& value, std::vector<std::string>& missing) {
   std::string problem;
   try {
     columns::read(name, value, datasets, most);
-    if (!isWhole(value)) problem = "contradicts itself";
+    if (!isWhole(value)) problem = "is inconsistent";
   } catch (const CalibrationError& error) {
     problem = error.problem();
   }
@@ -291,8 +291,8 @@ ReadRunData readRunData(const std::filesystem::path& file) {
   const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!content.empty()) return parseRunData(content);
   ReadRunData read;
-  read.missing.push_back(fmt::format("trajectory, convergence, signals and residuals: {} is not there",
-                                     file.filename().string()));
+  read.missing.push_back(
+      fmt::format("trajectory, convergence, signals and residuals: {} is missing", file.filename().string()));
   return read;
 }
 
@@ -313,9 +313,9 @@ ReadRunData runFrom(const Hdf5Source& datasets, std::size_t most) {
   const auto readPart = [&](const char* name, const char* what, auto& value) {
     return readWhole(datasets, most, name, what, value, read.missing);
   };
-  constexpr const char* kSeen = "what was found of the board, and the IMUs' samples";
+  constexpr const char* kSeen = "detections of the board, and IMU samples";
   read.has_result = readPart("result", "trajectory, convergence and residuals", read.run.result);
-  readPart("intrinsics", "how the lenses were calibrated", read.run.intrinsics);
+  readPart("intrinsics", "calibration of the lenses", read.run.intrinsics);
   read.has_pass = readPart("observations", kSeen, read.run.pass);
   if (read.has_result && read.has_pass && !fits(read.run.result, read.run.pass)) {
     read.run.pass = {};

@@ -28,7 +28,7 @@ std::string contentOf(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-// The session's first, then those that sensors have of their own.
+// Visits the session's recordings, then those of sensors.
 template <class Sessions, class Visit>
 void forEachRecording(Sessions& session, Visit&& visit) {
   visit(session.recording);
@@ -39,7 +39,7 @@ void forEachRecording(Sessions& session, Visit&& visit) {
     if (!imu.recording.empty()) visit(imu.recording);
 }
 
-// Where recordings are as seen from the folder: it may be moved together with them.
+// Paths of recordings relative to the folder, which may be moved together with them.
 std::string placesYaml(const std::filesystem::path& folder, const Session& session) {
   std::string text;
   forEachRecording(session, [&](const std::filesystem::path& recording) {
@@ -78,7 +78,7 @@ RunSummary summaryOf(const Session& session, const CalibrationResult& result) {
 
 RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder) {
   if (!root.isMap() || !root.has("evical_run"))
-    throw root.error("is no list entry of a run", "Open result.yaml instead");
+    throw root.error("is not a list entry of a run", "Open result.yaml instead");
   root["evical_run"].integer(1, 1);
   constexpr int kMost = 1'000'000'000;
   RunSummary summary;
@@ -99,7 +99,7 @@ RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder
   return summary;
 }
 
-// What is not at its old place may have moved together with the folder.
+// Recordings that are missing at their old path may have been moved together with the folder.
 void findRecordings(const YamlNode& places, const std::filesystem::path& folder, Session& session) {
   const std::vector<YamlNode> items = places.items();
   std::size_t next = 0;
@@ -111,7 +111,7 @@ void findRecordings(const YamlNode& places, const std::filesystem::path& folder,
   });
 }
 
-// A folder that an earlier version wrote names its sensors in result.yaml, and the board in detections.yaml.
+// Session for folders of earlier versions: sensors from result.yaml, board from detections.yaml.
 Session sessionFrom(const NamedResult& named, const std::filesystem::path& folder) {
   Session session;
   session.source = folder / kResultFile;
@@ -153,7 +153,7 @@ void readBoard(const YamlNode& detections, Session& session) {
   session.board.tag_size_m = map["tag_size_m"].real(0.0, kMost_m, "m");
 }
 
-// Reads what is in a folder, piece by piece; what cannot be read is noted.
+// Reads the files of a folder one by one; unreadable ones are noted.
 class FolderReader {
  public:
   explicit FolderReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -182,7 +182,7 @@ class FolderReader {
       run_.result = *named_->result;
     } catch (const CalibrationError& error) {
       result_error_ = error;
-      note("the numbers as people read them", error);
+      note("result.yaml", error);
     }
   }
 
@@ -211,13 +211,13 @@ class FolderReader {
   void readSession() {
     try {
       if (!isThere(folder_ / kSessionFile))
-        throw badInput(kSessionFile, "is not there",
-                       "An earlier version wrote none: choose the recording again");
+        throw badInput(kSessionFile, "is missing",
+                       "Choose the recording again: earlier versions did not write this file");
       saved_.session = readSessionOfRun(folder_ / kSessionFile);
       return;
     } catch (const CalibrationError& error) {
       if (!named_) throw;
-      note("the session that it was made from", error);
+      note("the session of the run", error);
     }
     saved_.session = sessionFrom(*named_, folder_);
     try {
@@ -227,7 +227,7 @@ class FolderReader {
     }
   }
 
-  // Of what was found: names, and views and windows as far as the tables have them.
+  // Reads names, views and windows from the tables.
   void readTables() {
     run_.pass = {};
     run_.pass.start_ns = run_.result.start_ns.value_or(0);
@@ -246,11 +246,11 @@ class FolderReader {
         for (BoardObservations& camera : run_.pass.cameras)
           if (camera.camera == found.camera) camera = found;
     } catch (const CalibrationError& error) {
-      note("what was found of the board", error);
+      note("the detections of the board", error);
     }
   }
 
-  // Pages go by the session's lists and by the board's points.
+  // Checks that the data match the session's lists and the board's points, on which pages rely.
   void checkSizes() {
     const Session& session = saved_.session;
     bool same = session.cameras.size() == run_.result.state.cameras.size() &&
@@ -262,12 +262,11 @@ class FolderReader {
           same = same && circle.circle < session.boardOf(k).pointCount();
     dropResidualsOfNoView();
     if (!same && run_.result.status != CalibrationStatus::Failed)
-      throw badInput((folder_ / kSessionFile).string(),
-                     "it is the session of another run than what is beside it",
-                     "Export or calibrate again: the folder holds parts of two runs");
+      throw badInput((folder_ / kSessionFile).string(), "it is not the session of the result in this folder",
+                     "Export or calibrate again: the folder contains parts of two runs");
   }
 
-  // Views that come from the tables may be fewer.
+  // The tables may have fewer views.
   void dropResidualsOfNoView() {
     std::erase_if(run_.result.circle_residuals, [&](const CircleResidual& r) {
       return static_cast<std::size_t>(r.view) >=
@@ -304,11 +303,11 @@ std::filesystem::path resultFileOf(const std::filesystem::path& path, const char
 NamedResult readOldResult(const std::filesystem::path& path, const std::string& what) {
   const std::filesystem::path file = resultFileOf(path);
   if (!isThere(file))
-    throw badInput(file.string(), "is not there", "Give the folder of a calibration, or its result.yaml");
+    throw badInput(file.string(), "does not exist", "Give the folder of a calibration, or its result.yaml");
   NamedResult named = readResultYaml(file);
   if (named.result->status == CalibrationStatus::Failed)
     throw badInput(file.string(), "the calibration failed: " + named.result->reason,
-                   fmt::format("Calibrate first: there is nothing to be {}", what));
+                   fmt::format("Calibrate again: a failed calibration cannot be {}", what));
   return named;
 }
 
@@ -333,7 +332,7 @@ void keepRun(const std::filesystem::path& folder, const Session& session,
   std::vector<FileContent> files = runFiles(folder, session, *run, made_s);
   files.push_back({kLog, log});
   files.push_back(
-      {kResultFile, resultYaml(namedRun(session, run, version))});  // the last tells that all are there
+      {kResultFile, resultYaml(namedRun(session, run, version))});  // written last: marks a complete result
   for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }
@@ -371,7 +370,7 @@ std::vector<RunSummary> listRuns(const std::filesystem::path& folder) {
     try {
       runs.push_back(readRunSummary(entry->path()));
     } catch (const CalibrationError&) {
-      // Opened by itself it says what is wrong.
+      // The error is reported when the run is opened.
     }
   }
   std::sort(runs.begin(), runs.end(), [](const RunSummary& a, const RunSummary& b) {

@@ -24,7 +24,7 @@ void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_the
   const std::optional<QualityWarning> cause = causeToTell(outcome, folder_was_there);
   std::error_code ignored;
   if (!cause || !std::filesystem::is_directory(folder, ignored)) return;
-  // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
+  // A failed run keeps an earlier result of the same folder: that is still valid for its recording.
   if (std::filesystem::exists(folder / "trajectory.csv", ignored)) return;
   writeFailure(folder, session, *cause, version, log, outcome.pass);
 }

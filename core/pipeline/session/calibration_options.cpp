@@ -21,7 +21,7 @@
 namespace evical {
 namespace {
 
-// The options of a group, const where all are.
+// Options of a group, const if `shared` is const.
 template <class Shared>
 auto& optionsOf(Shared& shared) {
   if constexpr (std::is_const_v<Shared>)
@@ -30,52 +30,51 @@ auto& optionsOf(Shared& shared) {
     return shared.edit();
 }
 
-// One group of the batch's options, const where these are.
+// One group of the batch's options, const if `options` is const.
 template <class Part, class Options>
 auto& partOf(Options& options) {
   return static_cast<std::conditional_t<std::is_const_v<Options>, const Part, Part>&>(options);
 }
 
-// The one list of groups: visit(name, what all of it needs, help, options of the group).
+// List of groups: visit(name, condition of the whole group, help, options of the group).
 template <class Options, class Visitor>
 void forEachGroup(Options& all, Visitor&& visit) {
   using enum Applies;
   auto& front_end = optionsOf(all.front_end);
   auto& batch = optionsOf(all.optimisation);
-  visit("detection", WithEvents, "The front end as a whole", front_end.detection);
+  visit("detection", WithEvents, "General settings of the front end", front_end.detection);
   visit("bursts", WithEvents, "Edge timing: events of one edge at one pixel", front_end.bursts);
-  visit("ring_vote", WithRingVotes, "Circle candidates", front_end.ring_vote);
-  visit("normal_flow", WithNormalFlow, "Circle candidates the published way", front_end.normal_flow);
-  visit("moving_circle", WithEvents, "Moving circles, one by one", front_end.moving_circle);
-  visit("grid", WithEvents, "Circles to board", front_end.grid);
-  visit("tracking", WithEvents, "All circles of a window together, and from window to window",
+  visit("ring_vote", WithRingVotes, "Circle candidates from ring votes", front_end.ring_vote);
+  visit("normal_flow", WithNormalFlow, "Circle candidates from normal flow", front_end.normal_flow);
+  visit("moving_circle", WithEvents, "Fits of single moving circles", front_end.moving_circle);
+  visit("grid", WithEvents, "Assignment of circles to the board", front_end.grid);
+  visit("tracking", WithEvents, "Joint fits of all circles in a window, and tracking between windows",
         front_end.tracking);
-  visit("extent", WithEvents, "Does the board have the rows and columns that the session says?",
-        front_end.extent);
-  visit("frames", WithFrames, "Frame cameras: how their pictures are searched for the board",
-        optionsOf(all.frames));
+  visit("extent", WithEvents, "Check of the board's number of rows and columns", front_end.extent);
+  visit("frames", WithFrames, "Frame cameras: search of images for the board", optionsOf(all.frames));
   visit("blink", WithBlinkingBoard,
-        "Blinking boards before event cameras: how the blink is noticed and the flashes added up",
+        "Blinking boards and event cameras: detection of the blinking, and accumulation of flashes",
         optionsOf(all.blink));
-  visit("intrinsics", WithUnknownLens, "Camera intrinsics, where the session gives none",
+  visit("intrinsics", WithUnknownLens, "Camera intrinsics, if the session gives none",
         optionsOf(all.intrinsics));
   visit("initialisation", Always, "From single views to a first trajectory", optionsOf(all.initialisation));
-  visit("optimisation.model", Always, "Batch optimisation: what is estimated, and how measurements are taken",
+  visit("optimisation.model", Always,
+        "Batch optimisation: estimated quantities and model of the measurements",
         partOf<ModelOptions>(batch));
   visit("optimisation.priors", Always,
-        "Batch optimisation: how weakly what a recording may leave open is held",
+        "Batch optimisation: weak priors for quantities that a recording may not determine",
         partOf<PriorOptions>(batch));
-  visit("optimisation.solver", Always, "Batch optimisation: how it is solved", partOf<SolverOptions>(batch));
-  visit("optimisation.verdict", Always, "Uncertainty, and what makes a result doubtful",
+  visit("optimisation.solver", Always, "Batch optimisation: solver", partOf<SolverOptions>(batch));
+  visit("optimisation.verdict", Always, "Uncertainty, and criteria for a doubtful result",
         partOf<VerdictOptions>(batch));
-  visit("report", Always, "What is worked out for the report only", optionsOf(all.report));
-  visit("check", InCheck, "Whether an old calibration still holds", optionsOf(all.check));
-  visit("edge_slopes", InCheckWithoutBoard, "Without a board: the speed of edges in the scene",
+  visit("report", Always, "Additional analyses for the report", optionsOf(all.report));
+  visit("check", InCheck, "Check of an old calibration", optionsOf(all.check));
+  visit("edge_slopes", InCheckWithoutBoard, "Check without a board: speed of edges in the scene",
         optionsOf(all.edge_slopes));
   visit("egomotion", InCheckWithoutBoard,
-        "Without a board: how the camera turns, compared with the gyroscope", optionsOf(all.egomotion));
-  visit("maintain", InMaintain, "Logs of IMUs over time: what has changed since the calibration",
-        optionsOf(all.maintain));
+        "Check without a board: rotation of the camera compared with the gyroscope",
+        optionsOf(all.egomotion));
+  visit("maintain", InMaintain, "IMU logs over time: changes since the calibration", optionsOf(all.maintain));
 }
 
 template <class Options>
@@ -95,9 +94,9 @@ void checkLevel(std::string_view full_name, const OptionRow& row) {
   const bool tuning = row.level == Level::Tuning;
   if (tuning == full_name.starts_with(kTuning)) return;
   if (tuning)
-    throw badInput(name, "is for tuning: it may change with any version",
+    throw badInput(name, "is a tuning option, which may change with any version",
                    fmt::format("Write {}{}", kTuning, name));
-  throw badInput(std::string(full_name), "is not for tuning", "Write " + name);
+  throw badInput(std::string(full_name), "is not a tuning option", "Write " + name);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// All options of a calibration, by group: what session files, --set, `evical options` and forms reach.
+// All options of a calibration by group, for session files, --set, `evical options` and forms.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -22,7 +22,7 @@ struct MaintenanceOptions;
 struct OptimisationOptions;
 struct ReportOptions;
 
-// Groups by pointer: only sources that read a group include its header, and are rebuilt if it changes.
+// Groups are shared pointers: only sources that use a group include its header and are rebuilt if it changes.
 struct CalibrationOptions {
   SharedOptions<FrontEndOptions> front_end;
   SharedOptions<FrameOptions> frames;
@@ -31,7 +31,7 @@ struct CalibrationOptions {
   SharedOptions<InitialisationOptions> initialisation;
   SharedOptions<OptimisationOptions> optimisation;
   SharedOptions<ReportOptions> report;
-  // Of other commands:
+  // For other commands:
   SharedOptions<CheckOptions> check;
   SharedOptions<EdgeSlopeOptions> edge_slopes;
   SharedOptions<EgomotionOptions> egomotion;
@@ -41,23 +41,23 @@ struct CalibrationOptions {
   bool operator==(const CalibrationOptions&) const;
 };
 
-// One group: its name, what it is about, and its options with their full names.
+// One group: name, description, and options with full names.
 struct OptionSection {
   std::string name, help;
   std::vector<OptionRow> rows;
 };
 std::vector<OptionSection> optionSections(const CalibrationOptions& options = {});
 
-// By full name, "group.option" or "tuning.group.option". Where a group is part of a larger one, its own name may be left
-// out: "optimisation.threads" is "optimisation.solver.threads". Throws CalibrationError (BadInput) that names the
-// option, the value, and the bound or the nearest known name.
+// Sets an option by its full name, "group.option" or "tuning.group.option". The name of a subgroup can be
+// omitted: "optimisation.threads" is "optimisation.solver.threads". Throws CalibrationError (BadInput) with
+// the option, the value, and the bound or the nearest known name.
 void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value);
 
-// Once all are set: throws OptionConflict that names two options of which one excludes the other's value.
+// Final check of all options: throws OptionConflict with the names of two incompatible options.
 void validate(const CalibrationOptions& options);
 
-// With full names, in the order of the groups: all options, those that people are told of (not those of tuning), and
-// those that aren't at their default.
+// Options with full names, in the order of the groups: all, the documented ones (without tuning), and those
+// that differ from the default.
 std::vector<OptionRow> optionRows(const CalibrationOptions& options = {});
 std::vector<OptionRow> documentedOptions(const CalibrationOptions& options = {});
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);

@@ -1,4 +1,4 @@
-// When an old calibration counts as changed.
+// Criteria for a changed calibration.
 #pragma once
 
 #include "core/base/option_struct.h"

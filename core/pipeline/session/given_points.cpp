@@ -16,10 +16,9 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kMostPoints = 10'000;
-const char* const kFlat =
-    "Points must lie in one plane: give them as the target lies flat, with one z or none";
+const char* const kFlat = "Give all points in one plane, with the same z or without z";
 
-// The first point's plane is the target's.
+// Checks that all points are in the plane of the first one.
 class Flat {
  public:
   bool take(double z_m) {
@@ -40,7 +39,7 @@ struct PointTable {
   Flat flat;
 };
 
-// Which column is what, by their names.
+// Identifies columns by their names.
 void readNames(const std::vector<std::string_view>& names, const std::string& place, PointTable& table) {
   constexpr std::array<std::string_view, 3> kNeeded = {"point", "x_m", "y_m"};
   const auto columnOf = [&](std::string_view name) {
@@ -51,7 +50,7 @@ void readNames(const std::vector<std::string_view>& names, const std::string& pl
     table.columns.at(k) = columnOf(kNeeded.at(k));
     if (table.columns.at(k) == names.size())
       throw badInput(place, fmt::format("has no column {}", kNeeded.at(k)),
-                     "Give point,x_m,y_m: each point's index and its place in metres");
+                     "Give the columns point,x_m,y_m: index and position in metres");
     table.least_columns = std::max(table.least_columns, table.columns.at(k) + 1);
   }
   const std::size_t z = columnOf("z_m");
@@ -67,15 +66,17 @@ void readPoint(const std::vector<std::string_view>& columns, const std::string& 
   if (columns.size() < table.least_columns || !parsed(0, index) || !parsed(1, at_m.x()) ||
       !parsed(2, at_m.y()) ||
       (table.z_column && *table.z_column < columns.size() && !parseNumber(columns[*table.z_column], z_m)))
-    throw badInput(place, "is no point: index, x and y are expected", "Give point,x_m,y_m in each line");
+    throw badInput(place, "is not a point: index, x and y are expected", "Give point,x_m,y_m in each line");
   if (!(index >= 0.0 && index < static_cast<double>(kMostPoints)) || index != std::floor(index))
-    throw badInput(place, fmt::format("{} is no index of a point: they are 0 to {}", index, kMostPoints - 1),
-                   "Count the points from 0 on");
-  if (!table.flat.take(z_m)) throw badInput(place, fmt::format("z is {} m, elsewhere it is not", z_m), kFlat);
+    throw badInput(place,
+                   fmt::format("{} is not a valid point index: indices are 0 to {}", index, kMostPoints - 1),
+                   "Count the points from 0");
+  if (!table.flat.take(z_m))
+    throw badInput(place, fmt::format("z is {} m, but different for other points", z_m), kFlat);
   const auto point = static_cast<std::size_t>(index);
   if (point >= table.places_m.size()) table.places_m.resize(point + 1);
   if (table.places_m[point])
-    throw badInput(place, fmt::format("point {} is there a second time", point), "Give each point once");
+    throw badInput(place, fmt::format("point {} is listed twice", point), "Give each point once");
   table.places_m[point] = at_m;
 }
 
@@ -88,10 +89,11 @@ std::vector<Eigen::Vector2d> pointsFrom(const YamlNode& list) {
     const std::vector<YamlNode> numbers = item.items();
     if (numbers.size() != 2 && numbers.size() != 3) throw item.error("must be [x, y] in metres");
     if (points_m.size() == kMostPoints)
-      throw item.error(fmt::format("is beyond the {} points that a board may have", kMostPoints));
+      throw item.error(fmt::format("exceeds the maximum of {} points per board", kMostPoints));
     points_m.emplace_back(numbers[0].real(), numbers[1].real());
     const double z_m = numbers.size() > 2 ? numbers[2].real() : 0.0;
-    if (!flat.take(z_m)) throw item.error(fmt::format("z is {} m, elsewhere it is not", z_m), kFlat);
+    if (!flat.take(z_m))
+      throw item.error(fmt::format("z is {} m, but different for other points", z_m), kFlat);
   }
   return points_m;
 }
@@ -115,10 +117,10 @@ std::vector<Eigen::Vector2d> loadPoints(const std::filesystem::path& file) {
   std::vector<Eigen::Vector2d> points_m;
   for (std::size_t point = 0; point < table.places_m.size(); ++point) {
     if (!table.places_m[point])
-      throw badInput(
-          file.string(),
-          fmt::format("point {} is missing: there are indices up to {}", point, table.places_m.size() - 1),
-          "Give each point once, counted from 0 on");
+      throw badInput(file.string(),
+                     fmt::format("point {} is missing, but there are indices up to {}", point,
+                                 table.places_m.size() - 1),
+                     "Give each point once, counted from 0");
     points_m.push_back(*table.places_m[point]);
   }
   return points_m;

@@ -20,14 +20,14 @@ bool everyLensIsGiven(const Session& session) {
                      [](const SessionCamera& camera) { return camera.intrinsics.has_value(); });
 }
 
-// Empty where one of the cameras gives this type, or may give it.
+// Reason if no camera has this type; empty if one has it, or may have it.
 std::string without(StreamType type, const Session& session, const StreamTypes& types) {
   if (session.cameras.empty()) return {};
   for (const SessionCamera& camera : session.cameras) {
     const auto found = types.find(camera.stream);
     if (found == types.end() || found->second == type) return {};
   }
-  return type == StreamType::Frames ? "no camera gives frames" : "no camera gives events";
+  return type == StreamType::Frames ? "no camera records frames" : "no camera records events";
 }
 
 std::string where(bool idle, const char* reason) {
@@ -38,7 +38,7 @@ std::string whereOfImus(const Session& session, bool idle, const char* reason) {
   return session.imus.empty() ? "there is no IMU" : where(idle, reason);
 }
 
-// The candidates of one source, of which the other one is looked for first, or alone.
+// Reason for a source of candidates that is not used, or only after the other one.
 std::string withoutCandidates(CandidateSource source, const Session& session, const StreamTypes& types,
                               const char* alone, const char* fallback) {
   const DetectionOptions& detection = session.options.front_end->detection;
@@ -57,36 +57,37 @@ std::string whyNot(Applies applies, const Session& session, const StreamTypes& t
       return where(!session.imus.empty(), "there is an IMU");
     case Applies::WithEvents:
       return without(StreamType::Events, session, types);
-    case Applies::WithFrames:  // and pictures of flashes
+    case Applies::WithFrames:  // and images of flashes
       return session.board_blinks ? "" : without(StreamType::Frames, session, types);
     case Applies::WithRingVotes:
       return withoutCandidates(CandidateSource::RingVote, session, types,
-                               "circles are looked for by normal flow alone",
-                               "ring votes are used only where normal flow finds no board");
+                               "circles are detected only by normal flow",
+                               "ring votes are used only if normal flow does not find the board");
     case Applies::WithNormalFlow:
       return withoutCandidates(CandidateSource::NormalFlow, session, types,
-                               "circles are looked for by ring votes alone",
-                               "normal flow is used only where ring votes find no board");
+                               "circles are detected only by ring votes",
+                               "normal flow is used only if ring votes do not find the board");
     case Applies::WithAprilGrid:
       return where(!hasBoard(session, BoardType::AprilGrid), "no board is an AprilGrid");
     case Applies::WithCharuco:
       return where(!hasBoard(session, BoardType::Charuco), "no board is a ChArUco board");
     case Applies::WithBlinkingBoard:
-      return where(!session.board_blinks, "the board does not blink, as far as the session says");
+      return where(!session.board_blinks, "the session's board does not blink");
     case Applies::WithUnknownLens:
       return where(everyLensIsGiven(session), "every camera's lens is given");
     case Applies::WithFreeGyroscopeTurns:
-      return whereOfImus(session, !optimisation.gyroscope_rotation, "turns of gyroscopes are not estimated");
+      return whereOfImus(session, !optimisation.gyroscope_rotation,
+                         "gyroscope misalignments are not estimated");
     case Applies::WithFreeGravityNorm:
       return whereOfImus(session, !optimisation.free_gravity_norm, "gravity's norm is not estimated");
     case Applies::WithLinearBiases:
       return whereOfImus(session, optimisation.bias_model != BiasModel::Linear, "biases are constant");
     case Applies::InCheck:
-      return "only a check of an earlier result takes it";
+      return "only a check of an earlier result uses it";
     case Applies::InCheckWithoutBoard:
       return "only a check without a board uses it";
     case Applies::InMaintain:
-      return "only a look at logs of IMUs takes it";
+      return "only the maintenance of IMU logs uses it";
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// Which options a session leaves without effect, and why: so that nobody turns one and waits.
+// Options that have no effect in a session, with the reason.
 #pragma once
 
 #include "core/data/recording.h"
@@ -11,7 +11,7 @@ namespace evical {
 
 using StreamTypes = std::map<std::string, StreamType>;  // of a recording's streams, by name
 
-// In words for people; empty where it has an effect, as far as the session and what is known of its streams tell.
+// Reason why the option has no effect; empty if it has one, as far as the session and its known streams show.
 std::string whyIdle(const Session& session, const OptionRow& option, const StreamTypes& types = {});
 
 }  // namespace evical

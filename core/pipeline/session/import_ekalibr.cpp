@@ -24,7 +24,7 @@ constexpr std::array kImuTypes{
     ImuType{"SENSOR_IMU_DEG_G", AccelerationUnit::Gravity, AngularRateUnit::DegreesPerSecond},
     ImuType{"SENSOR_IMU_DEG_G_NEG", AccelerationUnit::MinusGravity, AngularRateUnit::DegreesPerSecond}};
 
-// Relative to the configuration; eKalibr itself takes whatever the path is where it runs.
+// Path relative to the configuration; eKalibr itself uses its working directory.
 std::filesystem::path besideSource(const ImportSource& source, const std::string& text) {
   return source.path.parent_path() / text;
 }
@@ -41,7 +41,7 @@ void readCamera(const ImportSource& source, const YamlNode& entry, ImportedSessi
     if (isThere(file)) {
       camera.intrinsics = readIntrinsicsFile(file, camera.name, camera.stream);
     } else {
-      imported.notes.push_back(fmt::format("{}: intrinsics {} do not exist here: they will be calibrated",
+      imported.notes.push_back(fmt::format("{}: intrinsics file {} does not exist: they will be calibrated",
                                            camera.name, file.string()));
     }
   }
@@ -54,7 +54,8 @@ void readImu(const YamlNode& entry, ImportedSession& imported) {
   const YamlNode value = entry["value"];
   imu.stream = entry["key"].text();
   if (value["Type"].text() == "SBG_IMU") {
-    imported.notes.push_back(fmt::format("{} is left out: messages of SBG's IMUs are not read", imu.stream));
+    imported.notes.push_back(
+        fmt::format("{} is ignored: messages of SBG's IMUs are not supported", imu.stream));
     return;
   }
   imu.name = sensorName(imu.stream, true, session);
@@ -77,11 +78,11 @@ void readBoard(const YamlNode& prior, const ImportRequest& request, ImportedSess
   board.radius_m = board.spacing_m / pattern["RadiusRate"].real(0.1, 100.0, "");
   if (!request.radius_m)
     imported.notes.push_back(fmt::format(
-        "board: circles of radius {:.4g} mm, from RadiusRate; dark circles are assumed, as eKalibr does",
+        "board: circles of radius {:.4g} mm, from RadiusRate; dark circles are assumed, as in eKalibr",
         1e3 * board.radius_m));
 }
 
-// Negative: from the start, to the end.
+// Negative values mean the start or the end of the recording.
 void readTimes(const YamlNode& data, Session& session) {
   const auto number = [&](const char* key) {
     const auto node = data.find(key);
@@ -102,8 +103,8 @@ void readPriors(const YamlNode& prior, ImportedSession& imported) {
   const auto spatial = prior.find("SpatTempPrioriPath");
   if (spatial && !spatial->isNull() && !spatial->text().empty())
     imported.notes.push_back(
-        fmt::format("{} is left out: poses and time offsets that are known go under prior", spatial->text()));
-  imported.notes.emplace_back("eKalibr's settings of its front end are left out: Evical has its own");
+        fmt::format("{} is ignored: give known poses and time offsets under prior", spatial->text()));
+  imported.notes.emplace_back("eKalibr's front-end settings are ignored: Evical has its own");
 }
 
 }  // namespace

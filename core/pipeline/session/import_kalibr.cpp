@@ -14,10 +14,10 @@
 namespace evical {
 namespace {
 
-// eKalibr's own boards have it, and it is what prints well.
+// Ratio of eKalibr's own boards, which is suitable for printing.
 constexpr double kUsualRadiusRate = 2.5;  // spacing by radius
 
-// Kalibr's rows and columns are of tags; its spacing is the gap between two as a share of a tag.
+// Kalibr counts rows and columns of tags; its spacing is the gap between two tags relative to the tag size.
 void readAprilGrid(const YamlNode& root, Board& board) {
   board.type = BoardType::AprilGrid;
   board.rows = root["tagRows"].integer(1, 100);
@@ -36,7 +36,7 @@ void readCheckerboard(const YamlNode& root, Board& board) {
   constexpr double kSame = 1e-6;
   const YamlNode other = root["colSpacingMeters"];
   if (std::abs(other.real(1e-4, 10.0, "m") / board.spacing_m - 1.0) > kSame)
-    throw other.error("is another one than rowSpacingMeters, and Evical's checkerboards have squares",
+    throw other.error("differs from rowSpacingMeters, but Evical's checkerboards have square fields",
                       "Measure the board again, or use another one");
 }
 
@@ -46,8 +46,8 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
   if (type == "aprilgrid") return readAprilGrid(root, board);
   if (type == "checkerboard") return readCheckerboard(root, board);
   if (type != "circlegrid")
-    throw root["target_type"].error(fmt::format("'{}' is no target that Evical knows", type),
-                                    "Known are aprilgrid, checkerboard and circlegrid");
+    throw root["target_type"].error(fmt::format("'{}' is not a known target type", type),
+                                    "Use aprilgrid, checkerboard or circlegrid");
   const bool asymmetric =
       root["asymmetricGrid"].choice({"false", "true", "False", "True", "0", "1"}) % 2 == 1;
   board.type = asymmetric ? BoardType::AsymmetricCircles : BoardType::SymmetricCircles;
@@ -56,13 +56,12 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
   board.spacing_m = root["spacingMeters"].real(1e-4, 10.0, "m");
   board.radius_m = request.radius_m.value_or(board.spacing_m / kUsualRadiusRate);
   if (!request.radius_m)
-    imported.notes.push_back(
-        fmt::format("board: Kalibr's target does not say how large the circles are: {:.4g} mm of radius are "
-                    "assumed; measure, and give {}",
-                    1e3 * board.radius_m, howTo(HowTo::Option, {"radius-m"})));
+    imported.notes.push_back(fmt::format(
+        "board: Kalibr's target has no circle radius; {:.4g} mm are assumed. Measure it and give {}",
+        1e3 * board.radius_m, howTo(HowTo::Option, {"radius-m"})));
 }
 
-// Files of Kimera and EuRoC name no topic. Then the recording's only IMU is used.
+// Files of Kimera and EuRoC do not name a topic. The recording's only IMU is then used.
 std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
   std::vector<std::string> streams;
   if (!request.recording.empty())
@@ -89,8 +88,8 @@ void readImu(const YamlNode& map, const std::string& key, const ImportRequest& r
     imu.noise.gyroscope_random_walk = walk->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
   const auto model = map.find("model");
   if (model && model->text() != "calibrated")
-    imported.notes.push_back(fmt::format(
-        "{}: its model {} is left out: scales and misalignment are estimated anew", imu.name, model->text()));
+    imported.notes.push_back(fmt::format("{}: its model {} is ignored: scales and misalignment are estimated",
+                                         imu.name, model->text()));
   imported.session.imus.push_back(std::move(imu));
 }
 
@@ -108,8 +107,9 @@ void readCameras(const YamlNode& root, ImportedSession& imported) {
     camera.intrinsics = readIntrinsics(map);
     camera.resolution_px = camera.intrinsics->resolution_px;
     if (camera.stream.find("image") != std::string::npos)
-      imported.notes.push_back(fmt::format("{}: {} looks like images: give the topic of the events {}", key,
-                                           camera.stream, howTo(HowTo::EditSession)));
+      imported.notes.push_back(
+          fmt::format("{}: {} seems to be an image topic: give the topic of the events {}", key,
+                      camera.stream, howTo(HowTo::EditSession)));
     imported.session.cameras.push_back(std::move(camera));
   }
 }
@@ -119,11 +119,11 @@ const char* nameOf(ImportKind kind) {
   return kind == ImportKind::KalibrImu ? "imu" : "camchain";
 }
 
-// Before Kalibr has run there is no camchain: then every stream of events is a camera, as `evical init` has it.
+// Without a camchain (before Kalibr was run) every stream of events becomes a camera, as in `evical init`.
 void addRecordedCameras(const ImportRequest& request, ImportedSession& imported) {
   if (request.recording.empty())
-    throw badInput("cameras", "none of the files describes one",
-                   "Give Kalibr's camchain file too; or " + howTo(HowTo::Option, {"recording FILE"}) +
+    throw badInput("cameras", "none of the files describes a camera",
+                   "Give Kalibr's camchain file, too, or " + howTo(HowTo::Option, {"recording FILE"}) +
                        ", whose event streams become the cameras");
   const Inspection inspection = inspectRecording(*openRecording(request.recording));
   Session& session = imported.session;
@@ -133,7 +133,7 @@ void addRecordedCameras(const ImportRequest& request, ImportedSession& imported)
     if (!camera) continue;
     session.cameras.push_back(withSeenResolution(guessedCamera(stream, session), stream));
     imported.notes.push_back(
-        fmt::format("{}: the camera of the stream {}; its lens is calibrated first, from the same recording",
+        fmt::format("{}: camera of the stream {}; its lens is calibrated first, from the same recording",
                     session.cameras.back().name, stream.info.name));
   }
   if (session.cameras.empty())
@@ -156,11 +156,11 @@ void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest&
     if (source.kind == ImportKind::KalibrImu) readImus(source.root, request, imported);
     if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, imported);
     if (source.kind == ImportKind::Intrinsics || source.kind == ImportKind::LensFile)
-      throw badInput(source.path.string(), "holds intrinsics alone, without the name of a stream",
-                     "Give Kalibr's camchain, or import this file by itself");
+      throw badInput(source.path.string(), "has only intrinsics, without the name of a stream",
+                     "Give Kalibr's camchain, or import this file alone");
   }
   if (!seen[static_cast<std::size_t>(ImportKind::KalibrTarget)])
-    throw badInput("board", "none of the files describes it", "Give Kalibr's target file too");
+    throw badInput("board", "none of the files describes the board", "Give Kalibr's target file, too");
   if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)]) addRecordedCameras(request, imported);
 }
 

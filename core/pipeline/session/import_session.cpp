@@ -27,12 +27,12 @@ void checkFrom(const ImportRequest& request, const std::vector<ImportSource>& so
   const std::array<std::string, 3> known{"kalibr", "ekalibr", "ros"};
   if (std::find(known.begin(), known.end(), request.from) == known.end())
     throw badInput(howTo(HowTo::Option, {"from"}),
-                   fmt::format("'{}' is no program whose files can be imported", request.from),
+                   fmt::format("files of '{}' cannot be imported", request.from),
                    nameAdvice(request.from, known));
   for (const ImportSource& source : sources) {
     const bool lens = source.kind == ImportKind::Intrinsics;  // eKalibr's, ROS's or Evical's own
     if (request.from != programOf(source.kind) && !(lens && request.from == "ekalibr"))
-      throw badInput(source.path.string(), fmt::format("is no file of {}", request.from),
+      throw badInput(source.path.string(), fmt::format("is not a file of {}", request.from),
                      "Leave out " + howTo(HowTo::Option, {"from"}));
   }
 }
@@ -48,13 +48,13 @@ void setRecording(const ImportRequest& request, ImportedSession& imported) {
   Session& session = imported.session;
   if (!request.recording.empty()) session.recording = request.recording;
   if (session.recording.empty())
-    throw badInput("recording", "none of the files names one",
+    throw badInput("recording", "none of the files names a recording",
                    "Give it with " + howTo(HowTo::Option, {"recording FILE"}));
   if (isThere(session.recording)) return;
   if (!request.recording.empty())
     throw badInput(session.recording.string(), "does not exist",
                    "Check the path after " + howTo(HowTo::Option, {"recording"}));
-  imported.notes.push_back(fmt::format("recording {} does not exist here: give another one with {}",
+  imported.notes.push_back(fmt::format("recording {} does not exist: give another one with {}",
                                        session.recording.string(), howTo(HowTo::Option, {"recording FILE"})));
 }
 
@@ -70,13 +70,13 @@ struct ImportedIntrinsics {
   CameraIntrinsics intrinsics;
 };
 
-// No camera has them: then numbers are in another unit, or of another image size.
+// Rejects implausible intrinsics: another unit, or another image size.
 void checkPlausible(const CameraIntrinsics& lens, const std::string& place) {
   constexpr double kLeastFocal_px = 5.0;
   const Eigen::Vector2d& centre = lens.principal_point_px;
   if (lens.focal_length_px.minCoeff() < kLeastFocal_px)
     throw badInput(
-        place, fmt::format("a focal length of {:.3g} px cannot be right", lens.focal_length_px.minCoeff()),
+        place, fmt::format("the focal length of {:.3g} px is implausible", lens.focal_length_px.minCoeff()),
         "Give it in pixels");
   const Resolution size = lens.resolution_px;
   if (size.known() &&
@@ -97,7 +97,7 @@ void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
     if (name.empty()) name = found.size() > 1 ? fmt::format("cam{}", i) : file.read.path.stem().string();
     CameraIntrinsics lens = *found[i].lens;
     CameraIntrinsics checked = lens;
-    constexpr int kMost_px = 30000;  // used if the file has no resolution: the recording knows it
+    constexpr int kMost_px = 30000;  // if the file has no resolution, which the recording gives
     if (!checked.resolution_px.known()) checked.resolution_px = {kMost_px, kMost_px};
     const std::string place = fmt::format("{}: {}", file.read.path.string(), name);
     validate(checked, place);
@@ -106,7 +106,7 @@ void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
   }
 }
 
-// Contents other than the lens, which are not imported.
+// Adds notes on contents other than the lens, which are not imported.
 void noteLeftOut(const LensFile& file, std::vector<std::string>& notes) {
   const std::string name = file.read.path.filename().string();
   const auto any = [&](const auto& has) {
@@ -139,7 +139,7 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
   return cameras;
 }
 
-// What a camchain knows beyond the lens is an estimate, and becomes no prior unasked.
+// Notes on other contents of a camchain: these are estimates, and do not become priors automatically.
 void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
   for (const ImportSource& source : sources) {
     if (source.kind == ImportKind::LensFile) noteLeftOut(*source.lenses, notes);
@@ -150,15 +150,15 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
     const std::vector<std::string> cameras = camchainCameras(source.root);
     for (const std::string& key : source.root.keys()) {
       if (std::find(cameras.begin(), cameras.end(), key) == cameras.end()) {
-        notes.push_back(fmt::format("{} is left out: it is not a camera", key));
+        notes.push_back(fmt::format("{} is ignored: it is not a camera", key));
         continue;
       }
       for (const std::string& note : leftOutOf(source.root[key]))
         notes.push_back(fmt::format("{}: {}", key, note));
       if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
         notes.push_back(
-            fmt::format("{}: its pose and time offset are left out and estimated anew; where they are to be "
-                        "held, give them under prior",
+            fmt::format("{}: its pose and time offset are not imported and will be estimated; to fix them, "
+                        "give them under prior",
                         key));
     }
   }
@@ -190,8 +190,8 @@ ImportedSession sessionOf(const std::vector<ImportSource>& sources, const Import
   if (configuration != sources.end()) {
     if (sources.size() > 1)
       throw badInput(configuration->path.string(),
-                     "is a whole configuration of eKalibr, yet further files are given",
-                     "Import it alone; it names its files of intrinsics itself");
+                     "is a complete eKalibr configuration, but further files are given",
+                     "Import it alone: it names its intrinsics files");
     importEkalibr(*configuration, request, imported);
   } else {
     importKalibr(sources, request, imported);

@@ -1,5 +1,5 @@
-// Sessions from what people have already: an eKalibr configuration, or Kalibr's target, IMU and camera files.
-// Recognised by content. What a session has no place for is said in notes.
+// Sessions from existing files: an eKalibr configuration, or Kalibr's target, IMU and camera files,
+// recognised by content. Notes list contents that a session cannot represent.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -14,9 +14,9 @@ namespace evical {
 
 struct ImportRequest {
   std::vector<std::filesystem::path> files;
-  std::string from;                 // kalibr, ekalibr, ros; empty: as their content says
-  std::filesystem::path recording;  // empty: as the files say
-  std::optional<double> radius_m;   // of the circles; absent: as the files say
+  std::string from;                 // kalibr, ekalibr, ros; empty: from their content
+  std::filesystem::path recording;  // empty: from the files
+  std::optional<double> radius_m;   // of the circles; absent: from the files
 };
 
 struct ImportedSession {
@@ -24,8 +24,8 @@ struct ImportedSession {
   std::vector<std::string> notes;
 };
 
-// Throws CalibrationError (BadInput) for files that are none of these, twice the same, or that together do
-// not make a session: no recording, no board, no camera.
+// Throws CalibrationError (BadInput) for files of another kind, duplicates, or an incomplete session: no
+// recording, no board, no camera.
 ImportedSession importSession(const ImportRequest& request);
 
 struct ImportedFiles {
@@ -33,8 +33,8 @@ struct ImportedFiles {
   std::vector<std::string> notes;
 };
 
-// What `evical import` writes: the session as `output`; or, where all files hold camera intrinsics alone,
-// Evical's intrinsics, one file a camera ("left.yaml", of several "left-cam0.yaml", ...).
+// Files that `evical import` writes: the session as `output`; or, if all files have only camera intrinsics,
+// Evical's intrinsics, one file per camera ("left.yaml"; for several "left-cam0.yaml", ...).
 ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output);
 
 }  // namespace evical

@@ -19,14 +19,14 @@ ImportSource recogniseSource(const std::filesystem::path& path) {
     if (isLens(root)) return as(ImportKind::Intrinsics);
   }
   throw root.error(
-      root.isMap() && root.has("evical_session") ? "is a session already"
+      root.isMap() && root.has("evical_session") ? "is already a session"
                                                  : "has no layout that can be imported",
       "Give an eKalibr configuration; Kalibr's target, imu and camchain files; or intrinsics of " +
           lensLayouts());
 }
 
 std::string sensorName(const std::string& topic, bool imu, const Session& session) {
-  // "/a/b/events" -> {a, b}: the last part says what is sent.
+  // "/a/b/events" -> {a, b}: the last part is the type of the messages.
   std::vector<std::string> parts(1);
   for (const char letter : topic) {
     if (letter != '/') {

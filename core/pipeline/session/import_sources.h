@@ -1,4 +1,4 @@
-// What the files of an import hold, by program.
+// Contents of the files of an import, by program.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -20,11 +20,11 @@ struct ImportSource {
   std::optional<LensFile> lenses = {};
 };
 
-// Throws CalibrationError (BadInput) where the content is none of these.
+// Throws CalibrationError (BadInput) if the content is of another kind.
 ImportSource recogniseSource(const std::filesystem::path& path);
 
-// Sensor names from topics: "/davis/left/events" is davis_left, and its IMU davis_left_imu; with a number
-// where the name is taken.
+// Sensor names from topics: "/davis/left/events" is davis_left, and its IMU davis_left_imu; with a number if
+// the name is already used.
 std::string sensorName(const std::string& topic, bool imu, const Session& session);
 
 void importEkalibr(const ImportSource& source, const ImportRequest& request, ImportedSession& imported);

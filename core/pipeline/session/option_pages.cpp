@@ -22,13 +22,14 @@ std::vector<OptionRow> rowsOf(std::vector<OptionRow> rows, Level level) {
 }
 
 std::string markdownTable(Level level) {
-  std::string text = "\n| option | default | range | what it does |\n|---|---|---|---|\n";
+  std::string text = "\n| option | default | range | meaning |\n|---|---|---|---|\n";
   for (const OptionRow& row : rowsOf(optionRows(), level))
     text += fmt::format("| `{}` | {} | {} | {} |\n", row.name, row.default_value, rangeText(row), row.help);
   return text;
 }
 
-// "optimisation.solver" as headings of nested maps, of which those of the group before are there already.
+// "optimisation.solver" as headings of nested maps, without those that the previous group has already
+// written.
 std::string yamlHeading(const OptionSection& section, const std::string& before) {
   const std::size_t dot = section.name.find('.');
   if (dot == std::string::npos) return fmt::format("  {}:  # {}\n", section.name, section.help);
@@ -42,32 +43,31 @@ std::string yamlHeading(const OptionSection& section, const std::string& before)
 std::string optionText(Level least) {
   std::string text;
   for (const auto& [level, title] :
-       {std::pair{Level::Public, ""}, std::pair{Level::Expert, "\nFor those who know the method:\n\n"},
-        std::pair{Level::Tuning, "\nFor tuning:\n\n"}}) {
+       {std::pair{Level::Public, ""}, std::pair{Level::Expert, "\nExpert options:\n\n"},
+        std::pair{Level::Tuning, "\nTuning options:\n\n"}}) {
     if (level < least) break;
     text += title;
     for (const OptionRow& row : rowsOf(optionRows(), level))
       text += fmt::format("{:<50} {:<12} {}\n    {}\n", row.name, row.value, rangeText(row), row.help);
   }
   if (least == Level::Public)
-    text += fmt::format("\n{} more, for those who know the method: evical options --all\n",
+    text += fmt::format("\n{} more for experts: evical options --all\n",
                         rowsOf(optionRows(), Level::Expert).size());
   return text;
 }
 
 std::string optionMarkdown() {
   return "# Options\n\nSet them in a session file under `options`, or with `--set group.option=value`. The "
-         "last "
-         "but one part of a name may be left out where three are: `optimisation.threads` is "
+         "middle part of a name with three parts can be omitted: `optimisation.threads` is "
          "`optimisation.solver.threads`. This page is the output of `evical options --markdown`.\n\n"
-         "## What people turn\n" +
-         markdownTable(Level::Public) + "\n## For those who know the method\n" + markdownTable(Level::Expert);
+         "## Common options\n" +
+         markdownTable(Level::Public) + "\n## Expert options\n" + markdownTable(Level::Expert);
 }
 
 std::string optionYaml() {
   std::string text =
-      "# Options with their defaults: the output of `evical options --yaml`. A session file needs only "
-      "those that\n# differ, under `options`, in this form or as `group.option: value`.\noptions:\n";
+      "# Options with their defaults: the output of `evical options --yaml`. A session file needs only those "
+      "that\n# differ, under `options`, in this form or as `group.option: value`.\noptions:\n";
   std::string before;
   for (OptionSection& section : optionSections()) {
     std::erase_if(section.rows, [](const OptionRow& row) { return row.level == Level::Tuning; });

@@ -1,4 +1,4 @@
-// Options as pages for people, those of tuning left out, from their tables.
+// Documentation pages of the options, without those for tuning, generated from their tables.
 #pragma once
 
 #include "core/base/option_row.h"
@@ -7,13 +7,13 @@
 
 namespace evical {
 
-// Terminal text of the options of this level and of those above it.
+// Terminal text of the options of this level and of more public levels.
 std::string optionText(Level least);
 
-// docs/options.md.
+// Content of docs/options.md.
 std::string optionMarkdown();
 
-// config/default.yaml: the part `options` of a session with every default.
+// Content of config/default.yaml: the part `options` of a session with all defaults.
 std::string optionYaml();
 
 }  // namespace evical

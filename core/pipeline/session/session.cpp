@@ -43,13 +43,13 @@ void checkDifferent(const Session& session, const std::string& place) {
   const auto check = [&](const std::string& kind, const auto& sensor) {
     const std::string key = fmt::format("{}: {}.{}", place, kind, sensor.name);
     if (!names.insert(sensor.name).second)
-      throw badInput(key, "this name is taken", "Give every sensor its own name");
+      throw badInput(key, "this name is already used", "Give every sensor a different name");
     const auto recording =
         std::filesystem::weakly_canonical(sensor.recording.empty() ? session.recording : sensor.recording);
     const auto take = [&](const char* what, const std::string& stream) {
       if (!streams.insert({recording, stream}).second)
         throw badInput(key + what, fmt::format("'{}' is already another sensor's stream", stream),
-                       "Give every sensor its own stream");
+                       "Give every sensor a different stream");
     };
     const std::string accelerometer = separateAccelerometer(sensor);
     take(accelerometer.empty() ? ".stream" : ".gyroscope", sensor.stream);
@@ -59,7 +59,7 @@ void checkDifferent(const Session& session, const std::string& place) {
   for (const SessionImu& imu : session.imus) check("imus", imu);
 }
 
-// Its pose, its lens and its clock are that other camera's.
+// Checks that a camera with same_sensor_as has no separate pose, lens or clock.
 void checkSharedSensor(const Session& session, const SessionCamera& camera, const std::string& place) {
   const std::string key = fmt::format("{}: cameras.{}.same_sensor_as", place, camera.name);
   std::vector<std::string> others;
@@ -67,18 +67,18 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
     if (other.name != camera.name && other.same_sensor_as.empty()) others.push_back(other.name);
   if (std::find(others.begin(), others.end(), camera.same_sensor_as) == others.end())
     throw badInput(
-        key, fmt::format("'{}' is no other camera with a sensor of its own", camera.same_sensor_as),
+        key, fmt::format("'{}' is not another camera with its own sensor", camera.same_sensor_as),
         others.empty() ? "Remove it: there is no such camera" : nameAdvice(camera.same_sensor_as, others));
   const std::string whose =
-      fmt::format("'{}' has that already: it is the same sensor", camera.same_sensor_as);
+      fmt::format("'{}' already gives it: both cameras share one sensor", camera.same_sensor_as);
   if (camera.intrinsics)
     throw badInput(fmt::format("{}: cameras.{}.intrinsics", place, camera.name), whose,
-                   fmt::format("Give intrinsics of '{}' only", camera.same_sensor_as));
+                   fmt::format("Give intrinsics only for '{}'", camera.same_sensor_as));
   const SensorPrior& prior = camera.prior;
   if (prior.rotation || prior.translation || prior.time_offset_drift)
-    throw badInput(fmt::format("{}: prior.cameras.{}", place, camera.name), whose,
-                   fmt::format("Give what is known of '{}' only; a time offset each has of its own",
-                               camera.same_sensor_as));
+    throw badInput(
+        fmt::format("{}: prior.cameras.{}", place, camera.name), whose,
+        fmt::format("Give the prior only for '{}'; only time offsets are separate", camera.same_sensor_as));
   if (session.imus.empty() && session.reference == camera.name)
     throw badInput(place + ": reference",
                    fmt::format("'{}' has its pose from '{}'", camera.name, camera.same_sensor_as),
@@ -88,24 +88,24 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
 void checkRecordings(const Session& session, const std::string& place) {
   if (session.more_recordings.empty()) return;
   if (!session.board_blinks)
-    throw badInput(place + ": recording", "is a list, which only a board that blinks can have",
-                   "Name one recording, or, if it does, " + howTo(HowTo::SayThatBoardFlashes));
+    throw badInput(place + ": recording", "is a list, which is possible only for a blinking board",
+                   "Name one recording. If the board blinks, " + howTo(HowTo::SayThatBoardFlashes));
   if (session.time_range_s)
-    throw badInput(place + ": time_range_s", "says not which of several recordings it is of",
+    throw badInput(place + ": time_range_s", "is ambiguous with several recordings",
                    "Remove it, or name one recording");
   for (const SessionCamera& camera : session.cameras)
     if (!camera.recording.empty())
       throw badInput(fmt::format("{}: cameras.{}.recording", place, camera.name),
-                     "is another recording beside a list of them", "Remove it, or name one recording");
+                     "names a recording in addition to the list", "Remove it, or name one recording");
 }
 
-// The rest is checked where it is read; but the reference may change later.
+// Priors of the reference: checked here, since the reference may change after reading.
 void checkPriors(const Session& session, const std::string& place) {
   const auto check = [&](const char* kind, const std::string& name, const SensorPrior& prior) {
     if (name != session.reference || (!prior.rotation && !prior.translation && !prior.time_offset)) return;
     throw badInput(fmt::format("{}: prior.{}.{}", place, kind, name),
                    "gives a transform or time offset of the reference itself",
-                   "Remove it, or take another reference: they are relative to it");
+                   "Remove it, or choose another reference: priors are relative to it");
   };
   for (const SessionImu& imu : session.imus) check("imus", imu.name, imu.prior);
   if (!session.imus.empty()) return;
@@ -126,7 +126,7 @@ std::string recordingsText(const Session& session, const std::filesystem::path& 
   return text + "]";
 }
 
-// Which stream of which file, in which clock.
+// File, stream and clock of a sensor.
 template <class Sensor>
 std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder) {
   std::string text = fmt::format("  {}:\n", yamlText(sensor.name));
@@ -237,7 +237,7 @@ std::size_t Session::referenceCamera() const {
 void validate(const Session& session, const std::string& place) {
   if (session.cameras.empty())
     throw badInput(place + ": cameras", "is empty",
-                   session.imus.size() > 1 ? "Describe at least one camera: IMUs alone are not calibrated"
+                   session.imus.size() > 1 ? "Describe at least one camera: IMUs alone cannot be calibrated"
                                            : "Describe at least one camera");
   checkDifferent(session, place);
   checkReference(session, place);

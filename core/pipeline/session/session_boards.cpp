@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-// Of several, each camera sees one, each is seen, and the first is the world.
+// With several boards, each camera sees one, each is seen, and the first defines the world.
 void checkSeen(const Session& session, const std::string& place) {
   const std::vector<std::string> names = boardNames(session);
   std::vector<bool> seen(names.size());
@@ -22,28 +22,28 @@ void checkSeen(const Session& session, const std::string& place) {
     const std::string& name = session.cameras[k].board;
     const std::string key = fmt::format("{}: cameras.{}.board", place, session.cameras[k].name);
     if (name.empty() && names.size() > 1)
-      throw badInput(key, "is missing: there are several boards", "Say which one this camera sees");
+      throw badInput(key, "is missing, but there are several boards", "Name the board that this camera sees");
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
       throw badInput(key, fmt::format("there is no board '{}'", name), nameAdvice(name, names));
     seen[session.boardIndexOf(k)] = true;
   }
-  // Both are the beginnings of quantities' names.
+  // Names of boards and sensors must differ: both are prefixes of quantity names.
   for (const std::string& name : hasNamedBoards(session) ? names : std::vector<std::string>())
     if (isSensorName(session, name))
       throw badInput(fmt::format("{}: boards.{}", place, name), "is also a sensor's name",
-                     "Call one of them otherwise");
+                     "Rename one of them");
   for (std::size_t i = 0; i < names.size(); ++i)
     if (!seen[i])
       throw badInput(fmt::format("{}: boards.{}", place, names[i]), "no camera sees it",
-                     "Remove it, or say so at the camera that does: board: " + names[i]);
+                     "Remove it, or add to the camera that sees it: board: " + names[i]);
   if (session.boardIndexOf(session.worldCamera()) != 0)
     throw badInput(place + ": boards",
-                   fmt::format("the first one's frame is the world, so '{}' must see it",
+                   fmt::format("the first board defines the world, so '{}' must see it",
                                session.cameras[session.worldCamera()].name),
-                   "Put the board first that it sees");
+                   "List the board that it sees first");
   if (names.size() > 1 && session.board_blinks)
-    throw badInput(place + ": boards", "a board that blinks stands alone",
-                   "Calibrate each camera's intrinsics with a session of its own");
+    throw badInput(place + ": boards", "a blinking board cannot be combined with others",
+                   "Calibrate each camera's intrinsics with a separate session");
 }
 
 void checkTurned(const Session& session, const Board& board, const std::string& key) {
@@ -51,20 +51,19 @@ void checkTurned(const Session& session, const Board& board, const std::string& 
   const BoardType type = board.type;
   throw badInput(
       key + (type == BoardType::SymmetricCircles ? ".type" : ".rows"),
-      fmt::format(
-          "{} looks the same when turned by 180 degrees, so the camera's pose would jump and no IMU can "
-          "be calibrated with it",
-          type == BoardType::SymmetricCircles ? "a symmetric board"
-          : type == BoardType::Checkerboard
-              ? "a checkerboard whose rows and columns of inner corners are both even or both odd"
-              : "an asymmetric board with an even number of rows"),
+      fmt::format("{} looks the same when turned by 180 degrees, so the camera's pose is ambiguous and an "
+                  "IMU cannot be calibrated with it",
+                  type == BoardType::SymmetricCircles ? "a symmetric board"
+                  : type == BoardType::Checkerboard
+                      ? "a checkerboard whose rows and columns of inner corners are both even or both odd"
+                      : "an asymmetric board with an even number of rows"),
       type == BoardType::Checkerboard
-          ? "Use one with an even and an odd number, or leave out the IMUs to calibrate intrinsics"
-          : "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate "
+          ? "Use a board with one even and one odd number, or remove the IMUs to calibrate only intrinsics"
+          : "Use an asymmetric board with an odd number of rows, or remove the IMUs to calibrate only "
             "intrinsics");
 }
 
-// Whether it still tells what it once did: either may have been changed since.
+// True if the measured length still matches the spacing: either may have been changed since.
 bool tellsSpacing(const std::optional<MeasuredLength>& measured, const Board& board) {
   return measured && measured->spacing_m() == board.spacing_m;
 }
@@ -81,7 +80,7 @@ void forgetSigma(OptimisationOptions& options) {
   options.free_board_size = defaults.free_board_size;
 }
 
-// The keys of one, on lines of their own.
+// Keys of a board, one per line.
 std::vector<std::string> boardLines(const Board& board, const std::optional<MeasuredLength>& measured) {
   if (!board.hasPattern())
     return {fmt::format("type: {}", boardTypeName(board.type)),
@@ -106,12 +105,12 @@ std::string indented(const std::vector<std::string>& lines, std::size_t indent) 
   return text;
 }
 
-// How well the world's spacing is known, relative, as a further board has it.
+// Relative sigma of the world board's spacing, in the form of a further board.
 double worldsSpacingStd(const OptimisationOptions& options) {
   return options.free_board_size ? options.board_spacing_sigma : kExactSpacing;
 }
 
-// Those that are as well known as the world's stay so where the options come to say it of another board.
+// Boards with the world board's sigma keep it when the option changes for a new world board.
 void setWorldsSpacingStd(double spacing_std, Session& session) {
   OptimisationOptions& options = session.options.optimisation.edit();
   const double before = worldsSpacingStd(options);
@@ -123,7 +122,7 @@ void setWorldsSpacingStd(double spacing_std, Session& session) {
   if (options.free_board_size) options.board_spacing_sigma = spacing_std;
 }
 
-// The one that was stands before the others then.
+// Makes a board the world's; the old one becomes the first of the further boards.
 void makeWorlds(std::size_t index, Session& session) {
   const auto place = session.further_boards.begin() + static_cast<std::ptrdiff_t>(index) - 1;
   SessionBoard world = std::move(*place);
@@ -225,13 +224,13 @@ void renameBoard(std::size_t index, const std::string& name, Session& session) {
   const std::vector<std::string> names = boardNames(session);
   const std::string& before = names.at(index);
   if (name == before) return;
-  if (name.empty()) throw badInput(boardKey(session, index), "its name is empty", "Give it one");
+  if (name.empty()) throw badInput(boardKey(session, index), "the name is empty", "Give the board a name");
   if (std::find(names.begin(), names.end(), name) != names.end())
     throw badInput(boardKey(session, index), fmt::format("'{}' is another board's name", name),
-                   "Call one of them otherwise");
+                   "Choose a different name");
   if (isSensorName(session, name))
     throw badInput(boardKey(session, index), fmt::format("'{}' is also a sensor's name", name),
-                   "Call one of them otherwise");
+                   "Choose a different name");
   (index == 0 ? session.board_name : session.further_boards.at(index - 1).name) = name;
   for (SessionCamera& camera : session.cameras)
     if (camera.board == before) camera.board = name;

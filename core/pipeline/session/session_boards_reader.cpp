@@ -18,7 +18,7 @@
 namespace evical {
 namespace {
 
-// A length over many spacings, in the place of spacing_m: beside it, it must say the same.
+// A length over many spacings instead of spacing_m; if both are given, they must agree.
 std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
   const auto map = board.find("measured");
   if (!map) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
   measured.length_m = (*map)["length_m"].real(1e-4, kLargest_m, "m");
   if (const auto node = map->find("std_m")) measured.std_m = node->real(0.0, kLargest_m, "m");
   if (const auto node = board.find("spacing_std"))
-    throw node->error("is said twice: board.measured has a std_m", "Remove one of the two");
+    throw node->error("is given twice: board.measured has a std_m", "Remove one of the two");
   constexpr double kSigmas = 3.0, kRounded = 1e-6;
   const auto spacing = board.find("spacing_m");
   if (!spacing) return measured;
@@ -39,12 +39,11 @@ std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
     throw spacing->error(
         fmt::format("{} m contradicts board.measured: {} m over {} spacings are {:.6g} m each", spacing_m,
                     measured.length_m, measured.spacings, measured.spacing_m()),
-        "Correct one of them, or remove spacing_m; between the first circle and the last there is one "
-        "spacing less than circles");
+        "Correct one of them, or remove spacing_m; n circles in a row have n - 1 spacings");
   return measured;
 }
 
-// Of a check that says which of a map's keys is wrong: "board.radius_m".
+// Runs a check and adds the board's key to its error: "board.radius_m".
 template <class Check>
 void checkedAt(const YamlNode& map, const Check& check) {
   try {
@@ -55,23 +54,23 @@ void checkedAt(const YamlNode& map, const Check& check) {
   }
 }
 
-// Of an AprilGrid also as Kalibr has it: the gap between two tags as a share of a tag's edge.
+// Spacing; for an AprilGrid also in Kalibr's form: the gap between two tags relative to the tag size.
 double readSpacing_m(const YamlNode& map, double tag_size_m) {
   const auto share = map.find("tag_spacing"), spacing = map.find("spacing_m");
   if (share && spacing)
-    throw share->error("says the same as spacing_m, which is there as well",
-                       "Keep spacing_m, from one tag to the next, or tag_spacing, the gap between two tags "
-                       "as a share of tag_size_m");
+    throw share->error("duplicates spacing_m",
+                       "Keep spacing_m (from one tag to the next) or tag_spacing (gap between two tags, "
+                       "relative to tag_size_m)");
   return share ? (1.0 + share->real(1e-3, 100.0, "")) * tag_size_m : map["spacing_m"].real(1e-4, 10.0, "m");
 }
 
-// A file beside the session, or the points themselves.
+// Points in a file relative to the session, or in the session.
 Board readPointsBoard(const YamlNode& map, const std::filesystem::path& folder) {
   map.allowOnly({"type", "points_m", "spacing_std"});
   const YamlNode node = map["points_m"];
   std::vector<Eigen::Vector2d> points_m =
       node.isSequence() ? pointsFrom(node) : loadPoints(besideSession(node, folder));
-  if (points_m.empty()) throw node.error("has no points", "Give at least four, better dozens");
+  if (points_m.empty()) throw node.error("has no points", "Give at least four points, preferably dozens");
   Board board = boardOfPoints(std::move(points_m));
   checkedAt(map, [&] { validate(board); });
   return board;
@@ -100,7 +99,7 @@ Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measur
   return board;
 }
 
-// How well the board was measured, relative; 0: exactly.
+// Relative sigma of the board's spacing; 0: exact.
 void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
   const auto node = board.find("spacing_std");
   if (!node) return;
@@ -120,7 +119,7 @@ void readFirstBoard(const YamlNode& map, const std::filesystem::path& folder, Se
 SessionBoard readFurtherBoard(const YamlNode& map, const std::string& board_name,
                               const std::filesystem::path& folder) {
   if (const auto node = map.find("blinking"))
-    throw node->error("a board that blinks stands alone", "Remove it, or the other boards");
+    throw node->error("a blinking board cannot be combined with others", "Remove it, or the other boards");
   const std::optional<MeasuredLength> measured = readMeasured(map);
   SessionBoard further{{board_name, readBoard(map, measured, folder), spacingStd(measured)}, measured};
   if (const auto node = map.find("spacing_std"))
@@ -130,12 +129,12 @@ SessionBoard readFurtherBoard(const YamlNode& map, const std::string& board_name
 
 }  // namespace
 
-// One, or several by name: the world's first, which is that of the reference.
+// One board, or several by name; the first is that of the reference, which defines the world.
 void readBoards(const YamlNode& root, const std::filesystem::path& folder, Session& session) {
   const auto several = root.find("boards");
   if (!several) return readFirstBoard(root["board"], folder, session);
   if (root.has("board"))
-    throw several->error("is there beside board", "Keep one of the two: boards has them by name");
+    throw several->error("is given in addition to board", "Keep one of the two: boards lists them by name");
   const std::vector<std::string> names = several->keys();
   if (names.empty()) throw several->error("is empty", "Describe at least one board");
   const std::string& seen = session.cameras[session.worldCamera()].board;

@@ -1,4 +1,4 @@
-// A session's `board` or `boards`.
+// Reader for a session's `board` or `boards`.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -8,8 +8,8 @@
 
 namespace evical {
 
-// After the cameras, of which the reference says which board is the world. Files are beside the session, in `folder`.
-// Throws CalibrationError (BadInput, with file, key and line).
+// Must run after the cameras were read, since the reference defines the world's board. Files are relative to
+// `folder`. Throws CalibrationError (BadInput, with file, key and line).
 void readBoards(const YamlNode& root, const std::filesystem::path& folder, Session& session);
 
 }  // namespace evical

@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-// "/davis/left/events" gives "davis_left": all parts but the last, which says the kind.
+// "/davis/left/events" gives "davis_left": all parts except the last, which is the type.
 std::string nameFromStream(const std::string& stream, const std::string& kind) {
   const std::size_t end = stream.rfind('/');
   std::string name = end == std::string::npos ? "" : stream.substr(0, end);
@@ -33,7 +33,7 @@ bool isSensor(const StreamSummary& stream, StreamType type) {
   return stream.info.type == type && stream.count > 0;
 }
 
-// For an IMU with separate streams: the stream of the other sensor with the longest common start of the name.
+// For an IMU with separate streams: the stream of the other sensor with the longest common prefix.
 const StreamSummary* mostAlike(const StreamSummary& stream, const Inspection& inspection) {
   const ImuStreamKind kind = imuStreamKind(stream);
   if (kind != ImuStreamKind::Gyroscope && kind != ImuStreamKind::Accelerometer) return nullptr;
@@ -116,7 +116,7 @@ SessionCamera withSeenResolution(SessionCamera camera, const StreamSummary& stre
   if (known || stream.info.type != StreamType::Events) return camera;
   static constexpr std::array<Resolution, 8> kUsual = {
       {{128, 128}, {240, 180}, {304, 240}, {320, 240}, {346, 260}, {640, 480}, {1280, 720}, {320, 320}}};
-  constexpr int kUnlit_px = 3;  // at the rim, where nothing moved
+  constexpr int kUnlit_px = 3;  // margin at the border without events
   camera.resolution_px = stream.seen_px;
   for (const Resolution& usual : kUsual) {
     const int right_px = usual.width_px - stream.seen_px.width_px,
@@ -157,7 +157,7 @@ void keepReference(Session& session) {
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection) {
   Session found = session;
-  // Where there are events, frames beside them are for who adds them.
+  // If there are events, frames are not added automatically.
   for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
     if (found.cameras.empty()) addSensors(recording, inspection, type, found);
   if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
@@ -179,7 +179,7 @@ std::optional<CalibrationError> whyUseless(const std::filesystem::path& recordin
     return frames || type == StreamType::Events || type == StreamType::Imu || type == StreamType::Points;
   };
   if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
-  std::string problem = "it holds neither events, frames, points nor IMU samples";
+  std::string problem = "it has neither events, frames, points nor IMU samples";
   for (const RecordingFault& fault : inspection.faults) problem += ". " + fault.text;
   return badInput(recording.string(), problem,
                   "Check that the whole file was copied and that the camera's driver was recorded");
@@ -197,7 +197,7 @@ const StreamSummary* streamOf(const std::string& name, const std::filesystem::pa
   return nullptr;
 }
 
-// Frames in the event cameras' recordings, as the cameras that they could be.
+// Remarks on frame streams in the event cameras' recordings: possible additional cameras.
 std::vector<std::string> framesBeside(const SessionCamera& camera,
                                       const std::vector<InspectedRecording>& recordings) {
   std::vector<std::string> lines;
@@ -209,8 +209,8 @@ std::vector<std::string> framesBeside(const SessionCamera& camera,
       if (!isSensor(stream, StreamType::Frames) || !stream.info.readable || !stream.info.timed) continue;
       const bool same = stream.info.resolution_px == camera.resolution_px;
       lines.push_back(
-          fmt::format("There are frames, too, {} as a camera of their own: frames: {{stream: {}{}}}",
-                      same ? "of this sensor perhaps," : "usable", stream.info.name,
+          fmt::format("The recording also has frames, {} as a separate camera: frames: {{stream: {}{}}}",
+                      same ? "possibly of this sensor, usable" : "usable", stream.info.name,
                       same ? ", same_sensor_as: " + camera.name : ""));
     }
   }
@@ -220,37 +220,37 @@ std::vector<std::string> framesBeside(const SessionCamera& camera,
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
-      "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows. "
-      "Measure over as many circles as there are: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005}, "
-      "in the place of spacing_m, has the length over ten spacings and the ruler's sigma.";
+      "The board: give type and dimensions, and remove the '#'. With an IMU it needs an odd number of rows. "
+      "Measure over as many circles as possible: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005} "
+      "replaces spacing_m and has the length over ten spacings and the ruler's sigma.";
   for (const SessionCamera& camera : session.cameras) {
     std::vector<std::string>& own = remarks.sensors[camera.name];
     const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);
     if (!camera.resolution_px.known() && stream != nullptr)
-      own.push_back(
-          fmt::format("resolution_px: [{}, {}]  # not in the recording; this is how far its events reach",
-                      stream->seen_px.width_px, stream->seen_px.height_px));
-    own.emplace_back("intrinsics: camera.yaml  # not known: calibrated first, from the same recording");
+      own.push_back(fmt::format(
+          "resolution_px: [{}, {}]  # not in the recording; derived from the extent of its events",
+          stream->seen_px.width_px, stream->seen_px.height_px));
+    own.emplace_back("intrinsics: camera.yaml  # if absent: calibrated first, from the same recording");
     for (std::string& line : framesBeside(camera, recordings)) own.push_back(std::move(line));
     if (!camera.recording.empty())
       own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
   }
   for (const SessionImu& imu : session.imus) {
     std::vector<std::string>& own = remarks.sensors[imu.name];
-    own.emplace_back("These noise densities are a common IMU's: take yours from its data sheet.");
+    own.emplace_back("These noise densities are typical values: take those of your IMU from its data sheet.");
     if (!imu.recording.empty()) own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
   }
   return remarks;
 }
 
 std::vector<std::string> notesOn(const Session& session) {
-  std::vector<std::string> notes = {"board: fill it in"};
+  std::vector<std::string> notes = {"board: complete its entry"};
   for (const SessionCamera& camera : session.cameras)
     if (!camera.resolution_px.known())
       notes.push_back(
-          fmt::format("cameras.{}: give resolution_px, which the recording does not say", camera.name));
+          fmt::format("cameras.{}: give resolution_px, which is not in the recording", camera.name));
   if (session.imus.empty() && session.cameras.size() == 1)
-    notes.push_back("no IMU: name its recording, too; without one, calibrate the camera " +
+    notes.push_back("there is no IMU: add its recording, or calibrate only the camera " +
                     howTo(HowTo::CalibrateLens));
   return notes;
 }
@@ -270,14 +270,14 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
       addSensors(is_own ? std::filesystem::path() : each.file, each.inspection, type, session);
     }
   };
-  // Where there are events, frames beside them are remarks.
+  // If there are events, frames are only mentioned in remarks.
   for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
     if (session.cameras.empty()) addAll(type);
   addAll(StreamType::Imu);
   if (session.cameras.empty())
     throw badInput(session.recording.string(),
                    "there are no events, frames or points to calibrate a camera from",
-                   "Name the camera's recording, too");
+                   "Give the camera's recording, too");
   keepReference(session);
   validate(session, session.recording.string());
   draft.yaml = sessionYaml(session, folder, remarksOn(session, recordings));

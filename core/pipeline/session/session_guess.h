@@ -1,4 +1,4 @@
-// The session that recordings suggest: their event streams as cameras, their IMUs as IMUs.
+// Session derived from recordings: event streams become cameras, IMU streams IMUs.
 #pragma once
 
 #include "core/base/error.h"
@@ -12,33 +12,33 @@
 
 namespace evical {
 
-// Board and noise keep their defaults; intrinsics are missing: no recording has them.
+// Board and noise keep their defaults; intrinsics are absent, since recordings do not have them.
 Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection);
 
-// A sensor as guessed from its stream, with a name that the session has not given yet. `own_recording`: its
-// file, where it is not the session's.
+// Sensor derived from its stream, with a name that is new in the session. `own_recording`: its file, if it is
+// not the session's.
 SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
                             const std::filesystem::path& own_recording = {});
-// From the stream of one sensor and the recording's matching stream of the other.
+// IMU from the stream of one sensor and the recording's matching stream of the other.
 SessionImu guessedImu(const StreamSummary& stream, const Inspection& inspection, const Session& session,
                       const std::filesystem::path& own_recording = {});
 
-// Where neither the recording nor a lens says how large the sensor is: as large as its events reach, or the usual sensor
-// that they all but fill.
+// Resolution from the extent of the events, if neither the recording nor a lens has it. If a common sensor
+// size is almost filled, it is used.
 SessionCamera withSeenResolution(SessionCamera camera, const StreamSummary& stream);
 // The same for the cameras of a session whose streams are in this file.
 Session withSeenResolutions(Session session, const std::filesystem::path& recording,
                             const Inspection& inspection);
 
-// Where the reference is no longer there, the first that could be it; cameras whose sensor's is gone have their own.
+// Replaces a missing reference by the first possible one, and removes references to missing cameras in
+// same_sensor_as.
 void keepReference(Session& session);
 
-// With the sensors of a further recording that the session lacks: its IMUs where there is none yet, its
-// cameras where there is none.
+// Adds sensors of a further recording: its IMUs if the session has none, its cameras if the session has none.
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection);
 
-// Why nothing can be calibrated from a recording, whatever is filled in; nothing where something can.
+// Error if a recording cannot be used for any calibration; otherwise absent.
 std::optional<CalibrationError> whyUseless(const std::filesystem::path& recording,
                                            const Inspection& inspection);
 
@@ -49,13 +49,13 @@ struct InspectedRecording {
 
 struct SessionDraft {
   Session session;
-  std::string yaml;                // with what is missing as comments
-  std::vector<std::string> notes;  // what to do before it can be calibrated
+  std::string yaml;                // missing entries are comments
+  std::vector<std::string> notes;  // steps before it can be calibrated
 };
 
-// A session file to be filled in, with all sensors of all recordings, the first of which is the session's
-// own; paths relative to `folder`. Throws CalibrationError (BadInput) where they do not make a session: a
-// recording of no use, no camera at all, a recording that is given twice.
+// Draft of a session file with all sensors of all recordings, the first of which is the session's own; paths
+// are relative to `folder`. Throws CalibrationError (BadInput) if this does not make a session: an unusable
+// recording, no camera, a recording that is given twice.
 SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
                           const std::filesystem::path& folder);
 

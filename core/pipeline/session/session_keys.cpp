@@ -19,15 +19,15 @@ template <class Unit, class Names>
 Unit unitFrom(const Names& names, const std::string& key, const std::string& value) {
   const auto found = std::find(names.begin(), names.end(), value);
   if (found == names.end())
-    throw badInput(key, fmt::format("'{}' is none of its values", value),
+    throw badInput(key, fmt::format("'{}' is not a valid value", value),
                    nameAdvice(value, std::vector<std::string>(names.begin(), names.end())));
   return static_cast<Unit>(found - names.begin());
 }
 
 AxesReading axesOrThrow(const std::string& key, const std::string& value) {
   if (const std::optional<AxesReading> axes = axesFrom(value)) return *axes;
-  throw badInput(key, fmt::format("'{}' is no reading of axes", value),
-                 "Give each of x, y and z once, '-' before one that is the other way round: y,x,-z");
+  throw badInput(key, fmt::format("'{}' is not a valid order of axes", value),
+                 "Give each of x, y and z once, with '-' for an inverted axis: y,x,-z");
 }
 
 double clockScaleFrom(const std::string& key, const std::string& value) {
@@ -39,8 +39,8 @@ double clockScaleFrom(const std::string& key, const std::string& value) {
 std::array<double, 2> timeRangeFrom(const YamlNode& node) {
   const std::vector<double> range_s = node.reals(2);
   if (range_s[0] < 0.0 || range_s[1] <= range_s[0])
-    throw node.error(fmt::format("[{}, {}] is no range", range_s[0], range_s[1]),
-                     "Give begin and end in seconds since the recording's start, begin first");
+    throw node.error(fmt::format("[{}, {}] is not a range", range_s[0], range_s[1]),
+                     "Give begin and end, in this order, in seconds since the recording's start");
   return {range_s[0], range_s[1]};
 }
 
@@ -56,7 +56,7 @@ void setInImu(SessionImu& imu, const std::string& key, const std::string& value)
   } else if (key == "clock_scale") {
     imu.clock_scale = clockScaleFrom(key, value);
   } else {
-    throw badInput(key, "no such key of an IMU can be set", nameAdvice(key, kImuKeys));
+    throw badInput(key, "is not a key of an IMU that can be set", nameAdvice(key, kImuKeys));
   }
 }
 

@@ -1,4 +1,4 @@
-// Keys of a session that are set one at a time.
+// Keys of a session that can be set separately.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -11,19 +11,20 @@
 
 namespace evical {
 
-// As readSession; but the recordings of a run may be gone since.
+// Like readSession, but the recordings may be missing.
 Session readSessionOfRun(const std::filesystem::path& file);
 
-// The same from a text; its paths are as seen from `folder`.
+// The same from a text with paths relative to `folder`.
 Session parseSession(const std::string& yaml, const std::filesystem::path& folder);
 
-// Of a file that lists `recordings`, a session for each; of any other the one that it is. Throws as readSession.
+// One session for each entry if the file lists `recordings`; otherwise a single session. Throws as
+// readSession.
 std::vector<Session> readRepeatedSessions(const std::filesystem::path& file);
 
-// A text that is not empty. These three throw CalibrationError (BadInput) at the node.
+// Non-empty text. This and the next two throw CalibrationError (BadInput) at the node.
 std::string nameFrom(const YamlNode& node);
 
-// A file that a session names, which must exist.
+// Path in a session; the file must exist.
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder);
 
 void setFromSession(const YamlNode& node, CalibrationOptions& options, const std::string& option);
@@ -33,10 +34,12 @@ std::array<double, 2> timeRangeFrom(const YamlNode& node);
 
 inline constexpr double kLeastClockScale = 1e-7;
 
-// acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws CalibrationError (BadInput).
+// acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws
+// CalibrationError (BadInput).
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value);
 
-// Repairs of axes are of samples as the session has them read; this is of those that the sensor gives.
+// Repairs of axes refer to samples after the session's axes are applied; the result refers to the sensor's
+// raw axes.
 Repair ofRawAxes(const Repair& repair, const Session& session);
 
 }  // namespace evical

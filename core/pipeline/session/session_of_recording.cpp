@@ -17,8 +17,8 @@ void setRecording(const std::filesystem::path& recording, Session& session) {
   const auto hasOwn = [](const auto& sensor) { return !sensor.recording.empty(); };
   if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
       std::any_of(session.imus.begin(), session.imus.end(), hasOwn) || !session.more_recordings.empty())
-    throw badInput(session.source.string(), "its sensors are in recordings of their own",
-                   "Write a session for the new recordings, and give that in the recording's place");
+    throw badInput(session.source.string(), "its sensors have separate recordings",
+                   "Write a session for the new recordings, and give it instead of the recording");
   session.recording = recording;
   session.time_range_s.reset();
 }

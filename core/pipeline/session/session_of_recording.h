@@ -1,4 +1,4 @@
-// A session whose recording is another one of the same rig.
+// Session with its recording replaced by another one of the same rig.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -7,11 +7,11 @@
 
 namespace evical {
 
-// By its name: YAML is a session, all else a recording.
+// By its extension: YAML is a session, anything else a recording.
 bool isSessionFile(const std::filesystem::path& path);
 
-// All that ties a session to its recording goes. Throws CalibrationError (BadInput) where sensors have recordings of
-// their own, which one file cannot stand for.
+// Sets the recording and removes settings that depend on the old one. Throws CalibrationError (BadInput) if
+// sensors have separate recordings, which one file cannot replace.
 void setRecording(const std::filesystem::path& recording, Session& session);
 
 }  // namespace evical

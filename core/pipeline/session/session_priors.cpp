@@ -12,33 +12,32 @@
 namespace evical {
 namespace {
 
-constexpr double kLargest = 1e6;  // of any number here: beyond it is a slip
+constexpr double kLargest = 1e6;  // of any number here: larger values are typing errors
 
 using Numbers = std::vector<double>;
 
-// Nothing if all are 0, as a result writes it of what was given.
+// Absent if all are 0, as results write them for given values.
 std::optional<Numbers> checkedStd(const YamlNode& node, const Numbers& sigmas) {
   if (std::any_of(sigmas.begin(), sigmas.end(), [](double sigma) { return sigma < 0.0 || sigma > kLargest; }))
-    throw node.error("standard deviations must be above 0, and not absurd",
-                     "Leave it out to hold the value as it is");
+    throw node.error("standard deviations must be positive and plausible", "Remove it to fix the value");
   const auto zeros = std::count(sigmas.begin(), sigmas.end(), 0.0);
   if (zeros == static_cast<std::ptrdiff_t>(sigmas.size())) return std::nullopt;
   if (zeros > 0)
-    throw node.error("is 0 for some numbers and not for others",
-                     "Give each a standard deviation above 0; leave all out to hold the value as it is");
+    throw node.error("is 0 for some numbers but not for others",
+                     "Give each number a standard deviation above 0, or remove it to fix the value");
   return sigmas;
 }
 
-// One for each number, or one for all.
+// One sigma for each number, or one for all.
 std::optional<Numbers> readStd(const YamlNode& node, std::size_t count) {
   return checkedStd(node, node.isSequence() ? node.reals(count) : Numbers(count, node.real()));
 }
 
-// A sigma beside its value: `key` without `of` says nothing.
+// Node of a sigma; `key` without its value `of` is an error.
 std::optional<YamlNode> stdNode(const YamlNode& map, const char* key, const char* of) {
   const auto node = map.find(key);
   if (node && !map.has(of))
-    throw node->error(fmt::format("is there without {}", of), fmt::format("Add {}, or remove it", of));
+    throw node->error(fmt::format("is given without {}", of), fmt::format("Add {}, or remove it", of));
   return node;
 }
 
@@ -50,7 +49,7 @@ Numbers boundedReals(const YamlNode& node, std::size_t count, double largest) {
   Numbers values = node.reals(count);
   for (const double value : values)
     if (std::abs(value) > largest)
-      throw node.error(fmt::format("{} is beyond {}", value, largest), "Check the unit");
+      throw node.error(fmt::format("{} exceeds {}", value, largest), "Check the unit");
   return values;
 }
 
@@ -110,18 +109,18 @@ void readPrior(const YamlNode& sensor, const QuantityInfo& info, std::optional<K
   if (!value) return;
   readValue(*value, info, prior.emplace());
   if (sigma) readSigma(*sigma, info, *prior);
-  // So a result writes what nobody asked for.
+  // A result writes zeros for quantities that were not estimated.
   const bool none = quantityNumbers(prior->value).isZero(0.0);
   if (info.presence == QuantityPresence::WhereNotZero && none && sigma && !prior->sigma) prior.reset();
 }
 
-// Quantities without a prior, and whatever else a result says, are passed over.
+// Reads the quantities of a sensor; those without a prior and other keys of a result are ignored.
 template <class Rows, class Prior>
 void readPriors(const YamlNode& sensor, const Rows& rows, Prior& prior) {
   forEachPriorQuantity(rows, [&](const auto& row) { readPrior(sensor, row.info, row.prior(prior)); });
 }
 
-// A result says of the reference that it is where it is; anything else is none.
+// Removes the reference's pose relative to itself, which results contain as identity; others are errors.
 template <class Rows, class Prior>
 void dropOwnPlace(const YamlNode& sensor, const Rows& rows, Prior& prior) {
   constexpr double kNothing = 1e-9;
@@ -131,10 +130,10 @@ void dropOwnPlace(const YamlNode& sensor, const Rows& rows, Prior& prior) {
       const bool clock = row.info.section == std::string();
       throw sensor.find(clock ? row.info.key : row.info.section)
           .value_or(sensor)
-          .error(clock ? "is that of the reference itself, whose clock is the one that counts"
-                       : "is that of the reference itself",
-                 clock ? "Remove it, or take another reference"
-                       : "Remove it, or take another reference: transforms are relative to it");
+          .error(clock ? "is of the reference itself, whose clock is the time base"
+                       : "is of the reference itself",
+                 clock ? "Remove it, or choose another reference"
+                       : "Remove it, or choose another reference: transforms are relative to it");
     }
     row.prior(prior).reset();
   });
@@ -150,7 +149,7 @@ Sensor& sensorOf(const YamlNode& node, const std::string& name, std::vector<Sens
   throw node.error("the session has no such sensor", nameAdvice(name, names));
 }
 
-// The quantities' keys, in their sections, and those that a result has besides.
+// Keys of the quantities in their sections, and further keys of results.
 template <class Rows>
 void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_list<const char*> besides) {
   std::vector<std::string> keys = quantityKeys(rows);
@@ -185,7 +184,7 @@ void readImuPrior(const YamlNode& map, const std::string& name, Session& session
   if (name == session.reference) dropOwnPlace(map, kImuQuantities, prior);
 }
 
-// Twelve digits survive the way to radians and back.
+// Twelve digits survive the conversion to radians and back.
 std::string sigmaYaml(const QuantityInfo&, double sigma) {
   return quantityYaml(sigma, exactYaml);
 }

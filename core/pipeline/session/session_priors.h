@@ -1,5 +1,5 @@
-// The part of a session that says what is known of its sensors beforehand: `prior.cameras` and `prior.imus`,
-// in the keys of result.yaml, so that an earlier result's sensors can be pasted.
+// Priors of a session's sensors: `prior.cameras` and `prior.imus`, with the keys of result.yaml, so that
+// sensors of an earlier result can be pasted.
 #pragma once
 
 #include "core/base/yaml_node.h"
@@ -9,11 +9,11 @@
 
 namespace evical {
 
-// Into the priors of the session's sensors, which must be there already, as must its reference. Throws
-// CalibrationError (BadInput) with the place of what is wrong.
+// Reads priors of the session's sensors. Sensors and reference must be set before. Throws CalibrationError
+// (BadInput) with the place of the fault.
 void readSensorPriors(const YamlNode& prior, Session& session);
 
-// Indented to stand below `prior:`; empty if nothing is known.
+// Indented for use below `prior:`; empty if there are no priors.
 std::string sensorPriorsYaml(const Session& session);
 
 }  // namespace evical

@@ -33,9 +33,9 @@ Resolution readResolution(const YamlNode& node) {
   return {items[0].integer(1, 30000), items[1].integer(1, 30000)};
 }
 
-constexpr double kLargestOffset_s = 4.6e9;  // times of recordings lie within (kLatestTime_ns)
+constexpr double kLargestOffset_s = 4.6e9;  // covers all times of recordings (kLatestTime_ns)
 
-// How the stream's own times and columns are to be read.
+// Reads clock and columns of a stream.
 template <class Sensor>
 void readTable(const YamlNode& map, Sensor& sensor) {
   if (const auto node = map.find("clock_offset_s"))
@@ -46,7 +46,7 @@ void readTable(const YamlNode& map, Sensor& sensor) {
   if (!columns) return;
   sensor.columns = nameFrom(*columns);
   if (sensor.columns.find('?') != std::string::npos)
-    throw columns->error("has a ?", "Put the column's name there, or - if it is not used");
+    throw columns->error("has a ?", "Replace it by the column's name, or by - if the column is not used");
 }
 
 void readStream(const YamlNode& map, SessionCamera& camera) {
@@ -67,7 +67,7 @@ void readStream(const YamlNode& map, SessionImu& imu) {
   imu.accelerometer_stream = nameFrom(map["accelerometer"]);
 }
 
-// Which stream of which file, in which clock.
+// File, stream and clock of a sensor.
 template <class Sensor>
 Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
   Sensor sensor;
@@ -78,14 +78,14 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const Ses
   return sensor;
 }
 
-// Points that another program has found are a table of their own, whose one stream has the file's name.
+// Points from another program are a separate table, whose only stream has the file's name.
 SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_name,
                                const SessionFolder& folder) {
   const auto points = map.find("points");
   if (!points) return readSource<SessionCamera>(map, camera_name, folder);
   for (const char* const other : {"stream", "recording"})
     if (const auto node = map.find(other))
-      throw node->error("is there beside points, which name a file of their own", "Keep one of the two");
+      throw node->error("cannot be combined with points, which name a separate file", "Keep one of the two");
   SessionCamera camera;
   camera.name = camera_name;
   camera.recording = recordingBeside(*points, folder);
@@ -105,8 +105,7 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, co
   if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = nameFrom(*node);
   if (const auto node = map.find("board")) camera.board = nameFrom(*node);
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
-  if (sigmas && !intrinsics)
-    throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
+  if (sigmas && !intrinsics) throw sigmas->error("is given without intrinsics", "Give intrinsics, too");
   if (!intrinsics) return camera;
   KnownIntrinsics known = intrinsics->isMap() ? KnownIntrinsics{readIntrinsics(*intrinsics), {}}
                                               : readKnownIntrinsics(besideSession(*intrinsics, folder.path),
@@ -152,7 +151,7 @@ SessionImu readImu(const YamlNode& map, const std::string& imu_name, const Sessi
   return imu;
 }
 
-// Groups, and what groups are parts of: "optimisation" of "optimisation.solver".
+// Names of groups and of their parents: "optimisation" of "optimisation.solver".
 std::vector<std::string> groupNames() {
   std::vector<std::string> names;
   for (const OptionSection& section : optionSections()) {
@@ -166,7 +165,7 @@ std::vector<std::string> groupNames() {
   return names;
 }
 
-// Both `grid: {least_circles: 7}` and `grid.least_circles: 7`, and below `tuning` likewise.
+// Accepts `grid: {least_circles: 7}` and `grid.least_circles: 7`, also below `tuning`.
 void setOptions(const YamlNode& map, const std::string& group, CalibrationOptions& options) {
   for (const std::string& key : map.keys()) {
     const YamlNode value = map[key];
@@ -177,7 +176,7 @@ void setOptions(const YamlNode& map, const std::string& group, CalibrationOption
     }
     const std::vector<std::string> groups = groupNames();
     if (name + "." != kTuning && std::find(groups.begin(), groups.end(), nameInTables(name)) == groups.end())
-      throw value.error("no such group of options", nameAdvice(name, groups));
+      throw value.error("is not a group of options", nameAdvice(name, groups));
     setOptions(value, name, options);
   }
 }
@@ -205,25 +204,26 @@ void readSensors(const YamlNode& root, const SessionFolder& folder, Session& ses
     session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
 }
 
-// Cameras of one sensor share lens and pose, or, all of them, are compared.
+// Cameras of one sensor share lens and pose; for all of them this can be checked instead.
 void readSharing(const YamlNode& cameras, Session& session) {
   std::optional<bool> checked;
   for (const SessionCamera& camera : session.cameras) {
     const YamlNode map = cameras[camera.name];
     const auto node = map.find("same_sensor_check");
     if (node && camera.same_sensor_as.empty())
-      throw node->error("says nothing without same_sensor_as", "Name the other camera there, or remove this");
+      throw node->error("has no effect without same_sensor_as",
+                        "Add same_sensor_as with the other camera, or remove this");
     if (camera.same_sensor_as.empty()) continue;
     const bool check = node && node->choice({"false", "true"}) == 1;
     if (checked && *checked != check)
-      throw node.value_or(map).error("is not the same for all cameras that share a sensor",
+      throw node.value_or(map).error("differs between cameras that share a sensor",
                                      "Check all of them, or none");
     checked = check;
   }
   if (checked && *checked) session.options.optimisation.edit().share_sensors = false;
 }
 
-// Where on earth it was recorded.
+// Gravity from the place of the recording.
 void readGravity(const YamlNode& map, CalibrationOptions& options) {
   map.allowOnly({"latitude_deg", "height_m"});
   const double latitude_deg = map["latitude_deg"].real(-90.0, 90.0, "deg");
@@ -240,13 +240,13 @@ void readPriors(const YamlNode& map, Session& session) {
   const auto gravity_std = map.find("gravity_norm_std_m_s2");
   if (const auto node = map.find("gravity_norm_m_s2")) {
     setFromSession(*node, session.options, "initialisation.gravity_m_s2");
-    session.options.optimisation.edit().free_gravity_norm = gravity_std.has_value();  // else it is given
+    session.options.optimisation.edit().free_gravity_norm = gravity_std.has_value();  // otherwise fixed
   }
   if (gravity_std) setFromSession(*gravity_std, session.options, "optimisation.gravity_norm_sigma_m_s2");
   readSensorPriors(map, session);
 }
 
-// One, or of a blinking board several.
+// One recording, or several of a blinking board.
 void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& session) {
   if (!node.isSequence()) {
     session.recording = recordingBeside(node, folder);
@@ -261,13 +261,13 @@ void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& 
 
 void checkSessionRoot(const YamlNode& root) {
   if (!root.isMap() || !root.has("evical_session"))
-    throw root.error("is no session file: the key evical_session is missing", howTo(HowTo::MakeSession));
+    throw root.error("is not a session file: the key evical_session is missing", howTo(HowTo::MakeSession));
   root.allowOnly({"evical_session", "recording", "recordings", "time_range_s", "board", "boards", "gravity",
                   "cameras", "imus", "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
 }
 
-// All but its recording, which `read_recording` fills in.
+// Reads a session; `read_recording` sets its recording.
 template <class ReadRecording>
 Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file,
                     const ReadRecording& read_recording) {
@@ -291,7 +291,7 @@ Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std
 Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file) {
   checkSessionRoot(root);
   if (const auto several = root.find("recordings"))
-    throw several->error("lists recordings that are calibrated one by one",
+    throw several->error("lists recordings to be calibrated one by one",
                          "Give it " + howTo(HowTo::CalibrateEach) + ", or name one as recording");
   return sessionFrom(root, folder, file,
                      [&](Session& session) { readRecordings(root["recording"], folder, session); });
@@ -309,19 +309,20 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
   const auto several = root.find("recordings");
   if (!several) return {readSession(file)};
   if (root.has("recording"))
-    throw several->error("is there beside recording", "Keep one of the two: recordings lists them all");
+    throw several->error("is given in addition to recording", "Keep one of the two: recordings lists all");
   const SessionFolder folder{file.parent_path()};
   std::vector<Session> sessions;
   for (const YamlNode& item : several->items())
     sessions.push_back(sessionFrom(
         root, folder, file, [&](Session& session) { session.recording = recordingBeside(item, folder); }));
-  if (sessions.empty()) throw several->error("is empty", "Name two recordings or more");
+  if (sessions.empty()) throw several->error("is empty", "Name at least two recordings");
   for (const Session& session : sessions) {
     const auto hasOwn = [](const auto& sensor) { return !sensor.recording.empty(); };
     if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
         std::any_of(session.imus.begin(), session.imus.end(), hasOwn))
-      throw several->error("lists recordings, but a sensor has one of its own",
-                           "Write a session for each, and give all of them " + howTo(HowTo::CalibrateEach));
+      throw several->error(
+          "lists recordings, but a sensor has a separate recording",
+          "Write a session for each recording, and give all of them " + howTo(HowTo::CalibrateEach));
   }
   return sessions;
 }
@@ -334,7 +335,7 @@ Session parseSession(const std::string& yaml, const std::filesystem::path& folde
   return oneSessionFrom(YamlNode::parse(yaml, "session"), {folder, true}, {});
 }
 
-// What a file may not say must not be in what would be written as one.
+// Validates the members by the same rules as a file: the session is written and read again.
 void validateMembers(const Session& session) {
   const std::string place = session.source.empty() ? "session" : session.source.string();
   static_cast<void>(oneSessionFrom(YamlNode::parse(sessionYaml(session, "."), place), {".", true}, place));

@@ -29,7 +29,7 @@ ImuUncertainty sigmasOfCalibration(bool reference) {
   return sigma;
 }
 
-// Alternately, as a recorder would write them.
+// Writes samples in time order, as a recorder does.
 void writeSamples(const DriveScenario& scenario, RecordingWriter& writer, SimulationSummary& summary,
                   const RunContext& context) {
   std::vector<std::vector<ImuSample>> samples;

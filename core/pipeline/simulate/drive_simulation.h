@@ -1,5 +1,5 @@
-// A scenario of IMUs alone becomes a log in a folder: recording.bag (or one of another format), truth.yaml, the result
-// of the calibration that the IMUs had before anything changed (calibration/result.yaml), trajectory.csv where asked for.
+// Simulates a scenario with IMUs only as a log in a folder: recording.bag (or another format), truth.yaml,
+// the IMUs' calibration before any change (calibration/result.yaml), and trajectory.csv if requested.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,11 +12,11 @@
 
 namespace evical {
 
-// The folder is made if need be; truth.yaml comes last. `session` of the summary is the old result.
+// Creates the folder if necessary; truth.yaml is written last. `session` of the summary is the old result.
 SimulationSummary simulateDrive(const DriveScenario& scenario, const std::filesystem::path& folder,
                                 const RunContext& context, const std::string& format_name = {});
 
-// What a calibration had said of the IMUs before all steps, with sigmas as one has them.
+// Calibration of the IMUs before all steps, with typical sigmas.
 NamedResult calibrationBefore(const DriveScenario& scenario);
 
 }  // namespace evical

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kQueuedPackets = 16;
 
-struct Abandoned {};  // nobody takes the events any more
+struct Abandoned {};  // the receiver of the events has gone
 
 class CameraThread {
  public:
@@ -55,7 +55,7 @@ class CameraThread {
   BoundedQueue<std::vector<Event>> queue_;
   std::optional<std::vector<Event>> next_;
   std::exception_ptr failure_;  // set before the queue closes
-  std::jthread thread_;         // last: it uses the others
+  std::jthread thread_;         // declared last: it uses the other members
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Events of all event cameras of a scenario as one stream in order of time, a thread a camera.
+// Events of all event cameras of a scenario as one stream in time order, with one thread per camera.
 #pragma once
 
 #include "core/base/progress.h"
@@ -10,7 +10,8 @@
 
 namespace evical {
 
-// Calls `sink` in the caller's thread with packets of about 10 ms; throws what it or a simulation throws.
+// Calls `sink` in the caller's thread with packets of about 10 ms; rethrows exceptions of `sink` and the
+// simulations.
 void simulateCameras(const Scenario& scenario,
                      const std::function<void(std::size_t camera, EventSpan events)>& sink,
                      const RunContext& context);

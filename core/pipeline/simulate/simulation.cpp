@@ -48,7 +48,7 @@ std::vector<StreamInfo> streamsOf(const Scenario& scenario) {
   return streams;
 }
 
-// IMU samples go out alongside the events, as a recorder would write them.
+// Writes IMU samples between the events, as a recorder does.
 class ImuFeed {
  public:
   ImuFeed(std::size_t stream, std::vector<ImuSample> samples)
@@ -72,7 +72,7 @@ class ImuFeed {
   std::size_t next_ = 0;
 };
 
-// Of the streams of streamsOf, which not every format calls as the scenario does.
+// Sets the stream names that the format uses, in the order of streamsOf.
 void takeNames(const std::vector<std::string>& names, Scenario& scenario) {
   auto name = names.begin();
   for (SimulatedCamera& camera : scenario.cameras)
@@ -80,7 +80,7 @@ void takeNames(const std::vector<std::string>& names, Scenario& scenario) {
   for (SimulatedImu& imu : scenario.imus) imu.stream = *name++;
 }
 
-// Whole or not, the folder that it is in is made aside.
+// Writes directly: the folder is a temporary one.
 void writePicture(const std::filesystem::path& path, const std::string& content) {
   std::ofstream file(path, std::ios::binary);
   file.write(content.data(), static_cast<std::streamsize>(content.size()));
@@ -112,7 +112,8 @@ void writeFrames(const Scenario& scenario, std::int64_t start_ns, const std::fil
   }
 }
 
-// Where all is made until it is whole: in the folder that it is for, so that it can be moved there.
+// Temporary folder for all files until they are complete; inside the target folder, so that they can be
+// moved.
 class Workshop {
  public:
   explicit Workshop(const std::filesystem::path& folder) {
@@ -132,7 +133,7 @@ class Workshop {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  // All that is in it takes its place in `folder`, these two last.
+  // Moves all files to `folder`, these two last.
   void deliver(const std::filesystem::path& folder, const std::string& truth,
                const std::string& session) const {
     std::vector<FileMove> moves;
@@ -155,7 +156,7 @@ void writeRecording(const Scenario& scenario, RecordingWriter& writer, Recording
                     SimulationSummary& summary, const RunContext& context) {
   const bool apart = &writer != &imu_writer;
   std::vector<ImuFeed> feeds;
-  std::vector<std::size_t> streams;  // by camera; of frame cameras none is used
+  std::vector<std::size_t> streams;  // by camera; unused for frame cameras
   std::size_t next = 0;
   for (const SimulatedCamera& camera : scenario.cameras) {
     streams.push_back(next);
@@ -178,7 +179,7 @@ void writeRecording(const Scenario& scenario, RecordingWriter& writer, Recording
   if (apart) imu_writer.finish();
 }
 
-// Writes what users of Prophesee cameras have: the camera's file, and a table of the IMU next to it.
+// Writes the files of Prophesee cameras: the camera's file, and a separate table for the IMU.
 void writeApart(const std::filesystem::path& made, const RecordingFormat& format, Scenario& named,
                 SimulationSummary& summary, const RunContext& context) {
   std::vector<StreamInfo> events = streamsOf(named), imus;
@@ -187,7 +188,7 @@ void writeApart(const std::filesystem::path& made, const RecordingFormat& format
   std::erase_if(events, is_imu);
   if (events.size() != 1)
     throw badInput(howTo(HowTo::Option, {"format"}) + " " + std::string(format.name),
-                   fmt::format("holds the events of one camera, and the scenario has {}", events.size()),
+                   fmt::format("supports events of one camera, but the scenario has {}", events.size()),
                    "Choose another format");
   const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, events);
   const std::unique_ptr<RecordingWriter> table = createCsv(made.parent_path(), imus);
@@ -217,7 +218,7 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   if (streams.empty()) {
     summary.recording = folder / kFramesFolder;
   } else if (format.one_camera) {
-    // These files cannot hold absolute times. The names of frames need at least 12 digits.
+    // These files cannot contain absolute times. The names of frames need at least 12 digits.
     named.start_ns = 200 * kSecond_ns;
     writeApart(made, format, named, summary, context);
   } else {

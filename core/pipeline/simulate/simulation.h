@@ -1,5 +1,5 @@
-// A scenario becomes a recording in a folder: recording.bag (or one
-// of another format), session.yaml, truth.yaml.
+// Simulates a scenario as a recording in a folder: recording.bag (or another format), session.yaml,
+// truth.yaml.
 #pragma once
 
 #include "core/base/progress.h"
@@ -16,8 +16,8 @@ struct SimulationSummary {
   std::filesystem::path recording, session, truth;
 };
 
-// The folder is made if need be. session.yaml and truth.yaml come last, when the recording is whole. The
-// format is one of recordingFormats(); empty: the scenario's.
+// Creates the folder if necessary. session.yaml and truth.yaml are written last, after the complete
+// recording. The format is one of recordingFormats(); empty: the scenario's.
 SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
                            const RunContext& context, const std::string& format_name = {});
 

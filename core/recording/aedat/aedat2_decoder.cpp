@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kHalfRange_us = std::int64_t{1} << 31;
 constexpr std::int64_t kLargestWrapped_us = kLatestTime_ns / kMicrosecond_ns - 4 * kHalfRange_us;
-// The MPU-6150's at the full scales that jAER sets: 4 g and 500 deg/s.
+// MPU-6150 at the full scales that jAER sets: 4 g and 500 deg/s.
 constexpr double kAcceleration_per_g = 8192.0, kRate_per_deg_s = 65.5;
 constexpr std::uint32_t kImuMask = 0x8000'0C00;
 
@@ -67,7 +67,7 @@ std::size_t Aedat2Decoder::decode(std::string_view bytes, std::uint64_t offset, 
 }
 
 // A step of more than half the range is a wrap of the counter, or, in the other direction, a late record from
-// before it.
+// before a wrap.
 std::int64_t Aedat2Decoder::unwrapped_us(std::int32_t time_us, std::uint64_t byte) {
   const std::int64_t step_us = started_ ? std::int64_t{time_us} - last_us_ : 0;
   if (step_us < -kHalfRange_us && wrapped_us_ <= kLargestWrapped_us) {
@@ -134,8 +134,8 @@ void Aedat2Decoder::addEvent(unsigned x, unsigned y, bool brighter, std::int64_t
   }
 }
 
-// Seven follow one another: the acceleration's axes, the temperature, the gyroscope's axes, as the chip itself
-// has them.
+// Seven consecutive words: the acceleration's axes, the temperature, the gyroscope's axes, in the chip's
+// order.
 void Aedat2Decoder::addImuWord(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte) {
   const unsigned code = davisImuCode(address);
   if (code != next_imu_word_ && code != 0) {

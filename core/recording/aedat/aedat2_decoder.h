@@ -1,4 +1,4 @@
-// The pairs of address and time that an AEDAT 2.0 file consists of behind its header.
+// Decoder of the pairs of address and time after the header of an AEDAT 2.0 file.
 #pragma once
 
 #include "core/recording/aedat/aps_frames.h"
@@ -35,10 +35,10 @@ class Aedat2Decoder : public BlockDecoder {
   Resolution size_px_;
   double imu_ranges_;
   ApsFrames aps_;
-  std::uint64_t frame_byte_ = 0;  // where the frame begins that is not whole yet
+  std::uint64_t frame_byte_ = 0;  // where the incomplete frame begins
   bool started_ = false;
   std::int32_t last_us_ = 0;
-  std::int64_t wrapped_us_ = 0;  // what wraps have added
+  std::int64_t wrapped_us_ = 0;  // sum of all wraps
   std::array<double, 7> imu_words_{};
   unsigned next_imu_word_ = 0;
 };
@@ -47,11 +47,11 @@ inline constexpr std::size_t kAedat2Record_bytes = 8;
 std::uint32_t bigEndian32(const char* bytes);
 
 bool isDavisImuWord(std::uint32_t address);
-// The number of the word: 0 to 2 are x, y and z of the acceleration.
+// Number of the word: 0 to 2 are x, y and z of the acceleration.
 unsigned davisImuCode(std::uint32_t address);
-// An acceleration's, at a full scale of 4 g.
+// Acceleration at a full scale of 4 g.
 double davisAcceleration_g(std::uint32_t address);
-// Places of an event of a DAVIS as the address has them: from the bottom right.
+// Coordinates of a DAVIS event in the address: from the bottom right.
 bool isDavisEvent(std::uint32_t address);
 unsigned davisX(std::uint32_t address);
 unsigned davisY(std::uint32_t address);

@@ -30,7 +30,8 @@ struct Header {
   std::uint64_t size = 0;
 };
 
-// The bytes of the first event may begin as a header's line does; they are hardly text up to an end of line.
+// The first event's bytes may look like the begin of a header line, but hardly like text up to an end of
+// line.
 bool isHeaderLine(std::string_view line) {
   const auto isText = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -70,7 +71,7 @@ std::string bytesAt(std::ifstream& file, std::uint64_t offset, std::size_t most)
 }
 
 struct Look {
-  bool wide = false;  // most addresses have more bits than a DVS128's
+  bool wide = false;  // most addresses have more bits than those of a DVS128
   bool imu = false, frames = false;
   Resolution reach_px;                // of a DAVIS's events
   std::vector<double> accelerations;  // norms, at a full scale of 4 g
@@ -107,7 +108,7 @@ Look lookAt(std::string_view bytes) {
   return look;
 }
 
-// The smallest that covers all events so far.
+// Smallest sensor that covers all events so far.
 Resolution smallestDavis(const Resolution& reach_px) {
   for (const Resolution& size_px : kDavisSizes)
     if (reach_px.width_px <= size_px.width_px && reach_px.height_px <= size_px.height_px) return size_px;
@@ -125,15 +126,14 @@ StreamInfo aedat2Stream(const char* name, StreamType type, const std::string& ch
   return stream;
 }
 
-// Facts that are missing in the header, from the events.
+// Determines facts that are missing in the header from the events.
 void guessChip(const Look& look, std::string& chip, Resolution& size_px, BlockFormat& format) {
   chip = look.wide ? "DAVIS" : "DVS128";
   size_px = look.wide ? smallestDavis(look.reach_px) : aedat::chipSize(chip);
   format.notes.push_back(
       {"events", FaultKind::Guess, 0.0,
-       fmt::format(
-           "The header does not name the sensor; by its events it is taken for a {} of {} x {} pixels.", chip,
-           size_px.width_px, size_px.height_px)});
+       fmt::format("The header does not name the sensor; its events suggest a {} of {} x {} pixels.", chip,
+                   size_px.width_px, size_px.height_px)});
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
   if (chip.empty()) guessChip(look, chip, size_px, format);
   if (!size_px.known()) {
     throw badInput(path.string(), fmt::format("this is an AEDAT 2.0 file of the sensor \"{}\"", chip),
-                   "Readable are those of DVS128 and DAVIS sensors; convert it with jAER or DV");
+                   "Convert it with jAER or DV; only DVS128 and DAVIS sensors are supported");
   }
   const AddressLayout layout = chip.starts_with("DVS128") ? AddressLayout::Dvs128 : AddressLayout::Davis;
   const double ranges = imuRanges(look);
@@ -165,7 +165,7 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
              "The file does not state the IMU's full scales. {:g} g and {:g} deg/s are assumed, which jAER "
              "sets{}. Check that the acceleration at rest is 1 g.",
              4.0 * ranges, 500.0 * ranges,
-             ranges == 1.0 ? "" : " for some sensors: at its usual ones gravity would be half as large")});
+             ranges == 1.0 ? "" : " for some sensors: its usual ones would give half of gravity")});
   }
   if (layout == AddressLayout::Davis && look.frames) {
     format.streams.push_back(aedat2Stream("frames", StreamType::Frames, chip));

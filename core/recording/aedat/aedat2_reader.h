@@ -1,6 +1,5 @@
-// AEDAT 2.0, as jAER records it: events of a DVS128 or a DAVIS, and a DAVIS's IMU samples. Its frames, which
-// are stored pixel by pixel between the events, are skipped. Source: iniVation's "AEDAT file formats", jAER
-// (DavisChip, IMUSample, DVS128).
+// AEDAT 2.0, as jAER records it: events of a DVS128 or a DAVIS, and a DAVIS's IMU samples and frames.
+// Source: iniVation's "AEDAT file formats", jAER (DavisChip, IMUSample, DVS128).
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -13,7 +12,7 @@ namespace evical {
 
 inline constexpr std::string_view kAedat2Magic = "#!AER-DAT2.0";
 
-// Throws CalibrationError (BadInput) where the chip is not one of these.
+// Throws CalibrationError (BadInput) for other chips.
 std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path);
 
 }  // namespace evical

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kLargestPacket_bytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t kFrameHeader_bytes = 36;
 constexpr std::int32_t kSmallestEvent_bytes = 8;
-constexpr std::int32_t kTimeOffset_bytes = 4;  // of the types whose size is known
+constexpr std::int32_t kTimeOffset_bytes = 4;  // of the types with a known size
 constexpr std::int16_t kLastType = 12;
 constexpr std::int16_t kMostSources = 256;
 
@@ -69,7 +69,7 @@ FrameFields takeFrameFields(ByteCursor& cursor) {
   return fields;
 }
 
-// Values have 16 bits; of colours the upper 8 are handed out.
+// Values have 16 bits; for colours only the upper 8 are returned.
 void takePixels(std::string_view values, unsigned channels, Frame& frame) {
   const std::size_t width = static_cast<std::size_t>(frame.size_px.width_px);
   if (channels == 1) {
@@ -101,7 +101,7 @@ bool decodeFrame(const PacketHeader& header, std::string_view bytes, std::vector
   }
   if (fields.left != 0 || fields.top != 0) {
     unusable =
-        fmt::format("show a part of the sensor, from column {} and row {} on", fields.left, fields.top);
+        fmt::format("show only a part of the sensor, from column {} and row {}", fields.left, fields.top);
     return true;
   }
   const std::string_view values =

@@ -22,19 +22,19 @@ struct PacketHeader {
   int source = 0;
   std::uint64_t event_bytes = 0;
   std::int64_t overflow = 0;  // of the events' 31 bits of time
-  std::uint64_t events = 0;   // also those that are not valid
+  std::uint64_t events = 0;   // including invalid ones
   std::uint64_t valid = 0;
   std::uint64_t dataBytes() const { return event_bytes * events; }
 };
 
-// Nothing where the numbers contradict one another.
+// nullopt if the numbers contradict one another.
 std::optional<PacketHeader> decodeHeader(std::string_view bytes);
 
-// All append, from the packet's bytes after its header; false if there are invalid times, or pictures larger
-// than their place: these are skipped.
+// All append, from the packet's bytes after its header; false if there are invalid times, or frames larger
+// than their declared size: these are skipped.
 bool decodePolarity(const PacketHeader& header, std::string_view bytes, std::vector<Event>& events);
 bool decodeImu(const PacketHeader& header, std::string_view bytes, std::vector<RawImuSample>& samples);
-// `unusable` is the end of a sentence on frames that are intact and skipped; empty otherwise.
+// `unusable` completes a sentence on frames that are intact but skipped; empty otherwise.
 bool decodeFrames(const PacketHeader& header, std::string_view bytes, std::vector<Frame>& frames,
                   std::string& unusable);
 

@@ -39,7 +39,7 @@ std::string_view withoutLineEnd(std::string_view line) {
   return line;
 }
 
-// "#Source 1: DAVIS240C"; those of programs before it begin with "#-Source".
+// "#Source 1: DAVIS240C"; in files of earlier programs the line begins with "#-Source".
 void takeSource(std::string_view line, std::map<int, std::string>& sources) {
   constexpr std::string_view kSource = "#Source ";
   if (!line.starts_with(kSource)) return;
@@ -72,13 +72,13 @@ void Aedat3Reader::readFileHeader() {
     if (line.starts_with(kFormat) && line.substr(kFormat.size()) != "RAW") {
       throw badInput(path_,
                      fmt::format("this is an AEDAT 3.1 file of the format {}", line.substr(kFormat.size())),
-                     "Readable is RAW; convert it to AEDAT4 with iniVation's DV");
+                     "Convert it to AEDAT4 with iniVation's DV; only RAW is supported");
     }
     if (line != kEnd) continue;
     data_position_ = at;
     return;
   }
-  throw badInput(path_, "the header has no line #!END-HEADER: it is cut off or damaged",
+  throw badInput(path_, "the header has no line #!END-HEADER: the file is cut off or damaged",
                  "Copy the file again");
 }
 
@@ -90,7 +90,7 @@ void Aedat3Reader::listStreams() {
   while (nextPacket(header, position, false)) {
     const StreamType type = streamTypeOf(header.type);
     if (type == StreamType::Other) continue;
-    const bool triggers = type == StreamType::Triggers;  // other things, too: counted when they are read
+    const bool triggers = type == StreamType::Triggers;  // and others; counted while reading
     counts[{header.source, type}] += triggers ? 0 : header.valid;
     if (!triggers) sources.insert(header.source);
   }
@@ -114,7 +114,7 @@ void Aedat3Reader::addStream(const Key& key, std::uint64_t count, bool several_s
   info.angular_rate_unit = AngularRateUnit::DegreesPerSecond;
   if (type == StreamType::Events && !info.resolution_px.known())
     addFault(info.name, FaultKind::NoResolution,
-             "The header does not tell the sensor's size; the session must.");
+             "The header does not state the sensor's size. Set it in the session.");
   stream_of_key_[key] = streams_.size();
   states_.emplace_back().selected = info.readable && type != StreamType::Frames;
   streams_.push_back(std::move(info));
@@ -134,7 +134,8 @@ bool Aedat3Reader::isHeaderAt(std::uint64_t position, PacketHeader& header) {
   return true;
 }
 
-// Data may look like a header: the packet must end in the file, and at its end or before another.
+// Data may look like a header: the packet must end in the file, and at the file's end or before another
+// packet.
 std::uint64_t Aedat3Reader::findHeader(std::uint64_t from) {
   PacketHeader header, next;
   for (std::uint64_t at = from; at + aedat3::kHeader_bytes <= file_.size(); ++at) {
@@ -146,8 +147,8 @@ std::uint64_t Aedat3Reader::findHeader(std::uint64_t from) {
   return file_.size();
 }
 
-// `position` is the beginning of the packet's data. Damage is reported the second time it is met, when it is
-// read.
+// `position` is the beginning of the packet's data. Damage is reported on the second pass, which reads the
+// data.
 bool Aedat3Reader::nextPacket(PacketHeader& header, std::uint64_t& position, bool say) {
   while (position_ < file_.size()) {
     const std::uint64_t at = position_;
@@ -160,10 +161,10 @@ bool Aedat3Reader::nextPacket(PacketHeader& header, std::uint64_t& position, boo
     if (say && cut) {
       addFault(
           "", FaultKind::Truncated,
-          fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_.size()));
+          fmt::format("The last packet, at byte {} of {}, is incomplete; it is left out.", at, file_.size()));
     } else if (say) {
       addFault("", FaultKind::Corrupt,
-               fmt::format("The packet at byte {} of {} is damaged; reading goes on at byte {}.", at,
+               fmt::format("The packet at byte {} of {} is damaged; reading continues at byte {}.", at,
                            file_.size(), position_));
     }
   }
@@ -197,7 +198,7 @@ void Aedat3Reader::decode(std::size_t stream, const PacketHeader& header, std::u
   putInOrder(stream, packet.events);
   if (whole) return;
   addFault(streams_[stream].name, FaultKind::Corrupt,
-           fmt::format("The packet at byte {} holds times or sizes that are none; these are left out.",
+           fmt::format("The packet at byte {} has invalid times or sizes; these are left out.",
                        position - aedat3::kHeader_bytes));
 }
 
@@ -225,8 +226,7 @@ void Aedat3Reader::countSpecial(std::size_t stream, const PacketHeader& header, 
   streams_[stream].messages = states_[stream].counted;
   resets_ += counts.resets;
   if (counts.resets > 0 && resets_ > 1)
-    addFault("", FaultKind::BackwardTime,
-             "The camera's clock was set to 0 within the recording; time begins anew.");
+    addFault("", FaultKind::BackwardTime, "The camera's clock was reset to 0 within the recording.");
 }
 
 void Aedat3Reader::putInOrder(std::size_t stream, std::vector<Event>& events) {

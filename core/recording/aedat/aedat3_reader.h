@@ -29,7 +29,7 @@ class Aedat3Reader : public RecordingReader {
   std::string format() const override { return "aedat3"; }
 
  private:
-  using Key = std::pair<int, StreamType>;  // source, what it gives
+  using Key = std::pair<int, StreamType>;  // source, type of its data
   struct State {
     bool selected = false;
     std::uint64_t counted = 0;  // triggers
@@ -53,11 +53,11 @@ class Aedat3Reader : public RecordingReader {
   std::string path_;
   RandomAccessFile file_;
   std::uint64_t data_position_ = 0, position_ = 0;
-  std::map<int, std::string> sources_;  // "DAVIS240C", where the header names them
+  std::map<int, std::string> sources_;  // "DAVIS240C", if the header names them
   std::map<Key, std::size_t> stream_of_key_;
   std::vector<StreamInfo> streams_;
   std::vector<State> states_;
-  std::vector<Event> rest_;  // behind a large step back in time
+  std::vector<Event> rest_;  // after a large step back in time
   std::size_t rest_stream_ = 0;
   std::uint64_t resets_ = 0;
   std::vector<RecordingFault> faults_;

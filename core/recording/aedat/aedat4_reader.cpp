@@ -17,7 +17,7 @@ constexpr std::int32_t kLargestId = 9999;
 
 struct PacketType {
   std::string_view id;
-  const char* name;  // where the file names none
+  const char* name;  // if the file has no name
   StreamType type;
 };
 constexpr PacketType kPacketTypes[] = {{"EVTS", "events", StreamType::Events},
@@ -45,7 +45,7 @@ Aedat4Reader::Aedat4Reader(const std::filesystem::path& path) : path_(path.strin
 
 aedat::FileHeader Aedat4Reader::readFileHeader() {
   const std::uint64_t at = aedat::kMagic.size();
-  const char* advice = "Copy the file again; if this is how it was recorded, it cannot be read";
+  const char* advice = "Copy the file again; if it was recorded like this, it cannot be read";
   std::string_view bytes;
   const bool has_size = file_.read(at, 4, bytes);
   const std::uint64_t size = has_size ? std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 : 4;
@@ -62,7 +62,7 @@ aedat::FileHeader Aedat4Reader::readFileHeader() {
   return *header;
 }
 
-// Sets table_position_ if the table is there and whole.
+// Sets table_position_ if the table exists and is complete.
 std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::int64_t position) {
   std::map<std::int32_t, Listed> listed;
   const auto at = static_cast<std::uint64_t>(position);
@@ -147,13 +147,13 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
   }
 }
 
-// For descriptions without a type, or with a damaged one.
+// For descriptions with a missing or damaged type.
 void Aedat4Reader::takeTypeOfPackets(aedat::StreamDescription& stream, const Listed& listed) {
   const std::string type = typeOfPacket(listed.first_position);
   if (!stream.type.empty() && findType(type)) {
     addFault("", FaultKind::Corrupt,
-             fmt::format("The header says that stream {} is of the type \"{}\"; its packets are \"{}\".",
-                         stream.id, stream.type, type));
+             fmt::format("The header gives stream {} the type \"{}\"; its packets are \"{}\".", stream.id,
+                         stream.type, type));
   }
   if (stream.type.empty() || findType(type)) stream.type = type;
 }
@@ -200,7 +200,7 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
   constexpr std::uint64_t kBlock_bytes = 1 << 20;
   constexpr std::uint64_t kOverlap_bytes = 20;
   const bool packed = compression_ != aedat::Compression::None;
-  // The packet's header precedes the magic number; a type is also preceded by its size and root offset.
+  // The packet's header precedes the magic number; with a type, also its size and root offset do.
   const std::size_t lead = aedat::kPacketHeader_bytes + (packed ? 0 : 8);
   std::vector<std::string_view> marks{aedat::frameMagic(compression_)};
   if (!packed) marks = {"EVTS", "IMUS", "FRME", "TRIG"};
@@ -209,7 +209,7 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
   for (std::uint64_t begin = from; begin < file_.size(); begin += kBlock_bytes) {
     std::string_view bytes;
     if (!file_.read(begin, std::min(kBlock_bytes + kOverlap_bytes, file_.size() - begin), bytes)) break;
-    block = bytes;  // looking at packets reads others
+    block = bytes;  // checking packets reads others
     std::uint64_t nearest = file_.size();
     for (const std::string_view mark : marks) {
       for (std::size_t hit = block.find(mark, lead); hit != std::string::npos;
@@ -242,7 +242,7 @@ void Aedat4Reader::resumeBehind(std::uint64_t position) {
   if (table_position_ != 0) position_ = std::min(position_, table_position_);
 }
 
-// A size that goes past the end may be false, or the recording was cut here.
+// A size beyond the end may be wrong, or the recording was cut here.
 bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
   const std::uint64_t at = header.position;
   resumeBehind(at);
@@ -250,17 +250,17 @@ bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
   if (last && state == HeaderState::Cut) {
     addFault(
         "", FaultKind::Truncated,
-        fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_.size()));
+        fmt::format("The last packet, at byte {} of {}, is incomplete; it is left out.", at, file_.size()));
   } else {
     addFault("", FaultKind::Corrupt,
              fmt::format("The packet at byte {} of {} is damaged; {}.", at, file_.size(),
-                         last ? "nothing behind it can be read"
-                              : fmt::format("reading goes on at byte {}", position_)));
+                         last ? "nothing after it can be read"
+                              : fmt::format("reading continues at byte {}", position_)));
   }
   return !last;
 }
 
-// A frame that ends early was given a false size: what follows it is read then.
+// The size of a frame that ends early was wrong: reading continues after its actual end.
 bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content) {
   std::size_t used = 0;
   const auto size = static_cast<std::uint64_t>(header.size);
@@ -328,7 +328,7 @@ bool Aedat4Reader::handOutRest(Packet& packet) {
   return true;
 }
 
-// The file may not state their number.
+// The file may not state the number of triggers.
 void Aedat4Reader::countListed(std::size_t stream, std::string_view content) {
   StreamState& state = states_[stream];
   state.elements += aedat::countTriggers(content).value_or(0);

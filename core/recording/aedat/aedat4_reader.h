@@ -1,6 +1,6 @@
 // AEDAT4, as iniVation's DV records it: events, IMU samples (in g and deg/s), frames and triggers of one or
-// several cameras; triggers are listed only. The table at the end is used where it is there and whole,
-// and not needed.
+// several cameras; triggers are listed only. The table at the end is used if it is complete,
+// and not required.
 #pragma once
 
 #include "core/recording/aedat/packet_compression.h"
@@ -39,7 +39,7 @@ class Aedat4Reader : public RecordingReader {
   enum class HeaderState { Good, Cut, Damaged, End };
   struct StreamState {
     bool selected = true;
-    std::uint64_t packets = 0, elements = 0;  // of frames and triggers, gone by
+    std::uint64_t packets = 0, elements = 0;  // of frames and triggers so far
     EventOrder order;
   };
   struct Listed {
@@ -70,13 +70,13 @@ class Aedat4Reader : public RecordingReader {
   std::string path_;
   RandomAccessFile file_;
   std::uint64_t data_position_ = 0, position_ = 0;
-  std::uint64_t table_position_ = 0;  // 0: none, or damaged
+  std::uint64_t table_position_ = 0;  // 0: absent or damaged
   aedat::Compression compression_ = aedat::Compression::None;
   std::unique_ptr<aedat::Unpacker> unpacker_;
   std::vector<StreamInfo> streams_;
   std::vector<StreamState> states_;
   std::map<std::int32_t, std::size_t> stream_of_id_;
-  std::vector<Event> rest_;  // behind a large step back in time
+  std::vector<Event> rest_;  // after a large step back in time
   std::size_t rest_stream_ = 0;
   std::vector<RecordingFault> faults_;
 };

@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kAedat4PacketSpan_ns = 10'000'000;  // as DV's cameras
+constexpr std::int64_t kAedat4PacketSpan_ns = 10'000'000;  // as of DV's cameras
 constexpr std::size_t kAedat4PacketEvents = 65'536;
 constexpr std::size_t kAedat4PacketSamples = 1'000;
 
@@ -79,11 +79,11 @@ class Aedat4Writer : public RecordingWriter {
   aedat::StreamDescription describe(const StreamInfo& stream, const aedat::DeviceName& name) {
     const bool events = stream.type == StreamType::Events;
     if (!events && stream.type != StreamType::Imu) {
-      throw badInput(path_, fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+      throw badInput(path_, fmt::format("stream {} has neither events nor IMU samples", stream.name));
     }
     if (events && !stream.resolution_px.known()) {
-      throw badInput(path_, fmt::format("the resolution of stream {} is not known", stream.name),
-                     "AEDAT4 needs it; state it");
+      throw badInput(path_, fmt::format("the resolution of stream {} is unknown", stream.name),
+                     "State it: AEDAT4 needs it");
     }
     aedat::StreamDescription description;
     description.id = static_cast<std::int32_t>(streams_.size());

@@ -20,7 +20,7 @@ bool isApsSample(std::uint32_t address) {
   return (address & kApsMask) != 0 && (read == kReset || read == kSignal);
 }
 
-// Columns are as the image has them, unlike those of events; rows are counted from below.
+// Columns are those of the image, unlike those of events; rows are counted from below.
 std::uint64_t ApsFrames::add(std::uint32_t address, std::int64_t time_ns) {
   const std::uint32_t x = address >> 12 & 0x3FF, y = address >> 22 & 0x1FF;
   const auto width = static_cast<std::uint32_t>(size_px_.width_px),

@@ -1,5 +1,5 @@
-// A DAVIS's frames as AEDAT 2.0 has them: each pixel's voltage is read once after its reset and once after its exposure, and
-// the frame is the difference (as jAER's DavisBaseCamera reads it).
+// A DAVIS's frames in AEDAT 2.0: each pixel's voltage is read once after its reset and once after its
+// exposure, and the frame is the difference (as jAER's DavisBaseCamera reads it).
 #pragma once
 
 #include "core/data/frame.h"
@@ -15,12 +15,12 @@ class ApsFrames {
  public:
   explicit ApsFrames(const Resolution& size_px) : size_px_(size_px) {}
 
-  // Number of samples that turn out to belong to no whole frame, this one or those before it.
+  // Number of samples, this one or earlier ones, that belong to no complete frame.
   std::uint64_t add(std::uint32_t address, std::int64_t time_ns);
-  // Samples of a frame that the file's end cuts.
+  // Number of samples of a frame that is cut by the file's end.
   std::uint64_t left() const { return read_; }
 
-  // Whole ones since the vector was emptied last: at the middle of their exposures, brighter is more.
+  // Complete frames since the vector was last emptied: at the middle of their exposures, brighter is larger.
   std::vector<Frame>& frames() { return frames_; }
   std::uint64_t rolling() const {
     return rolling_;
@@ -34,7 +34,8 @@ class ApsFrames {
     bool has_reset = false, has_signal = false;
   };
   void begin();
-  // The next frame began before this one was whole: with the resets read since the last signal, if any of them are its own.
+  // The next frame began before this one was complete: with the resets since the last signal, if they belong
+  // to it.
   std::uint64_t beginAnew(const Pixel& read_again);
   void takeReset(std::size_t at, std::uint16_t value, std::int64_t time_ns);
   void takeSignal(std::size_t at, std::uint16_t value, std::int64_t time_ns);
@@ -43,7 +44,7 @@ class ApsFrames {
   Resolution size_px_;
   std::vector<Pixel> pixels_;  // row by row
   std::vector<std::uint16_t> values_;
-  std::uint64_t read_ = 0;  // samples of the frame that is not whole yet
+  std::uint64_t read_ = 0;  // samples of the incomplete frame
   std::size_t signals_ = 0;
   std::uint64_t order_ = 0, last_signal_order_ = 0;
   std::int64_t last_reset_ns_ = 0, first_signal_ns_ = 0;

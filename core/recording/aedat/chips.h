@@ -1,4 +1,4 @@
-// The sensors of iniVation and its forerunners, by the names that AEDAT files before version 4 give them.
+// The sensors of iniVation and its predecessors, by their names in AEDAT files before version 4.
 #pragma once
 
 #include "core/geometry/resolution.h"

@@ -1,6 +1,7 @@
-// Google's FlatBuffers, read by hand out of untrusted bytes: size prefix, offset of the root table, four
-// letters that name the type, tables. Nothing is read past the end; any failure makes ok() false for good and
-// yields zeros. Fields that equal their default are absent. Source: flatbuffers.dev, "Internals".
+// Google's FlatBuffers, parsed without a library from untrusted bytes: size prefix, offset of the root table,
+// four letters that name the type, tables. Nothing is read past the end; any failure makes ok() false
+// permanently and yields zeros. Fields that equal their default are absent. Source: flatbuffers.dev,
+// "Internals".
 #pragma once
 
 #include <cstddef>
@@ -27,12 +28,12 @@ class FlatBuffer {
 
   bool ok() const { return ok_; }
   std::string_view identifier() const { return identifier_; }
-  const char* data() const { return bytes_.data(); }  // where positions are counted from
+  const char* data() const { return bytes_.data(); }  // origin of positions
 
   FlatTable root() { return tableAt(0); }
-  FlatTable tableAt(std::size_t position);  // place of the offset to the table
+  FlatTable tableAt(std::size_t position);  // position of the offset to the table
 
-  // Place of a field of `size` bytes; 0 if it is absent.
+  // Position of a field of `size` bytes; 0 if it is absent.
   std::size_t field(const FlatTable& table, std::size_t index, std::size_t size);
 
   template <class Number>
@@ -55,7 +56,7 @@ class FlatBuffer {
   }
 
  private:
-  std::string_view bytes_;  // behind the size prefix
+  std::string_view bytes_;  // after the size prefix
   std::string_view identifier_;
   bool ok_ = false;
 };

@@ -54,7 +54,7 @@ Unpacker::Unpacker(Compression compression)
 
 Unpacker::~Unpacker() = default;
 
-// Both lengths become what was used of them.
+// Both lengths are set to the number of bytes used.
 bool Unpacker::step(const char*& in, std::size_t& in_bytes, char* out, std::size_t& out_bytes,
                     bool& finished) {
   if (isLz4(compression_)) {
@@ -112,7 +112,7 @@ void pack(Compression compression, std::string_view content, std::string& packed
   const std::size_t size =
       lz4 ? LZ4F_compressFrame(packed.data(), packed.size(), content.data(), content.size(), nullptr)
           : ZSTD_compress(packed.data(), packed.size(), content.data(), content.size(), kPacketZstdLevel);
-  // The bound leaves no other reason.
+  // The bound excludes any other reason.
   if (lz4 ? LZ4F_isError(size) != 0 : ZSTD_isError(size) != 0) throw std::bad_alloc();
   packed.resize(size);
 }

@@ -13,7 +13,7 @@ enum class Compression : std::int32_t { None, Lz4, Lz4High, Zstd, ZstdHigh };  /
 inline constexpr std::int32_t kCompressions = 5;
 
 std::string_view compressionName(Compression compression);  // as DV writes it into the XML
-std::string_view frameMagic(Compression compression);       // what packed data begin with
+std::string_view frameMagic(Compression compression);       // first bytes of packed data
 
 class Unpacker {
  public:
@@ -22,9 +22,9 @@ class Unpacker {
   Unpacker(const Unpacker&) = delete;
   Unpacker& operator=(const Unpacker&) = delete;
 
-  // The content of the frame at the front of `packed`, valid until the next call, and how long the frame
-  // is; false if it is damaged, cut off or unreasonably large. Memory grows with what comes out, not
-  // with what a frame claims.
+  // Content of the frame at the front of `packed`, valid until the next call, and the frame's length;
+  // false if it is damaged, cut off or unreasonably large. Memory grows with the unpacked data, not
+  // with the size that a frame claims.
   bool unpack(std::string_view packed, std::string_view& content, std::size_t& frame_bytes);
 
  private:

@@ -45,7 +45,7 @@ struct PixelFormat {
 constexpr PixelFormat kPixelFormats[] = {
     {0, FrameFormat::Gray8, 1}, {16, FrameFormat::Bgr8, 3}, {24, FrameFormat::Bgra8, 4}};
 
-// An unknown begin or end of the exposure is 0 or absent; newer files then give its length, and the frame's
+// An unknown begin or end of the exposure is 0 or absent; newer files then state its length, and the frame's
 // time is its begin.
 bool takeFrameTime(FlatBuffer& buffer, const FlatTable& root, Frame& frame) {
   const auto time_us = buffer.number<std::int64_t>(root, 0);
@@ -159,11 +159,11 @@ bool decodeFrame(std::string_view bytes, Frame& frame, std::string& unusable) {
   const PixelFormat* const known = std::find_if(std::begin(kPixelFormats), std::end(kPixelFormats),
                                                 [&](const PixelFormat& f) { return f.number == format; });
   if (known == std::end(kPixelFormats)) {
-    unusable = fmt::format("are in the format {}; readable are 8 bit grey, BGR and BGRA", format);
+    unusable = fmt::format("are in the format {}; only 8 bit grey, BGR and BGRA can be read", format);
     return true;
   }
   if (left != 0 || top != 0) {
-    unusable = fmt::format("show a part of the sensor, from column {} and row {} on", left, top);
+    unusable = fmt::format("show only a part of the sensor, from column {} and row {}", left, top);
     return true;
   }
   frame.format = known->format;

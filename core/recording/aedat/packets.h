@@ -33,18 +33,18 @@ struct TableEntry {
   std::int64_t first_us = 0, last_us = 0;
 };
 
-// All with the size prefix. The decoders are false or empty where the bytes are damaged.
+// All with the size prefix. The decoders return false or empty values if the bytes are damaged.
 std::optional<FileHeader> decodeHeader(std::string_view bytes);
 std::optional<std::vector<TableEntry>> decodeTable(std::string_view bytes);
 bool decodeEvents(std::string_view bytes, std::vector<Event>& events);
 bool decodeImu(std::string_view bytes, std::vector<RawImuSample>& samples);  // in g and deg/s
-// Its time is the middle of the exposure. `unusable` is the end of a sentence with the reason why an intact
-// frame cannot be used; it is empty otherwise.
+// The frame's time is the middle of the exposure. `unusable` completes a sentence with the reason why an
+// intact frame cannot be used; it is empty otherwise.
 bool decodeFrame(std::string_view bytes, Frame& frame, std::string& unusable);
 std::optional<std::size_t> countTriggers(std::string_view bytes);
 std::string_view packetType(std::string_view bytes);  // "EVTS", ...; empty if there is none
 
-// `position_at` is the place of the table's position, to be overwritten when it is known.
+// `position_at` is the position of the table's position, to be overwritten once that is known.
 std::string encodeHeader(const FileHeader& header, std::size_t& position_at);
 std::string encodeTable(std::span<const TableEntry> entries);
 std::string encodeEvents(EventSpan events);

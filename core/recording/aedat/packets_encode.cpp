@@ -129,7 +129,7 @@ std::string encodeImu(std::span<const RawImuSample> samples) {
     for (const double value : sample.specific_force) append(bytes, static_cast<float>(value));
     for (const double value : sample.angular_rate) append(bytes, static_cast<float>(value));
   };
-  // The temperature is not known; nor is the magnetic field.
+  // Temperature and magnetic field are unknown.
   return tables("IMUS", samples.size(), 36, {4, 0, 12, 16, 20, 24, 28, 32}, fields);
 }
 

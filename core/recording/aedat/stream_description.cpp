@@ -51,7 +51,7 @@ std::optional<std::int32_t> wholeNumber(std::string_view text) {
   return value;
 }
 
-// The value of an attribute in a tag's inside: name="..." of `<attr key="name">`.
+// Value of an attribute in a tag's inside: name="..." of `<attr key="name">`.
 std::string_view attribute(std::string_view tag, std::string_view name) {
   const std::string start = fmt::format(" {}=\"", name);
   const std::size_t at = tag.find(start);

@@ -18,13 +18,13 @@ struct StreamDescription {
   Resolution size_px;
 };
 
-// By id; empty where the text is none of DV's. Tolerant: what it does not understand it skips.
+// By id; empty if the text is not DV's. Tolerant: skips unknown content.
 std::vector<StreamDescription> parseDescriptions(std::string_view xml);
 
-// The text that DV and we read back.
+// Text that DV and Evical read.
 std::string descriptionsXml(const std::vector<StreamDescription>& streams, std::string_view compression);
 
-// The streams' names as people see them in DV, made unique by the source, then by the id.
+// Names of the streams as shown in DV, made unique by the source, then by the id.
 std::vector<std::string> uniqueNames(const std::vector<StreamDescription>& streams);
 
 }  // namespace evical::aedat

@@ -91,12 +91,12 @@ std::unique_ptr<RecordingReader> openEventStream(const std::filesystem::path& pa
   const unsigned kind = cursor.number<std::uint8_t>();
   if (cursor.ok() && major != 2) {
     throw badInput(path.string(), fmt::format("this is an Event Stream of version {}.{}", major, minor),
-                   "Readable is version 2; convert it with the tools of event_stream");
+                   "Convert it with the tools of event_stream; only version 2 is supported");
   }
   if (cursor.ok() && kind != kDvs && kind != kAtis) {
     throw badInput(path.string(),
                    fmt::format("this is an Event Stream of {} events (type {})", kindName(kind), kind),
-                   "Readable are DVS and ATIS events");
+                   "Only DVS and ATIS events can be read");
   }
   const int width_px = cursor.number<std::uint16_t>(), height_px = cursor.number<std::uint16_t>();
   if (!cursor.ok()) {
@@ -106,7 +106,7 @@ std::unique_ptr<RecordingReader> openEventStream(const std::filesystem::path& pa
   }
   if (width_px == 0 || height_px == 0) {
     throw badInput(path.string(),
-                   fmt::format("the header, at byte 16, says {} x {} pixels", width_px, height_px),
+                   fmt::format("the header, at byte 16, states {} x {} pixels", width_px, height_px),
                    "Copy the file again");
   }
   StreamInfo stream;

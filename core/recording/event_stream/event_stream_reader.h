@@ -1,5 +1,5 @@
 // Event Stream files, version 2.0, of DVS and ATIS sensors (github.com/neuromorphicsystems/event_stream).
-// Their y counts upwards, ours down; events that measure grey levels (ATIS) are skipped.
+// Their y counts upwards, Evical's downwards; events that measure grey levels (ATIS) are skipped.
 #pragma once
 
 #include "core/recording/block_decoder.h"

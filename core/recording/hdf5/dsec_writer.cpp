@@ -1,6 +1,6 @@
-// HDF5 as DSEC has it: events/{x, y, p, t}, t in us since t_offset, ms_to_idx with the first event of each
-// millisecond; Blosc with zstd. DSEC keeps its IMU elsewhere; here it is a group as in M3ED, imu/{ts, omega,
-// accel}: us of the same clock, t_offset included.
+// HDF5 in DSEC's layout: events/{x, y, p, t}, t in us since t_offset, ms_to_idx with the first event of each
+// millisecond; Blosc with zstd. DSEC has its IMU in other files; here it is a group as in M3ED, imu/{ts,
+// omega, accel}: us of the same clock, including t_offset.
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/recording/hdf5/hdf5_filters.h"
@@ -97,10 +97,10 @@ class DsecWriter : public RecordingWriter {
       if (!offset_us_) offset_us_ = time_us;
       const std::int64_t since_us = time_us - *offset_us_;
       if (since_us < 0 || since_us > std::numeric_limits<std::uint32_t>::max()) {
-        throw calibrationFailed(path_, fmt::format("an event is {} us behind the first", since_us),
-                                "DSEC's layout holds 2^32 us, and nothing before the first event");
+        throw calibrationFailed(path_, fmt::format("an event is {} us after the first", since_us),
+                                "DSEC's layout covers 2^32 us, and nothing before the first event");
       }
-      // The first event that is as late as each millisecond.
+      // First event at or after each millisecond.
       for (; millisecond_ * 1000 <= since_us; ++millisecond_) require(events_->milliseconds.add(count_));
       require(events_->x.add(event.x_px) && events_->y.add(event.y_px) &&
               events_->t.add(static_cast<std::uint32_t>(since_us)) && events_->p.add(event.brighter ? 1 : 0));
@@ -119,7 +119,7 @@ class DsecWriter : public RecordingWriter {
     }
   }
 
-  // The groups of the layout.
+  // Groups of the layout.
   std::vector<std::string> streamNames() const override {
     std::vector<std::string> names;
     for (const StreamType type : types_) names.emplace_back(type == StreamType::Events ? "events" : "imu");
@@ -165,10 +165,10 @@ class DsecWriter : public RecordingWriter {
 
   void requireOnly(const StreamInfo& stream) const {
     if (stream.type != StreamType::Events && stream.type != StreamType::Imu) {
-      throw badInput(path_, fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+      throw badInput(path_, fmt::format("stream {} has neither events nor IMU samples", stream.name));
     }
     if (std::count(types_.begin(), types_.end(), stream.type) > 1) {
-      throw badInput(path_, "DSEC's layout holds one camera and one IMU a file",
+      throw badInput(path_, "DSEC's layout has one camera and one IMU per file",
                      "Write one file for each, or a bag");
     }
   }
@@ -205,11 +205,11 @@ class DsecWriter : public RecordingWriter {
   void require(bool good) const {
     if (good) return;
     throw calibrationFailed(path_, fmt::format("the file cannot be written: {}", hdf5::lastProblem()),
-                            "Check the folder, its permissions and the space on the disk");
+                            "Check the folder, its permissions and the disk space");
   }
 
   std::string path_;
-  PartFile part_;  // gives the file its name when it is whole; HDF5 writes the content
+  PartFile part_;  // renames the file when it is complete; HDF5 writes the content
   hdf5::Handle file_;
   std::vector<StreamType> types_;
   std::optional<Events> events_;

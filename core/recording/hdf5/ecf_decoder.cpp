@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostEvents = 65'535;
 
-// `fill` is given a run's length.
+// `fill` is called with a run's length.
 template <class Fill>
 bool takeRun(ByteCursor& cursor, std::size_t& done, std::size_t total, std::size_t count, std::size_t escape,
              Fill&& fill) {
@@ -90,7 +90,7 @@ bool decodePolarities(ByteCursor& cursor, std::vector<EcfEvent>& events) {
 
 }  // namespace
 
-// Runs of length 0 make no progress, but each takes bytes: every loop ends.
+// Runs of length 0 make no progress, but each consumes bytes: every loop ends.
 bool decodeEcf(std::string_view bytes, std::vector<EcfEvent>& events) {
   ByteCursor cursor(bytes);
   const auto header = cursor.number<std::uint32_t>();

@@ -18,7 +18,7 @@ struct EcfEvent {
 };
 static_assert(sizeof(EcfEvent) == 16);
 
-inline constexpr std::int64_t kNoTime_us = std::numeric_limits<std::int64_t>::min();  // no event is there
+inline constexpr std::int64_t kNoTime_us = std::numeric_limits<std::int64_t>::min();  // no event has it
 
 // False if the bytes are damaged.
 bool decodeEcf(std::string_view bytes, std::vector<EcfEvent>& events);

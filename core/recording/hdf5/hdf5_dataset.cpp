@@ -41,7 +41,7 @@ bool describe(hid_t file, const char* path, DatasetInfo& info) {
   return true;
 }
 
-// H5Ovisit2's: HDF5 1.12 gave its name to another.
+// Version 2 of H5Ovisit: HDF5 1.12 gave its name to another function.
 #if H5_VERSION_GE(1, 12, 0)
 using ObjectInfo = H5O_info1_t;
 #else
@@ -81,16 +81,16 @@ void requireFilters(hid_t creation, const std::string& place, const std::string&
         H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, nullptr);
     if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
     throw badInput(place,
-                   fmt::format("the dataset {} is packed with the HDF5 filter {}, which is not there", path,
-                               filterName(filter)),
-                   "Install HDF5's plugin for it, or pack the file anew with gzip (h5repack -f GZIP=1)");
+                   fmt::format("the dataset {} is packed with the HDF5 filter {}, which is not installed",
+                               path, filterName(filter)),
+                   "Install HDF5's plugin for it, or pack the file again with gzip (h5repack -f GZIP=1)");
   }
 }
 
 DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place)
     : path_(info.path), is_table_(info.extent.size() == 2) {
   if (info.extent.empty() || info.extent.size() > 2)
-    throw badInput(place, path_ + " is neither list nor table");
+    throw badInput(place, path_ + " is neither a list nor a table");
   rows_ = info.extent[0];
   if (is_table_) columns_ = info.extent[1];
   memory_type_ = Handle(H5Tcopy(memory_type), H5Tclose);
@@ -101,17 +101,17 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
   const Handle type(H5Dget_type(dataset_), H5Tclose);
   H5T_cdata_t* conversion = nullptr;
   if (!H5Tfind(type, memory_type_, &conversion)) {
-    throw badInput(place, fmt::format("{} does not hold numbers", path_));
+    throw badInput(place, fmt::format("{} does not contain numbers", path_));
   }
   if (rows_ > 0 && H5Dget_storage_size(dataset_) == 0) {
-    throw badInput(place, fmt::format("{} states {} rows and stores none", path_, rows_),
-                   "The recording was not finished; nothing of it can be read");
+    throw badInput(place, fmt::format("{} states {} rows, but stores none", path_, rows_),
+                   "Record again: the recording was not finished");
   }
   if (storesTooLittle()) {
     throw badInput(
         place,
-        fmt::format("{} states {} rows and stores {} bytes", path_, rows_, H5Dget_storage_size(dataset_)),
-        "The file is damaged");
+        fmt::format("{} states {} rows, but stores {} bytes", path_, rows_, H5Dget_storage_size(dataset_)),
+        "Copy the file again: it is damaged");
   }
   // Opened again with room for at least one unpacked chunk, so that none is unpacked twice.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
@@ -119,7 +119,7 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);
 }
 
-// HDF5's library itself would read beyond its buffers.
+// HDF5's library would read beyond its buffers.
 bool DatasetRows::storesTooLittle() const {
   const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
   if (H5Pget_layout(creation) == H5D_CHUNKED) return false;
@@ -173,7 +173,7 @@ void DatasetRows::load(std::uint64_t row) {
 }
 
 std::string DatasetRows::placeAndReason(std::uint64_t row) const {
-  const std::string reason = lastProblem();  // asking for the place forgets it
+  const std::string reason = lastProblem();  // the query of the address clears it
   const std::array<hsize_t, 2> start{row, 0};
   unsigned mask = 0;
   haddr_t address = HADDR_UNDEF;

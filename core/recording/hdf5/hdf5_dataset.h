@@ -24,25 +24,24 @@ struct DatasetInfo {
 
 struct DatasetList {
   std::vector<DatasetInfo> datasets;
-  std::vector<std::string>
-      damaged;  // paths of objects of which not even the kind, or no description, can be read
+  std::vector<std::string> damaged;  // paths of objects whose kind or description cannot be read
 };
 
-// All datasets; throws CalibrationError (BadInput) where the file's tree cannot be walked.
+// All datasets; throws CalibrationError (BadInput) if the file's tree is damaged.
 DatasetList listDatasets(hid_t file, const std::string& place);
 
-// Throws CalibrationError (BadInput) where a filter of a dataset's creation properties is not there.
+// Throws CalibrationError (BadInput) if a filter of a dataset's creation properties is not installed.
 void requireFilters(hid_t creation, const std::string& place, const std::string& path);
 
 // Rows of one column (a list) or several (a table of rank 2), converted by HDF5 to `memory_type`.
 class DatasetRows {
  public:
-  // Throws CalibrationError (BadInput) if there is no way to read it, e.g. an unknown filter.
+  // Throws CalibrationError (BadInput) if it cannot be read, e.g. because of an unknown filter.
   DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place);
 
   std::uint64_t rows() const { return rows_; }
 
-  // Bytes of the rows from `row` to the end of its block; none if the block cannot be read: then problem()
+  // Bytes of the rows from `row` to the end of its block; empty if the block cannot be read: then problem()
   // has the reason.
   std::span<const std::byte> from(std::uint64_t row);
   std::uint64_t blockEnd(std::uint64_t row) const;
@@ -68,7 +67,7 @@ class DatasetRows {
   std::string problem_;
 };
 
-// The same with the numbers' type.
+// DatasetRows with numbers of one type.
 template <class Number>
 class Rows : public DatasetRows {
  public:

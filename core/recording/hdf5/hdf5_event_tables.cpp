@@ -27,7 +27,7 @@ std::uint16_t pixel(double value) {
   return value >= 0.0 && value < kOutside_px ? static_cast<std::uint16_t>(value) : kOutside_px;
 }
 
-// `last` may be unreadable: then as the format has it.
+// `last` may be unreadable: then the format's default applies.
 void chooseUnit(double first, double last, TimeScale& time) {
   if (time.is_real) {
     if (std::abs(last - first) > kSecondsSpan_s) time.factor_ns = 1000.0;
@@ -132,7 +132,7 @@ class EventRows : public EventTable {
     time_.is_real = true;
     std::array<ColumnNumbers, 4> head;
     const std::size_t count = readHead(head);
-    // Rows that are not there are the reader's to report.
+    // Missing rows are reported by the reader.
     const auto last = count == 0 ? std::span<const double>() : values_.numbersFrom(rows() - 1);
     const bool is_empty = std::all_of(head.begin(), head.end(),
                                       [](const ColumnNumbers& column) { return column.largest <= 0.0; });
@@ -224,7 +224,7 @@ class Compound : public EventTable {
       } else if (time_.convert(values[i].t, event.time_ns)) {
         events.push_back(event);
       } else {
-        problem_ = fmt::format("row {} has no time: its chunk holds fewer events than it should", row + i);
+        problem_ = fmt::format("row {} has no time: its chunk has fewer events than it should", row + i);
       }
     }
     return row + count;
@@ -237,7 +237,7 @@ class Compound : public EventTable {
 }  // namespace
 
 void EventTable::sayUnpolarised(std::size_t count, std::uint64_t row) {
-  problem_ = fmt::format("{} rows from {} on have a polarity that is none of 1, 0 and -1", count, row);
+  problem_ = fmt::format("{} rows from {} on have a polarity other than 1, 0 and -1", count, row);
 }
 
 bool TimeScale::convert(std::int64_t time, std::int64_t& time_ns) const {

@@ -89,7 +89,7 @@ std::size_t lzf(unsigned flags, std::size_t parameters, const unsigned* values, 
   return 0;
 }
 
-// A last chunk has fewer events than its extent; the rest is never read, or recognised by its time.
+// A last chunk has fewer events than its extent; the rest is not read, or recognised by its time.
 std::size_t ecf(unsigned flags, std::size_t, const unsigned*, std::size_t bytes, std::size_t* buffer_bytes,
                 void** buffer) {
   std::vector<EcfEvent> events;

@@ -1,4 +1,4 @@
-// The compressions of HDF5 files that libhdf5 does not bring: Blosc, LZF and Metavision's ECF (reading only).
+// Compressions of HDF5 files that libhdf5 does not include: Blosc, LZF and Metavision's ECF (reading only).
 #pragma once
 
 #include "core/recording/hdf5/hdf5_library.h"
@@ -10,10 +10,10 @@ namespace evical::hdf5 {
 
 inline constexpr H5Z_filter_t kLzf = 32000, kBlosc = 32001, kEcf = 0x8ECF;
 
-// In this process; more than once does no harm.
+// Registers them in this process; repeated calls are harmless.
 void registerFilters();
 
-// Expected unpacked size of a chunk, for this thread's reads meanwhile: libhdf5 copies that much out of a
+// Expected unpacked size of a chunk during this thread's reads: libhdf5 copies this much out of a
 // filter's result, without checking its size.
 class ExpectedChunk {
  public:

@@ -28,7 +28,7 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
   const bool good = rank_ >= 3 && rank_ <= 4 && extent[1] > 0 && extent[1] <= kLargestSide_px &&
                     extent[2] > 0 && extent[2] <= kLargestSide_px && (channels_ == 1 || channels_ == 3) &&
                     extent[1] * extent[2] * channels_ <= kLargestFrame_bytes;
-  if (!good) throw badInput(place, path_ + " has no extent of pictures in grey or RGB");
+  if (!good) throw badInput(place, path_ + " does not have the extent of pictures in grey or RGB");
   size_px_ = {static_cast<int>(extent[2]), static_cast<int>(extent[1])};
   rows_ = std::min(extent[0], times_.rows().rows());
   if (extent[0] != times_.rows().rows())
@@ -49,13 +49,13 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
 void FrameTable::checkLayout(const std::string& place) {
   const Handle type(H5Dget_type(dataset_), H5Tclose), creation(H5Dget_create_plist(dataset_), H5Pclose);
   if (H5Tget_class(type) != H5T_INTEGER || H5Tget_size(type) != 1)
-    throw badInput(place, path_ + " does not hold pictures of 8 bit");
+    throw badInput(place, path_ + " does not contain pictures of 8 bit");
   requireFilters(creation, place, path_);
   if (H5Pget_layout(creation) != H5D_CHUNKED) {
     const std::uint64_t picture_bytes = static_cast<std::uint64_t>(size_px_.width_px) *
                                         static_cast<std::uint64_t>(size_px_.height_px) * channels_;
     if (rows_ > H5Dget_storage_size(dataset_) / picture_bytes)  // the library would read beyond its buffers
-      throw badInput(place, fmt::format("{} states {} pictures and stores fewer", path_, rows_));
+      throw badInput(place, fmt::format("{} states {} pictures, but stores fewer", path_, rows_));
     return;
   }
   H5Pget_chunk(creation, rank_, chunk_.data());
@@ -68,7 +68,7 @@ void FrameTable::checkLayout(const std::string& place) {
   chunk_bytes_ = static_cast<std::size_t>(bytes);
 }
 
-// The library accepts any chunk that is marked as not packed, however short it is.
+// The library accepts any chunk that is marked as unpacked, at any length.
 bool FrameTable::chunksAreWhole(std::uint64_t row) const {
   const std::array<hsize_t, 4> extent{1, static_cast<hsize_t>(size_px_.height_px),
                                       static_cast<hsize_t>(size_px_.width_px), channels_};
@@ -95,11 +95,11 @@ bool FrameTable::load(std::uint64_t row, Frame& frame) {
     return false;
   }
   if (!times_.convert(row, time_, frame.time_ns)) {
-    problem_ = fmt::format("the time of row {} is none", row);
+    problem_ = fmt::format("the time of row {} is invalid", row);
     return false;
   }
   if (chunk_bytes_ > 0 && !chunksAreWhole(row)) {
-    problem_ = fmt::format("{}, row {} (a chunk is not whole)", path_, row);
+    problem_ = fmt::format("{}, row {} (a chunk is incomplete)", path_, row);
     return false;
   }
   const auto width = static_cast<hsize_t>(size_px_.width_px),

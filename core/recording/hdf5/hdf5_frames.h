@@ -14,7 +14,7 @@ namespace evical::hdf5 {
 
 class FrameTable {
  public:
-  // Throws CalibrationError (BadInput) if there is no way to read them.
+  // Throws CalibrationError (BadInput) if they cannot be read.
   FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInfo& times, const std::string& place);
 
   std::uint64_t rows() const { return rows_; }

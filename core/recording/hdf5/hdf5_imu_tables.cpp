@@ -16,7 +16,7 @@ constexpr std::size_t kTablePacketSamples = 10;
 constexpr double kGravity_m_s2 = 9.80665;
 constexpr std::size_t kSamplesForGravity = 1000;
 
-// Rate and acceleration each begin at a column of a table; both tables may be the same.
+// Rate and acceleration each begin at a column of a table; both may be in one table.
 class ImuDatasets : public ImuTable {
  public:
   ImuDatasets(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
@@ -45,7 +45,7 @@ class ImuDatasets : public ImuTable {
       const bool good = times_.convert(row_, time_, sample.time_ns) && sample.angular_rate.allFinite() &&
                         sample.specific_force.allFinite();
       if (good) samples.push_back(sample);
-      if (!good) problem_ = fmt::format("row {} of the IMU holds no numbers", row_);
+      if (!good) problem_ = fmt::format("row {} of the IMU has invalid numbers", row_);
       ++row_;
     }
   }
@@ -62,7 +62,7 @@ class ImuDatasets : public ImuTable {
     return false;
   }
 
-  // The three columns whose norm is nearer to gravity's are the acceleration.
+  // The three columns with a norm closer to gravity's are the acceleration.
   void findGravity() {
     const auto values = first_.numbersFrom(0);
     double error_first = 0.0, error_second = 0.0;
@@ -106,7 +106,7 @@ class ImuText : public ImuTable {
     return first.empty() || first.front() == '#' || (lines_.number() == 1 && is_name);
   }
 
-  // Numbers separated by blanks or commas. Lost data of a disk are zeros at a line's end.
+  // Numbers separated by blanks or commas. Lost disk blocks are zeros at a line's end.
   static bool parse(std::string_view line, RawImuSample& sample) {
     if (line.find('\0') != std::string_view::npos) return false;
     std::array<double, 7> values{};

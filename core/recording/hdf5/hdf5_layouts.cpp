@@ -22,7 +22,7 @@ std::string withoutSlash(std::string folder) {
   return folder;
 }
 
-// A scalar, or the first few numbers of a list; empty if there is no such dataset.
+// A scalar, or the first few numbers of a list; empty if the dataset does not exist.
 std::vector<std::int64_t> readNumbers(hid_t file, const std::string& path, std::size_t most) {
   const Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) return {};
@@ -44,7 +44,7 @@ int readSide(hid_t object, const char* name) {
   return static_cast<int>(side);
 }
 
-// An attribute of text, of fixed or variable length.
+// A text attribute of fixed or variable length.
 std::string readText(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
@@ -95,7 +95,7 @@ class TableLayoutFinder {
     if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
     std::vector<std::string>& problems = problems_;
     for (const std::string& path : list_.damaged)
-      problems.push_back(fmt::format("{} is damaged; what it holds is left out.", path));
+      problems.push_back(fmt::format("{} is damaged; its content is left out.", path));
     for (const std::string& folder : incomplete_)
       problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
                                      folder.empty() ? "The root" : withoutSlash(folder)));
@@ -111,7 +111,7 @@ class TableLayoutFinder {
     return nullptr;
   }
 
-  // True for a part of a stream that lacks another one: damaged names do not match.
+  // True for a part of a stream without its other parts: damaged names do not match.
   bool isPartOfAStream(const DatasetInfo& dataset) const {
     const std::string folder = dataset.folder(), name = dataset.name();
     const auto has = [&](std::initializer_list<const char*> names) { return find(folder, names) ? 1 : 0; };
@@ -144,7 +144,7 @@ class TableLayoutFinder {
     const DatasetInfo* t = findList(folder, {"t", "ts"});
     const DatasetInfo* p = findList(folder, {"p", "ps"});
     if (!y || !t || !p) return;
-    // DSEC's offset is that of its only camera.
+    // DSEC's offset belongs to its only camera.
     const bool is_dsec = folder == "events/";
     const std::vector<std::int64_t> offset_us =
         is_dsec ? readNumbers(file_, "t_offset", 1) : std::vector<std::int64_t>{};
@@ -264,11 +264,10 @@ class TableLayoutFinder {
         place_,
         names.empty()
             ? "the HDF5 file has no datasets; was the recording finished?"
-            : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
-                          "known; its datasets: {}{}",
+            : fmt::format("the HDF5 file has no events and no IMU in a known layout; its datasets: {}{}",
                           joined(names), datasets_.size() > kMostNamedTables ? ", ..." : "") +
                   (problems_.empty() ? "" : ". " + problems_.front().substr(0, problems_.front().size() - 1)),
-        "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
+        "Convert it to one of DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
   }
 
   hid_t file_;

@@ -17,17 +17,17 @@ namespace evical::hdf5 {
 
 struct FoundStream {
   StreamInfo info;
-  std::unique_ptr<EventTable> events;  // one of the three, or none: it is listed only
+  std::unique_ptr<EventTable> events;  // one of the three, or none: listed only
   std::unique_ptr<ImuTable> imu;
   std::unique_ptr<FrameTable> frames;
 };
 
 struct FoundStreams {
   std::vector<FoundStream> streams;
-  std::vector<std::string> problems;  // sentences about what might have been more
+  std::vector<std::string> problems;  // sentences on omitted datasets
 };
 
-// Throws CalibrationError (BadInput) where there is neither an event nor an IMU sample nor a picture.
+// Throws CalibrationError (BadInput) if there is neither an event nor an IMU sample nor a picture.
 FoundStreams findStreams(hid_t file, const std::string& place);
 
 }  // namespace evical::hdf5

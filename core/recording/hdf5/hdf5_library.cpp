@@ -13,8 +13,8 @@ herr_t keepInnermost(unsigned depth, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
-// On damaged files the library leaks memory, and reports it on stderr when it is closed at the program's end.
-// Every file is closed by its handle before: nothing is left to do then.
+// The library leaks memory on damaged files, and reports it on stderr when it is closed at the program's end.
+// Every file is closed earlier by its handle, so that nothing remains to be done then.
 void closeNothingAtExit() {
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);
@@ -41,11 +41,11 @@ std::string lastProblem() {
 Handle openFile(const std::filesystem::path& path) {
   registerFilters();
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, false, true);  // folders that cannot be written to need none
+  H5Pset_file_locking(access, false, true);  // read-only folders need none
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file.valid()) return file;
   throw badInput(path.string(), fmt::format("the HDF5 file cannot be opened: {}", lastProblem()),
-                 "It may have been cut off, or is still being written: copy it again, or finish recording");
+                 "Copy it again, or finish recording: it may be cut off, or still being written");
 }
 
 }  // namespace evical::hdf5

@@ -33,7 +33,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-// Keeps the library from printing its errors, in this thread, for as long as it lives.
+// Suppresses the library's error output in this thread during its lifetime.
 class Quiet {
  public:
   Quiet();
@@ -49,7 +49,7 @@ class Quiet {
 // The library's message for its last error.
 std::string lastProblem();
 
-// Throws CalibrationError (BadInput); also where the file was cut off or is still being written.
+// Throws CalibrationError (BadInput), also if the file was cut off or is still being written.
 Handle openFile(const std::filesystem::path& path);
 
 }  // namespace evical::hdf5

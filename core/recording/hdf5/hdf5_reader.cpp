@@ -42,7 +42,7 @@ struct Hdf5Reader::Source {
   bool wanted = true, finished = false;
   std::uint64_t row = 0;
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
-  std::vector<Event> rest;  // behind a large step back in time
+  std::vector<Event> rest;  // after a large step back in time
   EventOrder order;
 };
 
@@ -106,7 +106,7 @@ void Hdf5Reader::select(const std::vector<std::size_t>& streams) {
   for (const std::size_t stream : streams) sources_.at(stream)->wanted = true;
 }
 
-// The stream that is behind goes first, so that they are read side by side.
+// The stream with the earliest time is read first, so that all advance together.
 bool Hdf5Reader::read(Packet& packet) {
   const hdf5::Quiet quiet;
   for (;;) {
@@ -173,7 +173,7 @@ void Hdf5Reader::noteOrder(const Source& source) {
     addFault(streams_[source.stream].name, FaultKind::Unsorted, source.order.text());
 }
 
-// By rows; that of the IMU's text is not known and short.
+// By rows; that of the IMU's text is unknown and short.
 double Hdf5Reader::fractionRead() const {
   double read = 0.0, rows = 0.0;
   for (const auto& source : sources_) {

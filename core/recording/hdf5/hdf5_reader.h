@@ -1,5 +1,5 @@
 // HDF5 in the layouts of data sets; see hdf5_layouts.h. TUM-VIE is a folder: a file "...-events_left.h5" or
-// "...-events_right.h5" a camera, and "imu_data.txt".
+// "...-events_right.h5" per camera, and "imu_data.txt".
 #pragma once
 
 #include "core/recording/event_order.h"
@@ -38,7 +38,7 @@ class Hdf5Reader : public RecordingReader {
   void addFault(const std::string& stream, FaultKind kind, std::string text);
 
   std::vector<StreamInfo> streams_;
-  std::vector<std::unique_ptr<Source>> sources_;  // one a stream
+  std::vector<std::unique_ptr<Source>> sources_;  // one per stream
   std::vector<RecordingFault> faults_;
 };
 

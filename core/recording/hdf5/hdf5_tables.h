@@ -16,7 +16,7 @@
 namespace evical::hdf5 {
 
 // Scale of a file's numbers to ns: whole numbers are us (ns if they are too large for that), others seconds
-// (us if that would be days).
+// (us if the span would be days).
 struct TimeScale {
   double factor_ns = 1e9;       // of real numbers
   std::int64_t unit_ns = 1000;  // of whole ones
@@ -31,7 +31,7 @@ class EventTable {
   virtual ~EventTable() = default;
   virtual std::uint64_t rows() const = 0;
 
-  // Appends the events from `row` on, some 10k of them, and returns the next row; unreadable ones are
+  // Appends some 10k events from `row` on, and returns the next row; unreadable ones are
   // skipped, and then problem() has the reason.
   virtual std::uint64_t load(std::uint64_t row, std::vector<Event>& events) = 0;
 
@@ -63,22 +63,22 @@ class ImuTable {
 // Lists x, y, t, p of equal length (the shortest counts), in this order.
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
                                         std::int64_t offset_us, const std::string& place);
-// Rows of four columns that cannot be identified.
+// Error: the four columns cannot be identified.
 class UnknownColumns : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Rows x, y, t, p, or t, x, y, p, as the numbers themselves show. Throws UnknownColumns if they are not
+// Rows x, y, t, p, or t, x, y, p, as the numbers show. Throws UnknownColumns if they are not
 // events.
 std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place);
-// Metavision's: a compound of x, y, p, t.
+// Metavision's layout: a compound of x, y, p, t.
 std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, const std::string& place);
 
 // t; angular rate (rad/s) and acceleration (m/s^2) as rows of three.
 std::unique_ptr<ImuTable> openImuColumns(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
                                          const DatasetInfo& accelerations, const std::string& place);
-// t; rows of six. Which three are the acceleration is decided by gravity.
+// t; rows of six. Gravity determines which three are the acceleration.
 std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, const DatasetInfo& rows,
                                       const std::string& place);
 // TUM-VIE's imu_data.txt: t in us, angular rate, acceleration, temperature.

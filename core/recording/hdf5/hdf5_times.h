@@ -11,7 +11,7 @@ namespace evical::hdf5 {
 
 class Times {
  public:
-  // Says in `time` what its numbers are in.
+  // Writes the type of its numbers to `time`.
   Times(hid_t file, const DatasetInfo& info, TimeScale& time, const std::string& place) {
     constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;
     time.is_real = info.isReal();
@@ -27,7 +27,7 @@ class Times {
 
   DatasetRows& rows() { return real_ ? static_cast<DatasetRows&>(*real_) : *whole_; }
 
-  // Time of a row that rows() has.
+  // Time of a row of rows().
   bool convert(std::uint64_t row, const TimeScale& time, std::int64_t& time_ns) {
     return real_ ? time.convert(real_->numbersFrom(row)[0], time_ns)
                  : time.convert(whole_->numbersFrom(row)[0], time_ns);

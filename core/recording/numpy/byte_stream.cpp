@@ -66,10 +66,10 @@ class StoredBytes : public ByteStream {
     return static_cast<bool>(file_);
   }
 
-  std::string problem() const override { return checksum_.differs() ? "the checksum is not right" : ""; }
+  std::string problem() const override { return checksum_.differs() ? "the checksum is wrong" : ""; }
 
  private:
-  // Headers, so that the checksum is known.
+  // Inflates the headers, so that the checksum is known.
   bool readPast(std::size_t count) {
     std::vector<char> passed(count);
     return read(passed.data(), count) == count;
@@ -117,7 +117,7 @@ class InflatedBytes : public ByteStream {
 
   std::string problem() const override {
     if (!problem_.empty()) return problem_;
-    return checksum_.differs() ? "the checksum is not right" : "";
+    return checksum_.differs() ? "the checksum is wrong" : "";
   }
 
  private:

@@ -26,11 +26,11 @@ class HeaderReader {
                   *order = literal.value("fortran_order");
     if (!descr || !shape || !order || shape->kind != Literal::Kind::List ||
         order->kind != Literal::Kind::Truth)
-      fail("the header of the array does not say its type, order and shape");
+      fail("the array's header does not state type, order and shape");
     takeShape(*shape);
     header_.by_columns = order->truth;
     header_.element_bytes = addType(*descr, "", 0, 0);
-    if (header_.element_bytes == 0) fail("the elements of the array have no bytes");
+    if (header_.element_bytes == 0) fail("the array's elements have no bytes");
     return header_;
   }
 
@@ -41,24 +41,24 @@ class HeaderReader {
 
   std::string take(std::size_t count) {
     std::string bytes(count, '\0');
-    if (bytes_.read(bytes.data(), count) != count) fail("the header of the array is cut off");
+    if (bytes_.read(bytes.data(), count) != count) fail("the array's header is cut off");
     header_.data_offset += count;
     return bytes;
   }
 
   Literal readDictionary() {
     const std::string start = take(kArrayMagic.size() + 2);
-    if (!start.starts_with(kArrayMagic)) fail("this is no NumPy array: it does not begin as one");
+    if (!start.starts_with(kArrayMagic)) fail("this is not a NumPy array: its first bytes are different");
     const int version = static_cast<unsigned char>(start[kArrayMagic.size()]);
     if (version < 1 || version > 3)
-      fail(fmt::format("the array is of NumPy's format {}, not 1 to 3", version));
+      fail(fmt::format("the array has NumPy's format {}; only 1 to 3 can be read", version));
     const std::string sizes = take(version == 1 ? 2 : 4);
     ByteCursor cursor(sizes);
     const std::size_t size = version == 1 ? std::size_t{cursor.number<std::uint16_t>()}
                                           : std::size_t{cursor.number<std::uint32_t>()};
-    if (size > kLongestHeader_bytes) fail(fmt::format("the header of the array claims {} bytes", size));
+    if (size > kLongestHeader_bytes) fail(fmt::format("the array's header claims {} bytes", size));
     const std::optional<Literal> literal = parseLiteral(take(size));
-    if (!literal) fail("the header of the array is damaged");
+    if (!literal) fail("the array's header is damaged");
     return *literal;
   }
 
@@ -67,7 +67,7 @@ class HeaderReader {
     for (const Literal& side : shape.items) {
       if (side.kind != Literal::Kind::Number || __builtin_mul_overflow(product, side.number, &product) ||
           product > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
-        fail("the header of the array claims an impossible shape");
+        fail("the array's header claims an impossible shape");
       header_.shape.push_back(side.number);
     }
   }
@@ -76,11 +76,11 @@ class HeaderReader {
   std::size_t addType(const Literal& type, const std::string& name, std::size_t offset, int depth) {
     if (depth > kDeepestStructure) fail("the array's type is nested too deeply");
     if (type.kind == Literal::Kind::Text) return addPlain(type.text, name, offset);
-    if (type.kind != Literal::Kind::List) fail("the array's type is not understood");
+    if (type.kind != Literal::Kind::List) fail("the array's type is unknown");
     std::size_t size = 0;
     for (const Literal& member : type.items) {
       size += addMember(member, offset + size, depth);
-      if (size > kLargestElement_bytes) fail("the elements of the array are too large");
+      if (size > kLargestElement_bytes) fail("the array's elements are too large");
     }
     return size;
   }
@@ -89,7 +89,7 @@ class HeaderReader {
   std::size_t addMember(const Literal& member, std::size_t offset, int depth) {
     const std::vector<Literal>& parts = member.items;
     if (member.kind != Literal::Kind::List || parts.size() < 2 || parts.size() > 3)
-      fail("the array's type is not understood");
+      fail("the array's type is unknown");
     const bool titled = parts[0].kind == Literal::Kind::List && parts[0].items.size() == 2;
     const std::string& name = titled ? parts[0].items[1].text : parts[0].text;
     const std::size_t first = header_.fields.size();
@@ -100,7 +100,7 @@ class HeaderReader {
     for (const Literal& side : parts[2].kind == Literal::Kind::List ? parts[2].items : alone) {
       if (side.kind != Literal::Kind::Number || __builtin_mul_overflow(count, side.number, &count) ||
           count > kLargestElement_bytes)
-        fail("the array's type is not understood");
+        fail("the array's type is unknown");
     }
     for (std::size_t i = first; i < header_.fields.size(); ++i) header_.fields[i].count = count;
     return size * count;
@@ -111,7 +111,7 @@ class HeaderReader {
     const bool ordered =
         !text.empty() && std::string_view("<>=|").find(text.front()) != std::string_view::npos;
     const std::string_view kind = std::string_view(text).substr(ordered ? 1 : 0);
-    if (kind.empty()) fail("the array's type is not understood");
+    if (kind.empty()) fail("the array's type is unknown");
     Field field{name, std::nullopt, offset, 1};
     std::size_t size = 0;
     const char* const end = kind.data() + kind.size();
@@ -122,7 +122,7 @@ class HeaderReader {
     } else if (kind.front() == '?') {
       size = 1;
     } else if (error != std::errc() || size > kLargestElement_bytes) {
-      fail(fmt::format("the array's type \"{}\" is not understood", text));
+      fail(fmt::format("the array's type \"{}\" is unknown", text));
     }
     if (kind.front() == 'U') size *= 4;  // its letters have four bytes
     field.type = numberType(kind.front(), size, {behind, end});

@@ -19,13 +19,13 @@ struct NumberType {
   Kind kind = Kind::Signed;
   int bytes = 1;  // 1, 2, 4, 8; real numbers 2, 4, 8
   bool big_endian = false;
-  std::int64_t unit_ns = 0;  // of NumPy's dates and time spans; 0: they have none
+  std::int64_t unit_ns = 0;  // of NumPy's dates and time spans; 0: none
 };
 
-// A part of each element.
+// Field of each element.
 struct Field {
-  std::string name;                // empty where elements are plain numbers
-  std::optional<NumberType> type;  // nothing: no numbers that are read
+  std::string name;                // empty if elements are plain numbers
+  std::optional<NumberType> type;  // nullopt: cannot be read
   std::size_t offset = 0;          // in the element
   std::size_t count = 1;           // a list of numbers
 };
@@ -36,7 +36,7 @@ struct ArrayHeader {
   std::vector<std::uint64_t> shape;  // as claimed; the product is below 2^63
   bool by_columns = false;           // the first index varies fastest
   bool objects = false;              // pickled Python objects
-  std::uint64_t data_offset = 0;     // behind the header
+  std::uint64_t data_offset = 0;     // after the header
 
   std::uint64_t elements() const;
   bool isStructured() const { return fields.size() != 1 || !fields.front().name.empty(); }

@@ -18,7 +18,7 @@ double detail::fromHalf(std::uint16_t bits) {
 }
 
 ColumnBlocks::ColumnBlocks(std::span<const Column> columns, std::uint64_t rows) : rows_(rows) {
-  std::vector<const Column*> leaders;  // one of each source
+  std::vector<const Column*> leaders;  // one per source
   for (const Column& column : columns) {
     const auto same = [&](const Column* other) {
       return other->range.path == column.range.path && other->range.position == column.range.position &&
@@ -70,7 +70,7 @@ std::string ColumnBlocks::problem() const {
     const std::string problem = source.bytes->problem();
     if (!problem.empty()) return fmt::format("{}: {}", source.array, problem);
   }
-  return ended_.empty() ? "" : fmt::format("{} has fewer rows than it claims: {}", ended_, rows_);
+  return ended_.empty() ? "" : fmt::format("{} has fewer rows than it states: {}", ended_, rows_);
 }
 
 }  // namespace evical::numpy

@@ -1,5 +1,5 @@
 // Columns of numbers in arrays, read in parallel in blocks of bounded size: each column of a table may be in
-// an array for itself, or with others in one.
+// a separate array, or with others in one.
 #pragma once
 
 #include "core/recording/numpy/byte_stream.h"
@@ -27,7 +27,7 @@ struct Array {
   ArrayHeader header;
 };
 
-// A number of each row: at `start + row * stride + offset` behind the array's header.
+// One number per row: at `start + row * stride + offset` after the array's header.
 struct Column {
   std::string array;  // for people
   ByteRange range;
@@ -41,16 +41,16 @@ class ColumnBlocks {
   ColumnBlocks(std::span<const Column> columns, std::uint64_t rows);
 
   // Replaces the block by the next rows, at most `most`, and returns their number; 0 at the end, which may
-  // come before all rows: then problem() has the reason.
+  // come before all rows are read: then problem() has the reason.
   std::size_t next(std::size_t most);
 
   std::uint64_t rowsRead() const { return read_; }
 
-  // Hands each number of the block to `sink(row, number)`: a std::int64_t, std::uint64_t or double.
+  // Calls `sink(row, number)` for each number of the block: a std::int64_t, std::uint64_t or double.
   template <class Sink>
   void forEach(std::size_t column, Sink sink) const;
 
-  // Problem so far, with the array's name; empty without one.
+  // Problem so far, with the array's name; empty if none.
   std::string problem() const;
 
  private:
@@ -72,7 +72,7 @@ class ColumnBlocks {
   std::vector<Place> places_;
   std::uint64_t rows_ = 0, read_ = 0;
   std::size_t in_block_ = 0, largest_stride_ = 1;
-  std::string ended_;  // the array that has too few rows
+  std::string ended_;  // the array with too few rows
 };
 
 namespace detail {
@@ -87,7 +87,7 @@ Bits swapped(Bits bits) {
 
 double fromHalf(std::uint16_t bits);
 
-// `Bits` are those in the file, `Number` what they mean.
+// `Bits`: type in the file; `Number`: type of the value.
 template <class Bits, class Number, class Sink>
 void forEachNumber(const char* place, std::size_t stride, std::size_t rows, bool big_endian, Sink& sink) {
   for (std::size_t row = 0; row < rows; ++row, place += stride) {

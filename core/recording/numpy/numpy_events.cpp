@@ -17,7 +17,7 @@ bool toTime(Number time, std::int64_t unit_ns, std::int64_t offset_ns, std::int6
   if constexpr (std::is_floating_point_v<Number>) {
     const double scaled_ns = time * static_cast<double>(unit_ns);
     if (!(std::abs(scaled_ns) <= static_cast<double>(kLatestTime_ns))) return false;
-    const double whole = std::floor(time);  // apart from its fraction, so that no digit is lost
+    const double whole = std::floor(time);  // separate from its fraction, so that no digit is lost
     time_ns = static_cast<std::int64_t>(whole) * unit_ns +
               std::llround((time - whole) * static_cast<double>(unit_ns));
   } else {

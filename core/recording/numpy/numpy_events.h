@@ -1,4 +1,4 @@
-// Events out of the columns that a layout names, in order of the rows and in bounded memory.
+// Events from the columns of a layout, in order of the rows and in bounded memory.
 #pragma once
 
 #include "core/data/event.h"
@@ -16,7 +16,7 @@ class EventTable {
  public:
   explicit EventTable(const EventLayout& layout);
 
-  // Replaces `events` by those of the next rows, some 10k; false at the end. There may be none of some rows.
+  // Replaces `events` by those of the next rows, some 10k; false at the end. Some rows may have none.
   bool load(std::vector<Event>& events);
 
   std::uint64_t rowsRead() const { return blocks_.rowsRead(); }

@@ -44,7 +44,7 @@ Array arrayOf(const std::filesystem::path& file) {
 
 void addMember(const ZipMember& member, FoundFiles& found) {
   const std::string name = withoutEnd(member.name);
-  if (name == member.name) return;  // no array
+  if (name == member.name) return;  // not an array
   if (!member.problem.empty()) {
     found.problems.push_back(fmt::format("{} is left out: {}.", member.name, member.problem));
     return;
@@ -54,7 +54,8 @@ void addMember(const ZipMember& member, FoundFiles& found) {
   } catch (const CalibrationError& error) {
     found.problems.push_back(fmt::format("{} is left out: {}.", member.name, error.problem()));
   }
-  if (member.cut) found.problems.push_back(fmt::format("{} is not whole: the file is cut off.", member.name));
+  if (member.cut)
+    found.problems.push_back(fmt::format("{} is incomplete: the file is cut off.", member.name));
 }
 
 std::vector<std::filesystem::path> filesEndingOn(const std::filesystem::path& folder, const char* end) {
@@ -104,7 +105,7 @@ std::vector<std::string> arrayNames(const std::filesystem::path& folder) {
   return names;
 }
 
-// By value: not everybody pads with zeros.
+// By value, since some programs do not pad with zeros.
 std::vector<std::filesystem::path> numberedFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files = filesEndingOn(folder, kArchiveEnd);
   if (files.empty()) files = filesEndingOn(folder, kArrayEnd);

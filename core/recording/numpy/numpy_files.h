@@ -12,7 +12,7 @@ namespace evical::numpy {
 
 struct FoundFiles {
   std::vector<Array> arrays;
-  std::vector<std::string> problems;  // sentences about arrays that cannot be read
+  std::vector<std::string> problems;  // sentences on unreadable arrays
   std::vector<std::string> unread;    // archives next to them
 };
 
@@ -22,10 +22,10 @@ FoundFiles arraysIn(const std::filesystem::path& file);
 // Arrays of all .npy files of a folder.
 FoundFiles arraysOfFolder(const std::filesystem::path& folder);
 
-// Names without ".npy" of the files that a folder has.
+// File names in a folder, without ".npy".
 std::vector<std::string> arrayNames(const std::filesystem::path& folder);
 
-// A folder's .npz and .npy files that are named by numbers alone, in their order; none where other arrays are among them.
+// A folder's .npz and .npy files with numbers as names, in their order; empty if there are other arrays, too.
 std::vector<std::filesystem::path> numberedFiles(const std::filesystem::path& folder);
 
 // True if a file with this beginning is an array or an archive of arrays.

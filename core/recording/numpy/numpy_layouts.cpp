@@ -22,7 +22,7 @@ constexpr double kFewestArrayEventsPerS = 50.0;  // as seconds; slower ones are 
 constexpr std::size_t kFewestRows = 5;           // of a table identified by its numbers: a matrix has four
 constexpr double kCoarse_ns = 1000.0;
 
-// Numbers of one kind, one a row, and how many rows are claimed and there.
+// Numbers of one kind, one per row, with the stated and the actual number of rows.
 struct Numbers {
   Column column;
   std::uint64_t claimed = 0, rows = 0;
@@ -63,7 +63,7 @@ std::optional<Numbers> listOf(const Array& array) {
   return numbers;
 }
 
-// Array with so many columns: (N, count) in either order of memory, or (count, N).
+// Array with this number of columns: (N, count) in either order of memory, or (count, N).
 std::vector<Numbers> columnsOf(const Array& array, std::size_t count) {
   const auto& shape = array.header.shape;
   if (!isPlain(array) || shape.size() != 2 || (shape[0] != count && shape[1] != count)) return {};
@@ -78,7 +78,7 @@ std::vector<Numbers> columnsOf(const Array& array, std::size_t count) {
       column.stride = count * size;
       column.offset = i * size;
     } else if (__builtin_mul_overflow(rows, i * size, &column.start) || column.start > array.range.bytes) {
-      column.start = array.range.bytes;  // beyond what there is
+      column.start = array.range.bytes;  // beyond the existing bytes
     }
     countRows(array, columns[i]);
   }
@@ -124,7 +124,7 @@ std::int64_t unitOfTimes(const ColumnNumbers& times, std::size_t rows) {
   return !times.whole && slow ? 1000 : guessTimeUnit_ns(times, rows);
 }
 
-// x, y, t, p made one table.
+// x, y, t, p combined to one table.
 EventLayout layoutOf(const std::array<Numbers, 4>& numbers, std::optional<std::int64_t> unit_ns) {
   EventLayout layout;
   layout.rows = std::numeric_limits<std::uint64_t>::max();
@@ -140,7 +140,7 @@ EventLayout layoutOf(const std::array<Numbers, 4>& numbers, std::optional<std::i
     layout.problem = fmt::format("x, y, t, p have {}, {}, {}, {} rows; the first {} are read.", rows[0],
                                  rows[1], rows[2], rows[3], layout.rows);
   } else if (!all) {
-    layout.problem = fmt::format("The array claims {} rows and has {}; the file is cut off.",
+    layout.problem = fmt::format("The array states {} rows and has {}; the file is cut off.",
                                  numbers[2].claimed, numbers[2].rows);
   }
   std::size_t count = 0;
@@ -150,7 +150,7 @@ EventLayout layoutOf(const std::array<Numbers, 4>& numbers, std::optional<std::i
   const bool obvious = type_unit_ns > 0 || unit_ns || count == 0 || layout.unit_ns == 1'000'000'000;
   if (!obvious)
     layout.guess = fmt::format(
-        "The unit of time is not stated; {} is assumed. If that is wrong, call the times t_ns, "
+        "The unit of time is not stated; {} is assumed. If it is wrong, rename the times to t_ns, "
         "t_us or t_s.",
         timeUnitName(layout.unit_ns));
   if (layout.columns[2].type.kind == NumberType::Kind::Real && layout.columns[2].type.bytes < 8 &&
@@ -226,8 +226,8 @@ class ArrayLayoutFinder {
     add(layoutOf(numbers, unit_ns), array.name, "fields " + names);
   }
 
-  // Selects, of several arrays for a part, the one with the same length as the others, otherwise that of the
-  // usual name.
+  // Selects, among several arrays for a part, the one with the same length as the others, otherwise the one
+  // with the usual name.
   static const Candidate* chosen(const Group& group, Part part, std::uint64_t rows) {
     const auto found = group.find(part);
     if (found == group.end()) return nullptr;
@@ -310,7 +310,7 @@ class ArrayLayoutFinder {
       if (numbers[i]) there += (there.empty() ? "" : ", ") + numbers[i]->column.array;
     }
     found_.problems.push_back(
-        fmt::format("{}{} are no events without {}.", name.empty() ? "" : name + ": ", there, missing));
+        fmt::format("{}{} are not events without {}.", name.empty() ? "" : name + ": ", there, missing));
   }
 
   // Four columns, identified by their numbers.
@@ -341,7 +341,7 @@ class ArrayLayoutFinder {
     layout.guess.clear();
     if (text != "t,x,y,p" || layout.unit_ns != 1'000'000'000)
       layout.guess = fmt::format(
-          "The columns of {} are taken for {}, t in {}. If that is wrong, save them as arrays x, y, "
+          "The columns of {} are interpreted as {}, t in {}. If this is wrong, save them as arrays x, y, "
           "t_{}, p with numpy.savez.",
           array.name, text, unit, unit);
     add(std::move(layout), array.name, "columns " + text);

@@ -17,21 +17,21 @@ namespace evical::numpy {
 
 struct EventLayout {
   std::string name;               // of the stream
-  std::string message;            // what the arrays are, for people
+  std::string message;            // description of the arrays, for people
   std::array<Column, 4> columns;  // x, y, t, p
-  std::uint64_t rows = 0;         // as many as all columns have
+  std::uint64_t rows = 0;         // common to all columns
   std::int64_t unit_ns = 1000;    // of time
   std::int64_t offset_ns = 0;     // to add to times
-  double step_ns = 0.0;           // between two times where these are real numbers of too few bits
+  double step_ns = 0.0;           // between two times, if these are real numbers of too few bits
   Resolution size_px;
-  std::string guess;    // what was guessed, for people; empty if nothing was
-  std::string problem;  // rows that some columns lack
+  std::string guess;    // sentence on a guess, for people; empty if none
+  std::string problem;  // rows missing in some columns
 };
 
 struct FoundArrays {
   std::vector<EventLayout> events;
-  std::vector<std::string> problems;  // sentences about what might have been more
-  std::vector<const Array*> others;   // that do not belong to events
+  std::vector<std::string> problems;  // sentences on omitted arrays
+  std::vector<const Array*> others;   // not part of events
 };
 
 // The arrays must outlive the result.

@@ -55,7 +55,7 @@ bool takePart(std::string_view name, NamedPart& found) {
   return true;
 }
 
-// The whole name, or the part after one of its separators, the longest first.
+// The whole name, or the part after one of its separators; the longest first.
 bool takeName(std::string_view name, NamedPart& found) {
   if (takePart(name, found)) return true;
   for (std::size_t at = name.find_first_of("/_.- "); at != std::string_view::npos;

@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::size_t kMostNamed = 20;
 constexpr const char* kReadableArrays =
-    "Readable are structured arrays with fields x, y, t, p, arrays of these names (also xy, timestamps, "
-    "polarity and "
-    "the like), and rows of four numbers that are t, x, y, p in some order";
+    "Save structured arrays with fields x, y, t, p, arrays of these names (also xy, timestamps, polarity "
+    "and similar ones), or rows of four numbers: t, x, y, p in any order";
 
 std::string list(const std::vector<std::string>& names) {
   const std::vector<std::string> first(
@@ -73,7 +72,7 @@ NumpyReader::NumpyReader(const std::filesystem::path& path) : path_(path) {
   addArrays(found.arrays);
   if (!found.unread.empty())
     addFault("", FaultKind::Unreadable,
-             fmt::format("Not read, as they stand beside the events: {}.", list(found.unread)));
+             fmt::format("Not read, in addition to the events: {}.", list(found.unread)));
   for (Source& source : sources_) source.next_file = first_file;
 }
 
@@ -100,7 +99,7 @@ void NumpyReader::addStream(const numpy::EventLayout& layout) {
   if (!layout.guess.empty()) addFault(layout.name, FaultKind::Guess, layout.guess);
   if (layout.step_ns > 0.0) {
     addFault(layout.name, FaultKind::Encoding,
-             fmt::format("Times are numbers of {} bits, which step by {:.3f} ms; save them with 64 bits.",
+             fmt::format("Times are numbers of {} bits with steps of {:.3f} ms; save them with 64 bits.",
                          8 * layout.columns[2].type.bytes, 1e-6 * layout.step_ns));
   }
 }
@@ -124,10 +123,10 @@ void NumpyReader::sayWhatIsLeftOut(const std::vector<const numpy::Array*>& other
   }
   if (!objects.empty())
     addFault("", FaultKind::Unreadable,
-             fmt::format("Python objects are not read, whatever they hold: {}.", list(objects)));
+             fmt::format("Python objects are never unpickled: {}.", list(objects)));
   if (!imus.empty())
     addFault("", FaultKind::ImuLeftOut,
-             fmt::format("IMU samples are not read from arrays: {}. Give the IMU as CSV.", list(imus)));
+             fmt::format("IMU samples in arrays are not read: {}. Give the IMU as CSV.", list(imus)));
 }
 
 void NumpyReader::failWithNames(const std::vector<numpy::Array>& arrays,
@@ -139,28 +138,28 @@ void NumpyReader::failWithNames(const std::vector<numpy::Array>& arrays,
     objects = objects || array.header.objects;
   }
   std::string problem = names.empty() ? "the file has no arrays"
-                        : objects ? "the arrays are no events but Python objects, which are never unpickled: "
-                        : arrays.size() == 1 ? "this array is no events: "
-                                             : "these arrays are no events: ";
+                        : objects     ? "the arrays are Python objects, not events, and are never unpickled: "
+                        : arrays.size() == 1 ? "this array is not events: "
+                                             : "these arrays are not events: ";
   problem += list(names);
-  // Sentences, but errors have none with a full stop at their end.
+  // Notes are sentences, but errors have no full stop at their end.
   if (!faults_.empty()) problem += ". " + faults_.front().text.substr(0, faults_.front().text.size() - 1);
   if (!problems.empty()) problem += ". " + problems.front().substr(0, problems.front().size() - 1);
   if (arrays.size() == 1 && arrays.front().range.path == path_ && !objects &&
       !arrays.front().header.isStructured())
-    problem += ". Where each field has a file of its own, give the folder";
+    problem += ". If each field is a separate file, give the folder";
   throw badInput(path_.string(), problem, kReadableArrays);
 }
 
 void NumpyReader::select(const std::vector<std::size_t>& streams) {
   for (Source& source : sources_) source.wanted = false;
   for (const std::size_t stream : streams) {
-    static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller's
+    static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller
     if (stream < sources_.size()) sources_[stream].wanted = true;
   }
 }
 
-// The stream that is behind goes first, so that they are read side by side.
+// The stream with the earliest time is read first, so that all advance together.
 bool NumpyReader::read(Packet& packet) {
   for (;;) {
     Source* behind = nullptr;
@@ -206,7 +205,7 @@ bool NumpyReader::openNext(Source& source) {
       const auto layout = std::find_if(
           layouts.begin(), layouts.end(),
           [&](const numpy::EventLayout& candidate) { return candidate.name == source.layout.name; });
-      if (layout == layouts.end()) throw badInput(file.string(), "it has no arrays of events");
+      if (layout == layouts.end()) throw badInput(file.string(), "there are no arrays of events");
       layout->unit_ns = source.layout.unit_ns;
       if (!layout->problem.empty())
         addFault(source.layout.name, FaultKind::Truncated, file.filename().string() + ": " + layout->problem);
@@ -234,8 +233,8 @@ void NumpyReader::closeTable(Source& source) {
   };
   say(FaultKind::Untimed, table.untimed(), "rows have no time and are left out");
   say(FaultKind::Corrupt, table.unpolarised(),
-      "rows have a polarity that is none of 1, 0 and -1 and are left out");
-  say(FaultKind::Outside, table.outside(), "rows have coordinates that are no pixels and are left out");
+      "rows have a polarity other than 1, 0 and -1 and are left out");
+  say(FaultKind::Outside, table.outside(), "rows have invalid pixel coordinates and are left out");
   source.table.reset();
 }
 

@@ -1,6 +1,6 @@
-// Events in NumPy's files, as tonic, Metavision, event libraries and data sets save them: .npy, .npz, a
+// Events in NumPy files, as saved by tonic, Metavision, event libraries and data sets: .npy, .npz, a
 // folder of arrays of one field each (EVIMO2's dataset_events_t.npy, ..._xy.npy, ..._p.npy), or a folder of
-// numbered files one after another (vid2e, EventScape). numpy_layouts.h identifies the arrays of events; a
+// consecutively numbered files (vid2e, EventScape). numpy_layouts.h identifies the arrays of events; a
 // warning states every guess. Python objects are never unpickled. Pictures and IMU samples in arrays are not
 // read.
 #pragma once
@@ -22,7 +22,7 @@ namespace evical {
 
 class NumpyReader : public RecordingReader {
  public:
-  // Throws CalibrationError (BadInput) where no arrays are events.
+  // Throws CalibrationError (BadInput) if no arrays are events.
   explicit NumpyReader(const std::filesystem::path& path);
 
   const std::vector<StreamInfo>& streams() const override { return streams_; }
@@ -36,11 +36,11 @@ class NumpyReader : public RecordingReader {
   // A stream of events.
   struct Source {
     numpy::EventLayout layout;
-    std::unique_ptr<numpy::EventTable> table;  // of the file that is read
+    std::unique_ptr<numpy::EventTable> table;  // of the current file
     std::size_t next_file = 0;
     bool wanted = true, finished = false;
     std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
-    std::vector<Event> rest;  // behind a large step back in time
+    std::vector<Event> rest;  // after a large step back in time
     EventOrder order;
     std::uint64_t untimed = 0, outside = 0;
   };

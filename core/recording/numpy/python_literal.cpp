@@ -72,7 +72,7 @@ class Parser {
     return true;
   }
 
-  // In single or double quotes; a backslash keeps what is behind it.
+  // In single or double quotes; a backslash keeps the next character.
   bool parseText(Literal& literal) {
     literal.kind = Literal::Kind::Text;
     if (rest_.size() > 1 && (rest_[0] == 'u' || rest_[0] == 'b') && (rest_[1] == '\'' || rest_[1] == '"'))

@@ -1,4 +1,4 @@
-// The few kinds of Python literals that headers of NumPy arrays are made of.
+// The few kinds of Python literals in headers of NumPy arrays.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,11 @@ struct Literal {
   std::string text;
   std::vector<Literal> items;  // of lists and tuples; of dictionaries keys and values in turn
 
-  const Literal* value(std::string_view key) const;  // of a dictionary; null if it has none
+  const Literal* value(std::string_view key) const;  // of a dictionary; null if absent
 };
 
-// Nothing unless the text is one literal, with blanks around it at most. Numbers are whole and not negative.
+// nullopt unless the text is a single literal, except for blanks around it. Numbers are whole and not
+// negative.
 std::optional<Literal> parseLiteral(std::string_view text);
 
 }  // namespace evical::numpy

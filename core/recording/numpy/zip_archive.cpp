@@ -1,5 +1,5 @@
 // PKWARE's APPNOTE.TXT, 4.3: the end record and, for large files, zip64's before it give the directory's
-// place.
+// position.
 #include "core/recording/numpy/zip_archive.h"
 
 #include "core/base/error.h"
@@ -44,12 +44,13 @@ class ArchiveReader {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const {
-    throw badInput(path_.string(), problem, "Copy the file again; was it written to its end?");
+    throw badInput(path_.string(), problem, "Copy the file again; was it written completely?");
   }
 
   std::string_view at(std::uint64_t position, std::uint64_t count, const char* what) {
     std::string_view bytes;
-    if (!file_.read(position, count, bytes)) fail(fmt::format("{} is not whole, at byte {}", what, position));
+    if (!file_.read(position, count, bytes))
+      fail(fmt::format("{} is incomplete, at byte {}", what, position));
     return bytes;
   }
 
@@ -59,7 +60,7 @@ class ArchiveReader {
     const std::string_view bytes = at(tail_at, tail, "the end");
     const std::size_t found = findEnd(bytes);
     if (found == std::string_view::npos)
-      fail("the archive's directory, which stands at its end, is missing: the file is cut off");
+      fail("the archive's directory, which is at its end, is missing: the file is cut off");
     ByteCursor cursor(bytes.substr(found + kEndMagic.size()));
     cursor.take(6);  // disks, and entries on this one
     Directory directory;
@@ -87,7 +88,7 @@ class ArchiveReader {
   void findDirectory64(std::uint64_t end_at, Directory& directory) {
     if (end_at < kEnd64Place_bytes) return;
     ByteCursor place(at(end_at - kEnd64Place_bytes, kEnd64Place_bytes, "the archive's end"));
-    if (place.take(kEnd64PlaceMagic.size()) != kEnd64PlaceMagic) return;  // not of that kind after all
+    if (place.take(kEnd64PlaceMagic.size()) != kEnd64PlaceMagic) return;  // not a zip64 archive
     place.take(4);                                                        // disk
     const auto position = place.number<std::uint64_t>();
     ByteCursor cursor(at(position, kEnd64_bytes, "zip64's end record"));
@@ -163,7 +164,7 @@ class ArchiveReader {
 
   std::filesystem::path path_;
   RandomAccessFile file_;  // of the directory
-  std::ifstream locals_;   // of members' own headers, which are all over the file
+  std::ifstream locals_;   // of members' own headers, throughout the file
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ struct ZipMember {
   std::string name;
   ByteRange range;
   bool cut = false;     // the file has fewer bytes than the directory states
-  std::string problem;  // why it cannot be read; empty if it can
+  std::string problem;  // reason if it cannot be read; otherwise empty
 };
 
 // Throws CalibrationError (BadInput) if the directory, which is at the end, is missing or damaged.

@@ -65,7 +65,7 @@ PictureFolder findEuroc(const fs::path& folder) {
   return found;
 }
 
-// The first file in the folders whose name ends so: the data set's sequences put their names in front.
+// The first file in the folders with this end of its name: the data set's sequences prepend their names.
 std::optional<fs::path> findEndingWith(const std::vector<fs::path>& folders, const std::string& ending) {
   for (const fs::path& folder : folders) {
     std::error_code error;
@@ -118,13 +118,12 @@ void numberPictures(PictureList& list) {
   list.timed = false;
   for (std::size_t i = 0; i < list.pictures.size(); ++i)
     list.pictures[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000'000;
-  addFault(
-      list, FaultKind::Guess,
-      "The pictures have no times, and are numbered 1 s apart: they tell a camera's intrinsics only. For "
-      "more, name them by their ns (of 12 digits or more), or give a data.csv as EuRoC's.");
+  addFault(list, FaultKind::Guess,
+           "The pictures have no times, and are numbered 1 s apart: they determine intrinsics only. For "
+           "more, name them by their ns (of 12 digits or more), or give a data.csv as EuRoC's.");
 }
 
-// Names of other programs than Kalibr.
+// Names that other programs than Kalibr use.
 void correctMicroseconds(PictureList& list) {
   const std::vector<Picture>& all = list.pictures;
   if (all.size() < 2) return;
@@ -132,10 +131,10 @@ void correctMicroseconds(PictureList& list) {
   const bool too_fast = span_ns / static_cast<std::int64_t>(all.size() - 1) < kShortestInterval_ns;
   if (!too_fast || all.back().time_ns > kLatestTime_ns / 1000) return;
   for (Picture& picture : list.pictures) picture.time_ns *= 1000;
-  addFault(list, FaultKind::Guess, "The names of the pictures are taken for times in us, not in ns.");
+  addFault(list, FaultKind::Guess, "The names of the pictures are interpreted as times in us, not in ns.");
 }
 
-// Names that are times, or else only an order.
+// Names that are times, otherwise only an order.
 std::optional<PictureList> listByNames(const fs::path& folder, const std::string& name) {
   PictureList list = newList(name, "Kalibr", folder);
   std::vector<std::string> names = pictureNames(folder), others;
@@ -149,7 +148,7 @@ std::optional<PictureList> listByNames(const fs::path& folder, const std::string
   if (list.pictures.size() >= others.size()) {
     for (const std::string& other : others)
       addFault(list, FaultKind::Untimed,
-               fmt::format("The name of {} is no time in ns; it is left out.", other));
+               fmt::format("The name of {} is not a time in ns; it is left out.", other));
     correctMicroseconds(list);
     return list;
   }

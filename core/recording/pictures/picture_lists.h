@@ -13,8 +13,8 @@ namespace evical::pictures {
 
 struct Picture {
   std::int64_t time_ns = 0;
-  double exposure_s = 0.0;  // 0: not known
-  std::string name;         // from the list's folder on
+  double exposure_s = 0.0;  // 0: unknown
+  std::string name;         // relative to the list's folder
 };
 
 // Pictures of one camera, in the order of the folder's own list or of their names.
@@ -33,13 +33,13 @@ struct SensorFile {
 };
 
 struct PictureFolder {
-  std::vector<PictureList> lists;  // none: there are no pictures in a layout that is known
+  std::vector<PictureList> lists;  // empty: no pictures in a known layout
   std::vector<SensorFile> imus;    // EuRoC's and Kalibr's tables
   std::vector<SensorFile> events;  // DSEC's HDF5
 };
 
-// EuRoC: the folder mav0, or the one that it is in, or that of one camera (data.csv, data/). Kalibr: folders
-// of pictures that are named by their ns, and imu0.csv. DSEC: the folder that images/ is in, or itself.
+// EuRoC: the folder mav0, its parent, or the folder of one camera (data.csv, data/). Kalibr: folders
+// of pictures that are named by their ns, and imu0.csv. DSEC: the parent of images/, or images/ itself.
 // TUM-VIE: left_images/, right_images/. RPG: images.txt.
 PictureFolder findPictures(const std::filesystem::path& folder);
 

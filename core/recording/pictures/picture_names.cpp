@@ -18,7 +18,7 @@ bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The digits at the front, without zeros before them, and what is behind them.
+// The leading digits, without zeros before them, and the rest.
 std::string_view takeNumber(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && isDigit(text[end])) ++end;

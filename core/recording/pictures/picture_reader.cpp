@@ -58,7 +58,7 @@ void PictureReader::select(const std::vector<std::size_t>& streams) {
   for (const std::size_t stream : streams) sources_.at(stream).wanted = true;
 }
 
-// The stream that is behind goes first, so that cameras are read side by side.
+// The stream with the earliest time is read first, so that all cameras advance together.
 bool PictureReader::read(Packet& packet) {
   for (;;) {
     packet.clear();
@@ -78,14 +78,14 @@ bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, F
   const std::filesystem::path path = sources_[stream].list.folder / picture.name;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    addFault(stream, FaultKind::Unreadable, fmt::format("{} is not there; it is left out.", picture.name));
+    addFault(stream, FaultKind::Unreadable, fmt::format("{} is missing; it is left out.", picture.name));
     return false;
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || size == 0 || size > kLargestPicture_bytes) {
     addFault(stream, FaultKind::Corrupt,
              fmt::format("{} {}; it is left out.", picture.name,
-                         error       ? "cannot be reached"
+                         error       ? "cannot be accessed"
                          : size == 0 ? "is empty"
                                      : fmt::format("has {} bytes, more than a picture", size)));
     return false;
@@ -94,7 +94,7 @@ bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, F
   if (pictureKind(bytes) == PictureKind::None) {
     addFault(stream, bytes.empty() ? FaultKind::Unreadable : FaultKind::Corrupt,
              fmt::format("{} {}; it is left out.", picture.name,
-                         bytes.empty() ? "cannot be read" : "is no JPEG, PNG, PNM, TIFF or BMP file"));
+                         bytes.empty() ? "cannot be read" : "is not a JPEG, PNG, PNM, TIFF or BMP file"));
     return false;
   }
   frame.time_ns = picture.time_ns;

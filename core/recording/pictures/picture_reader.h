@@ -33,7 +33,7 @@ class PictureReader : public RecordingReader {
   bool load(std::size_t stream, const pictures::Picture& picture, Frame& frame);
   void addFault(std::size_t stream, FaultKind kind, std::string text);
 
-  std::vector<Source> sources_;  // one a stream
+  std::vector<Source> sources_;  // one per stream
   std::vector<StreamInfo> streams_;
   std::vector<RecordingFault> faults_;
 };

@@ -70,8 +70,8 @@ void pairWithTimes(const std::vector<TimeRow>& rows, bool two_columns, PictureLi
   const std::size_t count = std::min(names.size(), rows.size());
   if (names.size() != rows.size()) {
     addFault(list, FaultKind::Metadata,
-             fmt::format("There are {} pictures and {} times; the first {} of both are taken for pairs.",
-                         names.size(), rows.size(), count));
+             fmt::format("There are {} pictures and {} times; the first {} of both are paired.", names.size(),
+                         rows.size(), count));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const TimeRow& row = rows[i];
@@ -101,8 +101,8 @@ void readExposures(const std::filesystem::path& table, PictureList& list) {
   }
   if (others == 0) return;
   addFault(list, FaultKind::Metadata,
-           fmt::format("{} exposures in {} are not between 0 and 1 s, taken in us; they are left out.",
-                       others, table.filename().string()));
+           fmt::format("{} exposures in {} are not between 0 and 1 s, read as us; they are left out.", others,
+                       table.filename().string()));
 }
 
 }  // namespace evical::pictures

@@ -1,5 +1,5 @@
-// Tables of the times of pictures, one row each. Lines that are not rows are faults, except for comments,
-// empty ones, and the first if it has names.
+// Tables of picture times, one row each. Lines that are not rows are faults, except for comments,
+// empty lines, and the first line if it has names.
 #pragma once
 
 #include "core/recording/pictures/picture_lists.h"
@@ -10,7 +10,7 @@
 
 namespace evical::pictures {
 
-// Appends the rows "time, name" of a table; 10^unit_digits ns are its unit of time.
+// Appends the rows "time, name" of a table; its unit of time is 10^unit_digits ns.
 void readNamedTimes(const std::filesystem::path& table, int unit_digits, PictureList& list);
 
 // The first column, or the first two, of a table, in ns.
@@ -20,13 +20,13 @@ struct TimeRow {
 std::vector<TimeRow> readTimes(const std::filesystem::path& table, int unit_digits, bool two_columns,
                                PictureList& list);
 
-// Gives the pictures of the list's folder, in the order of their names, the times of the rows: the middle if
-// there are two. Pictures or rows without a partner are skipped and reported.
+// Assigns the times of the rows to the pictures of the list's folder, in the order of their names: the middle
+// if there are two. Pictures or rows without a partner are skipped and reported.
 void pairWithTimes(const std::vector<TimeRow>& rows, bool two_columns, PictureList& list);
 
-// Gives pictures that have times their exposures, of a table in us.
+// Assigns exposures of a table in us to pictures with times.
 void readExposures(const std::filesystem::path& table, PictureList& list);
 
-void addFault(PictureList& list, FaultKind kind, std::string text);  // but ten of one kind at most
+void addFault(PictureList& list, FaultKind kind, std::string text);  // at most ten of one kind
 
 }  // namespace evical::pictures

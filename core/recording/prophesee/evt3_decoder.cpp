@@ -9,7 +9,7 @@ namespace evical {
 namespace {
 
 constexpr std::int64_t kWrap_us = std::int64_t{1} << 24;
-constexpr std::uint32_t kHalfHigh = 1U << 11;  // a step back by so much is a wrap, a smaller one disorder
+constexpr std::uint32_t kHalfHigh = 1U << 11;  // a larger step back is a wrap, a smaller one disorder
 constexpr std::uint32_t kNearWrap = 1U << 6;   // largest distance of a late word from before a wrap
 constexpr std::uint32_t kLargestHigh = 0xFFF;
 constexpr std::uint32_t kEvt3Side_px = 1U << 11;
@@ -84,10 +84,10 @@ void Evt3Decoder::setTimeHigh(std::uint32_t high) {
   } else if (wraps_us_ > 0 && high_ < kNearWrap && high > kLargestHigh - kNearWrap) {
     wraps_us_ -= kWrap_us;
   }
-  if (!has_high_) has_low_ = false;  // one from before belongs to another high
+  if (!has_high_) has_low_ = false;  // an earlier one belongs to another high
   has_high_ = true;
   high_ = high;
-  low_ = 0;  // the next word gives it
+  low_ = 0;  // the next word states it
   time_ns_ = 1000 * (wraps_us_ + (std::int64_t{high_} << 12));
 }
 

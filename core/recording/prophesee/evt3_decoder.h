@@ -1,5 +1,5 @@
-// EVT3, the 16-bit words of Prophesee sensors, in RAW files and in ROS messages. Words refer to those before
-// them, so one decoder follows one camera's words from the start, however they are cut into blocks.
+// EVT3, the 16-bit words of Prophesee sensors, in RAW files and in ROS messages. Words refer to earlier
+// ones, so one decoder reads one camera's words from the start, in blocks of any size.
 // Source: docs.prophesee.ai, "EVT 3.0 format".
 #pragma once
 
@@ -22,12 +22,12 @@ struct Evt3Counts {
 
 class Evt3Decoder {
  public:
-  // All that fits into 11 bits where the resolution is not known.
+  // Everything that fits into 11 bits if the resolution is unknown.
   explicit Evt3Decoder(Resolution resolution_px = {}) { setResolution(resolution_px); }
   void setResolution(Resolution resolution_px);
 
   // Appends the events of these little-endian words; an odd last byte is ignored. Times are the sensor's,
-  // without its wraps each 16.777 s; they start anywhere in 0..16.777 s.
+  // without its wraps every 16.777 s; they start anywhere in 0..16.777 s.
   void decode(std::string_view words, std::vector<Event>& events);
 
   // Words were lost: events have no position until a word states one. The time continues.

@@ -17,14 +17,13 @@ namespace {
 
 constexpr int kLargestSensorSide_px = 16384;  // DAT has 14 bits
 constexpr unsigned char kDatEventBytes = 8;
-constexpr const char* kReadableEncodings =
-    "Readable are EVT2, EVT2.1 and EVT3; convert it with Metavision's tools";
+constexpr const char* kReadableEncodings = "Convert it with Metavision's tools to EVT2, EVT2.1 or EVT3";
 
 struct Field {
   std::string key, value;
 };
 
-// Older files name the system only. (Table of Prophesee's plugins.)
+// Older files only name the system. (Table of Prophesee's plugins.)
 struct KnownSystem {
   int id;
   Encoding encoding;
@@ -40,7 +39,7 @@ constexpr KnownSystem kSystems[] = {
     {48, Encoding::Evt3, kHd_px},  {49, Encoding::Evt3, kHd_px},  {50, Encoding::Evt3, kHd_px},
 };
 constexpr int kSystemMask = 0x7F;
-constexpr int kFirstPlainSystem = 55;  // from which EVT 2.1 has its halves in order
+constexpr int kFirstPlainSystem = 55;  // first system with the halves of EVT 2.1 in order
 
 std::optional<int> headerNumber(std::string_view text) {
   int number = 0;
@@ -56,7 +55,7 @@ bool isText(std::string_view line) {
   });
 }
 
-// Takes the lines off; `offset` is where the data begin.
+// Removes the header lines; `offset` is the beginning of the data.
 std::vector<Field> takeHeaderFields(const std::filesystem::path& path, std::string_view start,
                                     std::uint64_t& offset) {
   std::vector<Field> fields;
@@ -65,7 +64,7 @@ std::vector<Field> takeHeaderFields(const std::filesystem::path& path, std::stri
     const std::size_t end = start.find('\n', offset);
     const std::string_view line = start.substr(offset, end == std::string_view::npos ? end : end - offset);
     if (end == std::string_view::npos || !isText(line)) {
-      if (!isText(line) && !fields.empty()) break;  // data that look like a line's beginning
+      if (!isText(line) && !fields.empty()) break;  // data that look like the begin of a line
       throw badInput(path.string(), fmt::format("the header is cut off in its line at byte {}", offset),
                      "Copy the file again");
     }
@@ -120,7 +119,7 @@ std::optional<Encoding> encodingIn(const std::filesystem::path& path, const std:
   if (name == "EVT2" || name == "2.0") return Encoding::Evt2;
   if (name == "EVT21" || name == "2.1") return Encoding::Evt21;
   if (name == "EVT3" || name == "3.0") return Encoding::Evt3;
-  throw badInput(path.string(), fmt::format("the header says encoding \"{}\", which cannot be read", name),
+  throw badInput(path.string(), fmt::format("the header states encoding \"{}\", which cannot be read", name),
                  kReadableEncodings);
 }
 
@@ -159,7 +158,7 @@ FileHeader parseHeader(const std::filesystem::path& path, std::string_view start
   header.version = version ? headerNumber(*version).value_or(0) : 0;
   const std::optional<Encoding> encoding = encodingIn(path, fields);
   if (!encoding && takeDatBytes(start, header)) {
-    if (fields.empty()) header.version = 2;  // what all files of the last ten years are
+    if (fields.empty()) header.version = 2;  // as in all files of the last ten years
     return header;
   }
   const std::string* system_text = fieldNamed(fields, "system_ID");
@@ -170,7 +169,7 @@ FileHeader parseHeader(const std::filesystem::path& path, std::string_view start
   if (!encoding && known == std::end(kSystems)) {
     throw badInput(
         path.string(),
-        fmt::format("the header, which ends at byte {}, does not tell the encoding", header.data_offset),
+        fmt::format("the header, which ends at byte {}, does not state the encoding", header.data_offset),
         "Add a line \"% evt 2.0\" or \"% evt 3.0\" in front of the file");
   }
   header.encoding = encoding ? *encoding : known->encoding;

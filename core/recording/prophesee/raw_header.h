@@ -1,4 +1,4 @@
-// The text in front of Prophesee's RAW and DAT files, as all versions of the SDK wrote it.
+// Text header of Prophesee's RAW and DAT files, as written by all versions of the SDK.
 #pragma once
 
 #include "core/geometry/resolution.h"
@@ -24,7 +24,7 @@ struct FileHeader {
 
 inline constexpr std::size_t kLargestHeader_bytes = 65536;
 
-// `start` has the file's first bytes, as many as there are or kLargestHeader_bytes. Throws CalibrationError
+// `start`: the file's first bytes, all of them or kLargestHeader_bytes. Throws CalibrationError
 // (BadInput) with the byte if a header is cut, or an encoding is unknown.
 FileHeader parseHeader(const std::filesystem::path& path, std::string_view start);
 

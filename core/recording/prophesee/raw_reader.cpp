@@ -79,7 +79,7 @@ std::unique_ptr<RecordingReader> openProphesee(const std::filesystem::path& path
   if (only_triggers || !dat) format.streams.push_back(rawStream(StreamType::Triggers, header));
   if (!only_triggers && !header.resolution_px.known()) {
     format.notes.push_back({"events", FaultKind::NoResolution, 0.0,
-                            "The header does not tell the sensor's size; the session must."});
+                            "The header does not state the sensor's size. Set it in the session."});
   }
   return std::make_unique<BlockReader>(
       path, std::move(format),

@@ -1,5 +1,5 @@
 // Opens Prophesee's RAW (EVT 2.0, 2.1 in both orders of its halves, 3.0) and DAT files. Times are those of
-// the file: nothing is subtracted, as Metavision does by default.
+// the file: no offset is subtracted, unlike Metavision's default.
 #pragma once
 
 #include "core/recording/recording_reader.h"

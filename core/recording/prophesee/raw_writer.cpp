@@ -24,7 +24,7 @@ class EventFileWriter : public RecordingWriter {
                   const char* format, int largest_side_px)
       : file_(path), path_(path) {
     if (streams.size() != 1 || streams.front().type != StreamType::Events)
-      throw badInput(path.string(), fmt::format("{} can only hold the events of one camera", format),
+      throw badInput(path.string(), fmt::format("{} can only contain the events of one camera", format),
                      "Name that stream, or write a bag");
     const Resolution size_px = streams.front().resolution_px;
     if (!size_px.known() || size_px.width_px > largest_side_px || size_px.height_px > largest_side_px)
@@ -48,7 +48,7 @@ class EventFileWriter : public RecordingWriter {
       const std::int64_t time_us = std::max<std::int64_t>((event.time_ns - *origin_ns_) / kMicrosecond_ns, 0);
       if (time_us - latest_us_ > kLongestPause_us)
         throw badInput(path_.string(),
-                       fmt::format("the events pause for {:.0f} s, which this format cannot hold",
+                       fmt::format("the events pause for {:.0f} s, which this format cannot represent",
                                    1e-6 * static_cast<double>(time_us - latest_us_)),
                        "Write a bag");
       latest_us_ = std::max(latest_us_, time_us);
@@ -57,7 +57,7 @@ class EventFileWriter : public RecordingWriter {
     file_.append(bytes_);
   }
   void write(std::size_t, std::span<const ImuSample>) final {
-    throw badInput("recording", "this format cannot hold IMU samples", "Write a bag");
+    throw badInput("recording", "this format cannot contain IMU samples", "Write a bag");
   }
   void finish() final { file_.finish(); }
   std::vector<std::string> streamNames() const final { return {"events"}; }

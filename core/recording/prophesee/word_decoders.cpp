@@ -84,7 +84,7 @@ void Evt2Decoder::other(std::uint32_t word, std::uint64_t byte) {
 }
 
 std::size_t Evt21Decoder::decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) {
-  constexpr std::size_t kMostEvents = 32;  // of a word
+  constexpr std::size_t kMostEvents = 32;  // per word
   const std::size_t words = bytes.size() / sizeof(std::uint64_t);
   EventAppender appender(events);
   for (std::size_t i = 0; i < words; ++i) {
@@ -144,7 +144,7 @@ bool looksExchanged(std::string_view data) {
   };
   for (std::size_t i = 0; i < data.size() / sizeof(std::uint64_t); ++i) {
     const auto word = packedWordAt<std::uint64_t>(data, i);
-    // Masks of single events often make 0 of the kind of a plain word: times decide.
+    // Masks of single events are often 0 in the kind of a plain word: times decide.
     plain += isKnown(word) && word >> 60 == kTimeHigh;
     exchanged += isKnown(std::rotl(word, 32)) && std::rotl(word, 32) >> 60 == kTimeHigh;
   }

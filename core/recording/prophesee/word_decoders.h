@@ -1,4 +1,4 @@
-// Decoders of RAW and DAT files, as blocks of a file. Times are us in the files, ns here; the counter's wraps
+// Decoders of RAW and DAT files, in blocks of a file. Times are us in the files, ns here; the counter's wraps
 // are added.
 #pragma once
 
@@ -12,13 +12,14 @@
 
 namespace evical::prophesee {
 
-// A counter of some bits that wraps when it is full. Only a step from its last quarter to its first is a
-// wrap; other steps back are unchanged. A step to the last quarter soon after is disorder about the wrap.
+// Counter with a fixed number of bits that wraps when it is full. Only a step from its last quarter to its
+// first is a wrap; other steps back are unchanged. A step to the last quarter soon after is disorder at the
+// wrap.
 class WrappingCounter {
  public:
   explicit WrappingCounter(int bits) : bits_(bits) {}
 
-  // The count with all wraps; true in `wrapped` if this is one.
+  // Count including all wraps; sets `wrapped` if this is one.
   std::uint64_t unwrap(std::uint64_t count, bool& wrapped) {
     const std::uint64_t quarter = count >> (bits_ - 2), last_quarter = last_ >> (bits_ - 2);
     wrapped = last_quarter == 3 && quarter == 0;
@@ -64,7 +65,7 @@ class Evt21Decoder : public BlockDecoder {
   std::int64_t high_ns_ = 0;
 };
 
-// True if the words at the beginning of the data make more sense with their halves exchanged.
+// True if the first words of the data are more plausible with their halves exchanged.
 bool looksExchanged(std::string_view data);
 
 class Evt3BlockDecoder : public BlockDecoder {

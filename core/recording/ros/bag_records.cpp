@@ -5,7 +5,7 @@
 namespace evical::rosbag {
 namespace {
 
-// Walks "u32 length, name=value" fields; a value may contain any byte, so the first '=' splits.
+// Iterates over "u32 length, name=value" fields; a value may contain any byte, so the first '=' splits.
 template <class Visitor>
 bool forEachField(std::string_view bytes, Visitor&& visit) {
   ByteCursor cursor(bytes);

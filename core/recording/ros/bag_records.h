@@ -22,7 +22,7 @@ enum class Op : std::uint8_t {
   Connection = 7,
 };
 
-// The fields of any record's header; what a record does not have stays 0 or empty. Views
+// The fields of any record's header; absent ones are 0 or empty. Views
 // point into the given bytes.
 struct RecordHeader {
   std::uint8_t op = 0;
@@ -36,7 +36,7 @@ struct RecordHeader {
   bool is(Op other) const { return op == static_cast<std::uint8_t>(other); }
 };
 
-// False if the bytes are not a list of fields with an op among them.
+// False if the bytes are not a list of fields with an op.
 bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
 
 // Content of a connection record's data.
@@ -45,7 +45,7 @@ struct ConnectionData {
 };
 ConnectionData parseConnectionData(std::string_view bytes);
 
-// Replaces `output` by the chunk's content, `size` bytes.
+// Replaces `output` by the chunk's content of `size` bytes.
 ros::Unpacked decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
                               std::string& output);
 

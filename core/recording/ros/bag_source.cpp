@@ -14,9 +14,9 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint32_t kLargestRecordHeader_bytes = 1 << 20;  // real ones have below 100 bytes
+constexpr std::uint32_t kLargestRecordHeader_bytes = 1 << 20;  // real ones are below 100 bytes
 
-// Packed data are hardly ever longer than the plain ones.
+// Packed data are hardly ever longer than unpacked ones.
 std::uint64_t largestPacked(std::uint32_t plain_bytes) {
   return std::uint64_t{plain_bytes} + plain_bytes / 64 + 4096;
 }
@@ -26,7 +26,7 @@ struct BagRecord {
   std::string_view data;
 };
 
-// Takes the first of the records; false, and they stay, if it is damaged.
+// Removes the first record; returns false without doing so if it is damaged.
 bool takeBagRecord(std::string_view& records, BagRecord& record) {
   ByteCursor cursor(records);
   const std::string_view header = cursor.sized();
@@ -36,9 +36,9 @@ bool takeBagRecord(std::string_view& records, BagRecord& record) {
   return true;
 }
 
-// Parts that `rosbag record --split` made before and after this one: "a_3.bag" for "a_2.bag". Their names may
-// also contain the time of their start, which differs: "a_2024-05-06-07-08-09_2.bag". They count from 0:
-// without that one these are recordings with numbers given by a person.
+// Parts before and after this one from `rosbag record --split`: "a_3.bag" for "a_2.bag". Their names may
+// also contain their start time, which differs: "a_2024-05-06-07-08-09_2.bag". They count from 0:
+// without part 0 these are recordings that a person numbered.
 std::vector<std::string> otherParts(const std::filesystem::path& path) {
   constexpr const char* kNumbered = R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.bag)";
   const std::regex numbered(kNumbered);
@@ -73,9 +73,9 @@ BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
   const std::vector<std::string> parts = otherParts(path);
   if (parts.empty()) return;
   sink_(FaultKind::Part,
-        fmt::format("The name is that of a part of a recording that was split: {} {} beside it. Only this "
+        fmt::format("The name is that of a part of a split recording: {} {} in the same folder. Only this "
                     "part is read.",
-                    joined(parts), parts.size() == 1 ? "lies" : "lie"));
+                    joined(parts), parts.size() == 1 ? "is" : "are"));
 }
 
 void BagSource::rewind() {
@@ -102,7 +102,7 @@ void BagSource::listTopics() {
       has_header && header.index_position == record.end() && header.index_position == file_.size();
   if (is_empty) return;
   if (has_header && listFromIndex(header.index_position, header.connection_count, header.chunk_count)) return;
-  topic_of_connection_.clear();  // an index that is not whole is none
+  topic_of_connection_.clear();  // an incomplete index is not used
   chunk_connections_.clear();
   topics_.clear();
   listByScan();
@@ -122,7 +122,7 @@ BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord&
   const auto header_size = ByteCursor(bytes).number<std::uint32_t>();
   if (header_size > kLargestRecordHeader_bytes) return RecordState::Damaged;
   if (!file_.read(position + 4, std::uint64_t{header_size} + 4, bytes)) return RecordState::Damaged;
-  header_bytes_ = bytes;  // reading the data moves the file's block
+  header_bytes_ = bytes;  // reading the data changes the file's block
   ByteCursor cursor(header_bytes_);
   if (!rosbag::parseRecordHeader(cursor.take(header_size), record.header)) return RecordState::Damaged;
   record.data_size = cursor.number<std::uint32_t>();
@@ -130,8 +130,8 @@ BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord&
   return record.end() <= file_.size() ? RecordState::Whole : RecordState::Cut;
 }
 
-// A chunk's header somewhere from here on, also within data: packed data do not look like one by chance, and
-// chunks contain none. The file's size if there is none.
+// Searches for a chunk's header from here on, also within data: packed data do not look like one by chance,
+// and chunks contain none. Returns the file's size if there is none.
 std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
   static constexpr std::string_view kOp("op=\x05", 4);
   constexpr std::uint64_t kBlock_bytes = 1 << 20;
@@ -142,7 +142,7 @@ std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
     const std::uint64_t length = std::min(kBlock_bytes + kFurthestOp_bytes, file_.size() - begin);
     std::string_view bytes;
     if (!file_.read(begin, length, bytes)) break;
-    block = bytes;  // looking at records reads others
+    block = bytes;  // checking records reads others
     for (std::size_t hit = block.find(kOp); hit != std::string::npos; hit = block.find(kOp, hit + 1)) {
       const std::uint64_t op = begin + hit;
       for (std::uint64_t at = std::max(from, op - std::min(op, kFurthestOp_bytes)); at < op; ++at) {
@@ -155,8 +155,8 @@ std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
   return file_.size();
 }
 
-// Continuation of the file after a record, for any stated length. `chunk_data` is the beginning of the last
-// chunk's data: a chunk with a false length may hide the next one.
+// Position after a record, whose stated length may be wrong. `chunk_data` is the beginning of the last
+// chunk's data: a chunk with a wrong length may hide the next one.
 std::uint64_t BagSource::recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
                                      std::uint64_t& chunk_data) {
   const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
@@ -166,8 +166,8 @@ std::uint64_t BagSource::recordAfter(std::uint64_t position, RecordState state, 
   return scanForChunk(chunk_data != 0 ? chunk_data : position + 1);
 }
 
-// Unpacks the intact part: a cut chunk is read up to the cut, and one with a false length as far as its
-// packed data go. False if that is nothing.
+// Unpacks the intact part: a cut chunk up to the cut, and one with a wrong length as far as its
+// packed data reach. False if nothing is intact.
 bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
   chunk_position_ = position;
   chunk_ = {};
@@ -190,13 +190,13 @@ bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
     sink_(FaultKind::Corrupt,
           fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
   } else if (result == Unpacked::Cut) {
-    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
+    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} has {} of {} bytes; these are read.",
                                             position, chunk_size_, record.header.size));
   }
   return !chunk_.empty();
 }
 
-// False unless the index is there and complete.
+// False unless the index exists and is complete.
 bool BagSource::listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks) {
   if (index_position < position_ || index_position >= file_.size()) return false;
   FileRecord record;
@@ -218,7 +218,7 @@ bool BagSource::listFromIndex(std::uint64_t index_position, std::uint32_t connec
   return state == RecordState::End && topic_of_connection_.size() == connections && found_chunks == chunks;
 }
 
-// Only chunks with new connections need to be unpacked: the index data after a chunk list them.
+// Only chunks with new connections are unpacked: the index data after a chunk list them.
 void BagSource::listByScan() {
   FileRecord record;
   std::uint64_t chunk = 0, chunk_data = 0;
@@ -238,7 +238,7 @@ void BagSource::listByScan() {
     const std::uint32_t connection = record.header.connection;
     next = recordAfter(at, state, record, chunk_data);
     if (state == RecordState::Damaged || state == RecordState::Cut)
-      has_index_data = false;  // some may be lost
+      has_index_data = false;  // some may be missing
     if (is_index_data) {
       has_index_data = state == RecordState::Whole;
       is_new = is_new || !topic_of_connection_.contains(connection);
@@ -256,7 +256,7 @@ void BagSource::listFromChunk(std::uint64_t position) {
   const bool usable = state == RecordState::Whole || state == RecordState::Cut;
   if (!usable || !record.header.is(rosbag::Op::Chunk)) return;
   const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
-  loadChunk(position, record);  // reading will report its damage
+  loadChunk(position, record);  // its damage is reported on reading
   sink_ = sink;
   BagRecord part;
   while (!chunk_.empty() && takeBagRecord(chunk_, part)) {
@@ -267,7 +267,7 @@ void BagSource::listFromChunk(std::uint64_t position) {
 }
 
 // The record's header has the topic under which messages were stored. The data are the header of the
-// publisher's connection, which may have another name for it, or none where a program wrote the bag itself.
+// publisher's connection, which may have another name, or none if a program wrote the bag itself.
 void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::ConnectionData& data) {
   if (topic_of_connection_.contains(header.connection)) return;
   topic_of_connection_[header.connection] = topics_.size();
@@ -277,7 +277,7 @@ void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::
                      0});
 }
 
-// u32 connection, u32 messages, and so on.
+// u32 connection, u32 messages, ...
 void BagSource::addChunkInfo(std::uint64_t chunk, std::string_view counts) {
   ByteCursor cursor(counts);
   while (!cursor.atEnd()) {
@@ -308,7 +308,7 @@ std::uint64_t BagSource::indexedChunkAfter(std::uint64_t position) const {
   return found == chunk_connections_.end() ? 0 : found->first;
 }
 
-// From one chunk to the next, as long as the index has both.
+// From one chunk to the next, while the index has both.
 void BagSource::skipUnwantedChunks() {
   while (!chunkIsWanted(position_)) {
     const std::uint64_t following = indexedChunkAfter(position_);
@@ -317,7 +317,7 @@ void BagSource::skipUnwantedChunks() {
   }
 }
 
-// If a record is damaged, or longer than possible, the index gives the next place, or a search.
+// If a record is damaged, or longer than possible, the index or a search gives the next position.
 bool BagSource::nextChunk() {
   FileRecord record;
   for (;;) {
@@ -330,7 +330,7 @@ bool BagSource::nextChunk() {
     position_ = indexed == 0 ? recordAfter(at, state, record, chunk_data_) : fits ? end : indexed;
     if (state != RecordState::Whole || position_ != end) {
       reportDamage(at, state);
-      readRecord(at, record);  // the search has read others
+      readRecord(at, record);  // the search read others
     }
     const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
     if (is_chunk && chunkIsWanted(at) && loadChunk(at, record)) return true;
@@ -344,8 +344,8 @@ void BagSource::reportDamage(std::uint64_t position, RecordState state) {
         fmt::format("The record at byte {} of {} {}; {}.", position, file_.size(),
                     state == RecordState::Damaged ? fmt::format("is damaged, {} bytes are lost", lost)
                                                   : "is cut off or has a false length",
-                    last ? "nothing behind it is read"
-                         : fmt::format("reading goes on with the chunk at byte {}", position_)));
+                    last ? "nothing after it is read"
+                         : fmt::format("reading continues with the chunk at byte {}", position_)));
 }
 
 bool BagSource::nextOfChunk(SourceMessage& message) {
@@ -355,7 +355,7 @@ bool BagSource::nextOfChunk(SourceMessage& message) {
     if (!takeBagRecord(chunk_, record)) {
       if (!chunk_is_cut_)
         sink_(FaultKind::Corrupt,
-              fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+              fmt::format("The chunk at byte {} is damaged from its byte {}; the rest is left out.",
                           chunk_position_, at));
       chunk_ = {};
       return false;

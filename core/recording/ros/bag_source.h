@@ -1,5 +1,5 @@
-// ROS 1 bags, format 2.0, chunk by chunk: memory is that of the largest chunk. A damaged bag is read as far
-// as it is intact, and the FaultSink gets the missing parts.
+// ROS 1 bags, format 2.0, chunk by chunk: memory is that of the largest chunk. The intact part of a damaged
+// bag is read, and the missing parts are reported to the FaultSink.
 #pragma once
 
 #include "core/recording/random_access_file.h"
@@ -33,11 +33,11 @@ class BagSource : public MessageSource {
   enum class RecordState {
     Whole,
     End,
-    Cut,      // its header is whole, its data go beyond the file's end
-    Damaged,  // not even that
+    Cut,      // its header is complete, its data exceed the file
+    Damaged,  // its header is damaged
   };
 
-  // A record of the file: its header, and the place of its data.
+  // A record of the file: its header, and the position of its data.
   struct FileRecord {
     rosbag::RecordHeader header;  // views into header_bytes_
     std::uint64_t data_position = 0;
@@ -69,16 +69,16 @@ class BagSource : public MessageSource {
   FaultSink sink_;
   RandomAccessFile file_;
   std::uint64_t position_ = 0;    // of the next record to read
-  std::uint64_t chunk_data_ = 0;  // where those of the last chunk begin
+  std::uint64_t chunk_data_ = 0;  // begin of the last chunk's data
   std::vector<SourceTopic> topics_;
   std::vector<bool> wanted_;
   std::unordered_map<std::uint32_t, std::size_t> topic_of_connection_;
   std::map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
   std::string header_bytes_, unpacked_;
   std::uint64_t chunk_position_ = 0;  // in the file
-  std::string_view chunk_;            // the rest of the records in the chunk being read
-  std::size_t chunk_size_ = 0;        // of all of them
-  bool chunk_is_cut_ = false;         // and so its last record, which was reported
+  std::string_view chunk_;            // remaining records of the current chunk
+  std::size_t chunk_size_ = 0;        // of all its records
+  bool chunk_is_cut_ = false;         // and its last record, which was reported
 };
 
 }  // namespace evical::ros

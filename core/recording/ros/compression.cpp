@@ -40,7 +40,7 @@ ZstdContext zstdContext() {
   return context;
 }
 
-// Output until the data end or contradict themselves; `whole` is true if a frame just ended.
+// Appends output until the data end or are invalid; `whole` is true if a frame just ended.
 Unpacked unpackZstdStream(std::string_view data, std::uint64_t largest_bytes, std::string& output,
                           bool& whole) {
   const ZstdContext context = zstdContext();
@@ -132,14 +132,14 @@ Unpacked copyPlain(std::string_view data, std::uint64_t size_bytes, std::string&
 }
 
 void packLz4(std::string_view data, std::string& output) {
-  LZ4F_preferences_t preferences{};  // what roslz4 insists on
+  LZ4F_preferences_t preferences{};  // required by roslz4
   preferences.frameInfo.blockMode = LZ4F_blockIndependent;
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
   preferences.frameInfo.blockSizeID = LZ4F_max1MB;
   output.resize(LZ4F_compressFrameBound(data.size(), &preferences));
   const std::size_t written =
       LZ4F_compressFrame(output.data(), output.size(), data.data(), data.size(), &preferences);
-  if (LZ4F_isError(written)) throw std::bad_alloc();  // the bound leaves no other reason
+  if (LZ4F_isError(written)) throw std::bad_alloc();  // the bound excludes any other reason
   output.resize(written);
 }
 
@@ -147,7 +147,7 @@ void packZstd(std::string_view data, std::string& output) {
   output.resize(ZSTD_compressBound(data.size()));
   const std::size_t written =
       ZSTD_compress(output.data(), output.size(), data.data(), data.size(), kZstdLevel);
-  if (ZSTD_isError(written) != 0U) throw std::bad_alloc();  // the bound leaves no other reason
+  if (ZSTD_isError(written) != 0U) throw std::bad_alloc();  // the bound excludes any other reason
   output.resize(written);
 }
 

@@ -1,5 +1,5 @@
-// Unpacks the chunks and messages of ROS recordings. A false size does not make memory grow: memory follows
-// the actual data.
+// Compression of chunks and messages of ROS recordings. A wrong size does not make memory grow: memory is
+// proportional to the actual data.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace evical::ros {
 
 enum class Unpacked {
   Whole,
-  Cut,      // the data ended early; what came out before is good
-  Damaged,  // the data contradict themselves; nothing came out
+  Cut,      // the data ended early; the output so far is good
+  Damaged,  // the data are invalid; no output
 };
 
-// All replace `output` by the content, which has `size_bytes`.
+// All replace `output` by the content of `size_bytes`.
 Unpacked unpackLz4(std::string_view data, std::uint64_t size_bytes, std::string& output);  // LZ4 frames
 Unpacked unpackBz2(std::string_view data, std::uint64_t size_bytes, std::string& output);
 Unpacked unpackZstd(std::string_view data, std::uint64_t size_bytes, std::string& output);

@@ -7,7 +7,7 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::int64_t kLongest_us = std::int64_t{1} << 41;  // of a message; what goes beyond is damage
+constexpr std::int64_t kLongest_us = std::int64_t{1} << 41;  // per message; larger times are damage
 constexpr std::int64_t kLatestBase_ns = kLatestTime_ns - 1000 * 2 * kLongest_us;
 
 template <class Word>

@@ -40,7 +40,7 @@ class EventPacketDecoder {
   bool has_sequence_ = false;
   std::uint64_t last_sequence_ = 0;
   std::uint64_t lost_messages_ = 0;
-  std::uint64_t triggers_ = 0;  // of the encoding of this name
+  std::uint64_t triggers_ = 0;  // of this encoding
 };
 
 }  // namespace evical::ros

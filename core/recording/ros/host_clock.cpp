@@ -6,7 +6,7 @@ namespace evical::ros {
 namespace {
 
 constexpr std::int64_t kSpan_ns = 3'000'000'000;
-constexpr std::size_t kFewestForDrift = 5;  // spans; a drift of 20 ppm is then 0.3 ms, what delays jitter by
+constexpr std::size_t kFewestForDrift = 5;  // spans; a drift of 20 ppm is then 0.3 ms, the jitter of delays
 constexpr double kNs_s = 1e-9;
 
 }  // namespace
@@ -22,7 +22,7 @@ std::optional<HostClockOffset> HostClock::offset() const {
   const auto lower = [](const auto& a, const auto& b) { return a.second.offset_ns < b.second.offset_ns; };
   const std::int64_t least_ns = std::min_element(earliest_.begin(), earliest_.end(), lower)->second.offset_ns;
   if (earliest_.size() < kFewestForDrift) return HostClockOffset{kNs_s * static_cast<double>(least_ns), {}};
-  // A line by least squares, with numbers small enough for doubles.
+  // Least-squares line, with numbers small enough for doubles.
   const std::int64_t first_ns = earliest_.begin()->second.sensor_ns;
   double mean_t = 0.0, mean_o = 0.0, tt = 0.0, to = 0.0;
   const auto count = static_cast<double>(earliest_.size());

@@ -1,5 +1,5 @@
 // Offset of a sensor's clock to that of the host that received its data, from stamps at the arrival of
-// packets: each is late by a different delay, so the earliest ones count.
+// packets. Delays vary, so the earliest packets determine it.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace evical::ros {
 // host_time = sensor_time + offset, at the middle of the recording; drift_ppm is its change.
 struct HostClockOffset {
   double offset_s = 0.0;
-  std::optional<double> drift_ppm;  // nothing from short recordings
+  std::optional<double> drift_ppm;  // nullopt for short recordings
 };
 
 class HostClock {
  public:
   void add(std::int64_t sensor_ns, std::int64_t host_ns);
 
-  // Nothing before the first packet.
+  // nullopt before the first packet.
   std::optional<HostClockOffset> offset() const;
 
  private:

@@ -1,4 +1,4 @@
-// The messages of ROS with pictures: sensor_msgs/Image and sensor_msgs/CompressedImage. Pixels stay encoded
+// ROS messages with pictures: sensor_msgs/Image and sensor_msgs/CompressedImage. Pixels stay encoded
 // as stored.
 #pragma once
 
@@ -11,35 +11,35 @@
 
 namespace evical::ros {
 
-// The encodings and formats that the two below hand out, for people.
+// Encodings and formats that can be read, for people.
 inline constexpr const char* kReadableImages =
     "mono8, mono16, 8UC1, 16UC1, rgb8, bgr8, rgba8, bgra8 and bayer_*8";
 inline constexpr const char* kReadablePackedImages = "jpeg and png";
 
 bool isReadableImage(std::string_view encoding);      // "mono8"
-bool isReadablePackedImage(std::string_view format);  // "jpeg", "bgr8; png compressed bgr8"; empty: perhaps
+bool isReadablePackedImage(std::string_view format);  // "jpeg", "bgr8; png compressed bgr8"; true if empty
 
 // A message's picture and its properties; the views point into it.
 struct ImageMessage {
   std::int64_t stamp_ns = 0;
-  Resolution size_px;         // of packed ones from the picture's header, if that states it
+  Resolution size_px;         // of packed pictures: from their header, if stated
   std::string_view encoding;  // or the format of a packed one
   bool big_endian = false;
   std::size_t row_bytes = 0;
   std::string_view bytes;
 };
 
-// False if the bytes do not fit what they claim.
+// False if the bytes do not fit the stated sizes.
 bool parseImage(std::string_view message, Serialization serialization, ImageMessage& image);
 bool parsePackedImage(std::string_view message, Serialization serialization, ImageMessage& image);
 
 // Frame of a message with a readable encoding or format; false if its numbers contradict one another, or
-// packed bytes are not such a picture.
+// packed bytes are not a picture of this format.
 bool toFrame(const ImageMessage& image, Frame& frame);
 bool toPackedFrame(const ImageMessage& image, Frame& frame);
 
-// Both append a message; false, and nothing, if the message cannot represent the frame: packed ones support
-// JPEG and PNG only. Neither has a field for exposures.
+// Both append a message; false, without appending, if the message cannot represent the frame: packed ones
+// support JPEG and PNG only. Neither has a field for exposures.
 bool encodeImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
                  std::string& message);
 bool encodePackedImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,

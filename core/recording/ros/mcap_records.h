@@ -31,7 +31,7 @@ enum class Op : std::uint8_t {
 
 // All views point into the content parsed. The parsers return false if the content does not fit.
 struct Schema {
-  std::uint16_t id = 0;  // 0 is none
+  std::uint16_t id = 0;  // 0: none
   std::string_view name, encoding, data;
 };
 bool parseSchema(std::string_view content, Schema& schema);
@@ -61,14 +61,14 @@ bool parseChunkHead(std::string_view content, ChunkHead& head);
 ros::Unpacked unpackChunk(std::string_view compression, std::string_view data, std::uint64_t size_bytes,
                           std::string& output);
 
-// A chunk's place, and the channels of its messages.
+// A chunk's position, and the channels of its messages.
 struct ChunkIndex {
   std::uint64_t position = 0;
   std::vector<std::uint16_t> channels;
 };
 bool parseChunkIndex(std::string_view content, ChunkIndex& index);
 
-// The channel and number of the messages that an index behind a chunk lists.
+// Channel and number of the messages in an index after a chunk.
 struct MessageIndex {
   std::uint16_t channel = 0;
   std::uint64_t messages = 0;

@@ -20,7 +20,7 @@ struct McapRecord {
   bool is(mcap::Op other) const { return op == static_cast<std::uint8_t>(other); }
 };
 
-// Takes the first of the records; false, and they stay, if it is damaged.
+// Removes the first record; returns false without doing so if it is damaged.
 bool takeMcapRecord(std::string_view& records, McapRecord& record) {
   ByteCursor cursor(records);
   record.op = cursor.number<std::uint8_t>();
@@ -82,12 +82,12 @@ bool McapSource::readHead(std::uint64_t position, Record& record) {
   return true;
 }
 
-// False if the file ends before it does.
+// False if the file ends too early.
 bool McapSource::readContent(const Record& record, std::string_view& content) {
   return file_.read(record.content, record.size, content);
 }
 
-// False unless the summary is there and names all channels.
+// False unless the summary exists and names all channels.
 bool McapSource::listFromSummary() {
   const std::uint64_t tail = mcap::kFooter_bytes + mcap::kMagic.size();
   Record record;
@@ -171,7 +171,7 @@ void McapSource::countPending(PendingChunk& chunk) {
     for (const auto& [channel, count] : chunk.messages) topics_[topic_of_channel_[channel]].messages += count;
   } else if (Record record; readHead(chunk.position, record)) {
     const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
-    if (loadChunk(record)) {  // reading will report its damage
+    if (loadChunk(record)) {  // its damage is reported on reading
       McapRecord part;
       while (takeMcapRecord(chunk_, part)) {
         if (part.is(mcap::Op::Schema)) addSchema(part.content);
@@ -202,7 +202,7 @@ void McapSource::addChannel(std::string_view content) {
   entry.topic = {std::string(channel.topic), schema.name, "", schema.definition,
                  channel.encoding == "ros1" ? Serialization::Ros1 : Serialization::Cdr};
   if (channel.encoding != "ros1" && channel.encoding != "cdr") {
-    entry.topic.type += fmt::format(" ({})", channel.encoding);  // known to nobody
+    entry.topic.type += fmt::format(" ({})", channel.encoding);  // unknown type
     entry.topic.definition.clear();
   }
   topic_of_channel_[channel.id] = topics_.size();
@@ -233,7 +233,7 @@ bool McapSource::nextOfChunk(SourceMessage& message) {
   if (!takeMcapRecord(chunk_, record)) {
     if (!chunk_is_cut_)
       sink_(FaultKind::Corrupt,
-            fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+            fmt::format("The chunk at byte {} is damaged from its byte {}; the rest is left out.",
                         record_position_, at));
     chunk_ = {};
     return false;
@@ -253,7 +253,7 @@ bool McapSource::nextRecord(SourceMessage& message) {
       sink_(FaultKind::Truncated, fmt::format("The file ends within a record, at byte {}.", file_.size()));
     } else if (closed_) {
       sink_(FaultKind::Corrupt,
-            "Records are damaged: they do not lead to the file's end. Some may be left out.");
+            "Records are damaged: they do not reach the file's end. Some may be left out.");
     }
     return false;
   }
@@ -311,7 +311,7 @@ bool McapSource::loadChunk(const Record& record) {
   if (has_head && head.uncompressed_bytes <= kLargestMcapChunk_bytes &&
       file_.read(record.content + head.size, records_bytes, bytes)) {
     if (compression.empty() && bytes.size() == head.uncompressed_bytes) {
-      chunk_ = bytes;  // where they are
+      chunk_ = bytes;  // not copied
       result = Unpacked::Whole;
     } else {
       result = mcap::unpackChunk(compression, bytes, head.uncompressed_bytes, unpacked_);
@@ -330,7 +330,7 @@ void McapSource::reportChunk(Unpacked result, const Record& record, std::uint64_
     sink_(FaultKind::Corrupt,
           fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", record.position));
   } else if (result == Unpacked::Cut) {
-    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
+    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} has {} of {} bytes; these are read.",
                                             record.position, chunk_size_, expected_bytes));
   }
 }
@@ -340,12 +340,12 @@ void McapSource::checkSum(const mcap::ChunkHead& head, const Record& record) {
   const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(chunk_.data()), chunk_.size());
   if (crc != head.crc) {
     sink_(FaultKind::Corrupt,
-          fmt::format("The chunk at byte {} does not fit its checksum; it is read nevertheless.",
+          fmt::format("The chunk at byte {} contradicts its checksum; it is read nevertheless.",
                       record.position));
   }
 }
 
-// A record with an impossible length, or of no known kind.
+// A record with an impossible length, or of unknown kind.
 void McapSource::skipDamage(const Record& record) {
   const bool is_chunk = record.is(mcap::Op::Chunk);
   position_ = chunkAfter(record.position);
@@ -353,20 +353,20 @@ void McapSource::skipDamage(const Record& record) {
   sink_(last && isKnown(record.op) ? FaultKind::Truncated : FaultKind::Corrupt,
         fmt::format("The record at byte {} of {} is {}; {}.", record.position, file_.size(),
                     isKnown(record.op) ? "cut off or has a false length" : "damaged",
-                    last ? "nothing behind it is read"
-                         : fmt::format("reading goes on with the chunk at byte {}", position_)));
+                    last ? "nothing after it is read"
+                         : fmt::format("reading continues with the chunk at byte {}", position_)));
   ended_ = last;
   if (is_chunk) loadChunk(record);
 }
 
-// From the index if there is one, otherwise by searching; the file's size if there is none.
+// Next chunk, from the index if it exists, otherwise by searching; the file's size if there is none.
 std::uint64_t McapSource::chunkAfter(std::uint64_t position) {
   const auto found = chunk_channels_.upper_bound(position);
   if (found != chunk_channels_.end()) return found->first;
   return chunk_channels_.empty() ? scanForChunk(position + 1) : file_.size();
 }
 
-// A packed chunk has the name of its compression at a fixed place.
+// A packed chunk has the name of its compression at a fixed position.
 std::uint64_t McapSource::scanForChunk(std::uint64_t from) {
   constexpr std::uint64_t kName = mcap::kRecordHead_bytes + 8 + 8 + 8 + 4;  // its length, behind the crc
   constexpr std::uint64_t kBlock_bytes = 1 << 20, kLongestName_bytes = 8;
@@ -377,7 +377,7 @@ std::uint64_t McapSource::scanForChunk(std::uint64_t from) {
   for (std::uint64_t begin = from + kName; begin < file_.size(); begin += kBlock_bytes) {
     std::string_view bytes;
     if (!file_.read(begin, std::min(kBlock_bytes + kLongestName_bytes, file_.size() - begin), bytes)) break;
-    block = bytes;  // looking at records reads others
+    block = bytes;  // checking records reads others
     std::uint64_t first = file_.size();
     for (const std::string_view name : kNames) {
       for (std::size_t hit = block.find(name); hit != std::string::npos; hit = block.find(name, hit + 1)) {

@@ -1,5 +1,5 @@
-// MCAP files, chunk by chunk: memory is that of the largest chunk. A file that was cut or has no summary is
-// read in sequence as far as it is intact.
+// MCAP files, chunk by chunk: memory is that of the largest chunk. The intact part of a file that was cut or
+// has no summary is read in sequence.
 #pragma once
 
 #include "core/recording/random_access_file.h"
@@ -36,11 +36,11 @@ class McapSource : public MessageSource {
   struct Record {
     std::uint8_t op = 0;
     std::uint64_t position = 0, content = 0,
-                  size = 0;  // where it and its content begin, the content's length
+                  size = 0;  // begin of record and content, length of the content
     bool is(mcap::Op other) const { return op == static_cast<std::uint8_t>(other); }
     std::uint64_t end() const { return content + size; }
   };
-  // A chunk whose channels may follow from the indexes after it.
+  // A chunk whose channels may be determined by the indexes after it.
   struct PendingChunk {
     std::uint64_t position = 0;
     std::map<std::uint16_t, std::uint64_t> messages;
@@ -78,12 +78,12 @@ class McapSource : public MessageSource {
   std::uint64_t position_ = 0;                                          // of the next record
   std::uint64_t record_position_ = 0;                                   // of the last one read
   std::string unpacked_;
-  std::string_view chunk_;                    // the rest of the records in the chunk being read
-  std::size_t chunk_size_ = 0;                // of all of them
-  bool chunk_is_cut_ = false;                 // and so its last record, which was reported
+  std::string_view chunk_;                    // remaining records of the current chunk
+  std::size_t chunk_size_ = 0;                // of all its records
+  bool chunk_is_cut_ = false;                 // and its last record, which was reported
   std::vector<std::string> without_schema_;   // topics
   std::set<std::uint16_t> unknown_channels_;  // of messages
-  bool closed_ = false;                       // the file has its end
+  bool closed_ = false;                       // the file is complete
   bool ended_ = false;
 };
 

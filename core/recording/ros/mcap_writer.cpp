@@ -28,7 +28,7 @@ std::uint32_t crcOf(std::uint32_t crc, std::string_view bytes) {
 }
 
 std::uint16_t idOf(std::size_t stream) {
-  return static_cast<std::uint16_t>(stream + 1);  // schema 0 would be none
+  return static_cast<std::uint16_t>(stream + 1);  // 0 means no schema
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ void McapWriter::appendIndexes(ChunkInfo& chunk) {
   chunk.index_bytes = file_.size() - begin;
 }
 
-// Groups of records of one kind, where each group is, and the footer, whose checksum covers all of them.
+// Writes groups of records of one kind, their positions, and the footer with a checksum of all of them.
 void McapWriter::appendSummary() {
   const std::uint64_t start = file_.size();
   std::string summary, offsets;

@@ -1,5 +1,5 @@
 // MCAP files as ROS 2 records them (profile ros2, CDR), with the summary and indexes
-// that other programs seek by.
+// for random access.
 #pragma once
 
 #include "core/recording/part_file.h"
@@ -24,7 +24,7 @@ class McapWriter : public ros::RosWriter {
   // Channel of the stream of the same number; its id is also its schema's.
   struct Channel {
     bool announced = false;                                      // its record is in a chunk
-    std::uint64_t messages = 0;                                  // of the file
+    std::uint64_t messages = 0;                                  // in the file
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the chunk: time, offset in it
   };
   struct ChunkInfo {

@@ -1,4 +1,4 @@
-// The fields of a ROS message one after the other, as ROS 1 or CDR serialises them: the counterpart of MessageCursor.
+// Serialisation of the fields of a ROS message, as ROS 1 or CDR: the counterpart of MessageCursor.
 #pragma once
 
 #include "core/base/time.h"
@@ -58,7 +58,7 @@ class MessageBytes {
  private:
   std::string& bytes_;
   bool cdr_;
-  std::size_t begin_;  // what alignment counts from
+  std::size_t begin_;  // origin of the alignment
 };
 
 }  // namespace evical::ros

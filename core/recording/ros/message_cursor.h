@@ -1,5 +1,5 @@
-// The fields of a ROS message one after the other, as ROS 1 or CDR (ROS 2) serialises them, out of untrusted
-// bytes: no read goes past the end, a failed one makes ok() false for good and yields zeros.
+// Deserialisation of the fields of a ROS message, as ROS 1 or CDR (ROS 2), from untrusted
+// bytes: no read goes past the end; a failed one makes ok() false permanently and yields zeros.
 #pragma once
 
 #include "core/recording/byte_cursor.h"
@@ -33,7 +33,7 @@ class MessageCursor {
   bool isRos1() const { return !cdr_; }
   bool bigEndian() const { return big_endian_; }
   std::size_t remaining() const { return bytes_.remaining(); }
-  // CDR may end in padding.
+  // CDR may end with padding.
   bool wellEnded() const { return ok() && (cdr_ || bytes_.atEnd()); }
 
   template <class Number>

@@ -9,13 +9,13 @@
 namespace evical::ros {
 namespace {
 
-constexpr int kDeepestNesting = 8;            // of types; a definition that names itself stops here
-constexpr std::size_t kLongestLayout = 8192;  // characters; nesting may make it explode
+constexpr int kDeepestNesting = 8;            // of types; ends recursive definitions
+constexpr std::size_t kLongestLayout = 8192;  // characters; limits nested definitions
 
 struct FieldLine {
   std::string_view type, array, name;  // array: "", "[]" or "[9]"
 };
-// By the last part of a type's name; the message itself under "".
+// By the last part of a type's name; "" for the message itself.
 using TypeTable = std::map<std::string_view, std::vector<FieldLine>>;
 
 // "float64[9] name # comment" is a field; "uint8 LIMIT=3" a constant, which is not serialised.
@@ -50,7 +50,7 @@ TypeTable parseDefinition(std::string_view definition) {
   return types;
 }
 
-// Empty for other than built-in types.
+// Empty except for built-in types.
 std::string_view builtIn(std::string_view type) {
   if (type == "bool" || type == "byte" || type == "char") return "uint8";  // one byte, all of them
   constexpr std::array<std::string_view, 13> kKnown = {"uint8",  "int8",   "uint16",  "int16",   "uint32",

@@ -1,4 +1,4 @@
-// Serialised layout of a ROS message definition, so that copies of a type under another name are recognised.
+// Serialised layout of a ROS message definition, to recognise copies of a type under another name.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ inline std::string_view lastPart(std::string_view type) {
   return type.substr(type.rfind('/') + 1);
 }
 
-// The fields in order with nested types expanded and their names gone: "(uint32 seq,...) header,uint32
-// height,...". Nothing if the definition names a type that it does not define; empty for an empty one.
+// Fields in order with nested types expanded and without their names: "(uint32 seq,...) header,uint32
+// height,...". nullopt if the definition names a type that it does not define; empty for an empty one.
 std::optional<std::string> messageLayout(std::string_view definition);
 
 }  // namespace evical::ros

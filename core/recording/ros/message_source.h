@@ -1,4 +1,4 @@
-// One file of a ROS recording as its messages, for any container.
+// One file of a ROS recording as a sequence of messages, for any container.
 #pragma once
 
 #include "core/recording/ros/topic_streams.h"
@@ -20,21 +20,21 @@ struct SourceTopic {
 struct SourceMessage {
   std::size_t topic = 0;  // index into MessageSource::topics()
   std::int64_t record_time_ns = 0;
-  std::string_view bytes;  // until the next call
+  std::string_view bytes;  // valid until the next call
 };
 
-// Takes a fault of the file: kind and text, as in RecordingFault.
+// Receives a fault of the file: kind and text, as in RecordingFault.
 using FaultSink = std::function<void(FaultKind kind, const std::string& text)>;
 
-// Constructors throw CalibrationError (BadInput) if nothing can be read; what is lost
-// later goes to their FaultSink.
+// Constructors throw CalibrationError (BadInput) if nothing can be read; later losses
+// are reported to their FaultSink.
 class MessageSource {
  public:
   virtual ~MessageSource() = default;
   virtual const char* format() const = 0;                      // "mcap", "rosbag"
   virtual const std::vector<SourceTopic>& topics() const = 0;  // may grow while a damaged file is read
-  virtual bool isIndexed() const = 0;                          // skips parts in which nothing wanted is
-  // All if never called. While messages are read this is a hint: others may still come.
+  virtual bool isIndexed() const = 0;                          // skips parts without selected topics
+  // Default: all. A hint while messages are read: others may still be returned.
   virtual void want(std::vector<bool> topics) = 0;
   virtual bool next(SourceMessage& message) = 0;  // false at the end
   virtual void rewind() = 0;

@@ -168,7 +168,7 @@ Content contentOf(std::string_view type, std::string_view md5, std::string_view 
   const std::optional<std::string> layout = messageLayout(definition);
   for (const MessageType* known : kTypes)
     if (layout && layout == messageLayout(known->definition)) return known->content;
-  // An existing definition with other fields overrules the name.
+  // The fields of an existing definition take precedence over the name.
   if (layout && !layout->empty()) return Content::Other;
   return contentByLastPart(type);
 }

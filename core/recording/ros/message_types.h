@@ -1,4 +1,4 @@
-// Types of ROS messages that are read, and their recognition.
+// Types of ROS messages that can be read, and their recognition.
 #pragma once
 
 #include "core/data/recording.h"
@@ -14,9 +14,9 @@ StreamType streamTypeOf(Content content);
 
 struct MessageType {
   Content content;
-  const char* name;        // the name we write
-  const char* md5;         // of the definition: equal md5, equal layout; empty for ROS 2
-  const char* definition;  // so that other programs can read what we write
+  const char* name;        // name that Evical writes
+  const char* md5;         // of the definition; empty for ROS 2
+  const char* definition;  // for other programs that read the file
 };
 const MessageType& eventArrayType(Serialization serialization);
 const MessageType& imuType(Serialization serialization);
@@ -24,7 +24,7 @@ const MessageType& imageType(Serialization serialization);
 const MessageType& packedImageType(Serialization serialization);
 
 // By md5 first, then by the names of known packages, then by the fields of the definition, and without one by
-// the last part of the name: packages get renamed and copied.
+// the last part of the name: packages are renamed and copied.
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition);
 
 }  // namespace evical::ros

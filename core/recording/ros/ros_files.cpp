@@ -27,7 +27,7 @@ bool isRecordingFile(const fs::path& path) {
   return false;
 }
 
-// "bag_10" comes behind "bag_9".
+// "bag_10" is after "bag_9".
 std::vector<fs::path> filesByNumber(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -64,7 +64,7 @@ std::string magicBytes(const fs::path& path) {
   return bytes;
 }
 
-// Keeps the temporary file as long as its source.
+// Keeps the temporary file during the lifetime of its source.
 class UnpackedSource : public MessageSource {
  public:
   UnpackedSource(const fs::path& path, const FaultSink& sink)
@@ -122,7 +122,7 @@ std::unique_ptr<MessageSource> openRosFile(const fs::path& path, const FaultSink
   if (start.starts_with(kSqliteMagic)) return std::make_unique<SqliteSource>(path, sink);
   if (start.starts_with(kZstdMagic) && path.extension() != kUnpackedEnding)
     return std::make_unique<UnpackedSource>(path, sink);
-  throw badInput(path.string(), start.empty() ? "the file is empty" : "this is no file of a ROS recording",
+  throw badInput(path.string(), start.empty() ? "the file is empty" : "this is not a file of a ROS recording",
                  "Record again, or copy it again");
 }
 

@@ -1,4 +1,4 @@
-// Files of a ROS recording, and opening them with any compression.
+// Files of a ROS recording, opened with any compression.
 #pragma once
 
 #include "core/recording/ros/message_source.h"
@@ -10,8 +10,8 @@
 
 namespace evical::ros {
 
-// A file, or a folder's files in the order of its metadata.yaml; if it is missing or damaged, in the order of
-// their numbers. Throws CalibrationError (BadInput) if there are none.
+// A file, or a folder's files in the order of its metadata.yaml; if that is missing or damaged, in the order
+// of their numbers. Throws CalibrationError (BadInput) if there are none.
 std::vector<std::filesystem::path> rosFiles(const std::filesystem::path& path, const FaultSink& sink);
 
 // True if a folder looks like a ROS 2 recording.

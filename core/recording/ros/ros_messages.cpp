@@ -26,7 +26,7 @@ void takeResolution(MessageCursor& cursor, Resolution& resolution_px) {
     resolution_px = {static_cast<int>(width), static_cast<int>(height)};
 }
 
-// The three below hand out the largest nanoseconds of the stamps: beyond a second, one is none.
+// The three below return the largest nanoseconds of the stamps: above one second, a stamp is invalid.
 std::uint32_t eventsOfRos1(std::string_view bytes, std::vector<Event>& events) {
   const char* at = bytes.data();
   std::uint32_t largest_ns = 0;
@@ -71,7 +71,7 @@ std::uint32_t eventsOfBigEndianCdr(MessageCursor& cursor, std::vector<Event>& ev
   return largest_ns;
 }
 
-// The bytes of `count` events. In CDR all but the first take 16 with their padding.
+// Bytes of `count` events. In CDR all but the first have 16 with their padding.
 std::uint64_t sizeOfEvents(std::uint64_t count, Serialization serialization) {
   if (serialization == Serialization::Ros1) return count * kEventBytes;
   return count == 0 ? 0 : 16 * count - 3;
@@ -114,7 +114,7 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
     for (int i = 0; i < 3; ++i) vector[i] = cursor.number<double>();
   };
   skip(4 + 9);  // orientation and its covariance
-  // By the convention of sensor_msgs, a covariance that begins with -1 means that this was not measured.
+  // By the convention of sensor_msgs, a covariance that begins with -1 marks a missing measurement.
   const auto isMeasured = [&] {
     const bool measured = cursor.number<double>() != -1.0;
     skip(8);
@@ -166,8 +166,8 @@ void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization se
   MessageBytes bytes(message, serialization);
   bytes.appendHeader(sequence, sample.time_ns);
   std::array<double, 4 + 9 + 3 + 9 + 3 + 9> numbers{};
-  numbers[3] = 1.0;   // no rotation, and
-  numbers[4] = -1.0;  // by the convention of sensor_msgs: there is no estimate of the orientation
+  numbers[3] = 1.0;   // no rotation,
+  numbers[4] = -1.0;  // marked as missing, by the convention of sensor_msgs
   for (int i = 0; i < 3; ++i) {
     numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
     numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];

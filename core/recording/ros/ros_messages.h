@@ -1,4 +1,4 @@
-// The messages of ROS that carry events and IMU samples, as the bytes of a recording.
+// ROS messages with events and IMU samples, as the bytes of a recording.
 #pragma once
 
 #include "core/data/recording.h"
@@ -12,8 +12,8 @@
 
 namespace evical::ros {
 
-// All replace what they hand out; false, and nothing, if the bytes do not fit what they claim or a stamp is
-// none. The resolution changes only where the message states one.
+// All replace their output; false, without output, if the bytes do not fit the stated sizes or a stamp is
+// invalid. The resolution changes only if the message states one.
 bool decodeEventArray(std::string_view message, Serialization serialization, std::vector<Event>& events,
                       Resolution& resolution_px);
 bool decodeImu(std::string_view message, Serialization serialization, std::vector<RawImuSample>& samples);
@@ -21,7 +21,7 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
 // event_camera_msgs/EventPacket: events in an encoding of the sensor.
 struct EventPacket {
   std::int64_t stamp_ns = 0;  // of the host
-  Resolution resolution_px;   // unknown where the message states none
+  Resolution resolution_px;   // unknown if the message states none
   std::uint64_t sequence = 0;
   std::int64_t time_base_ns = 0;
   std::string_view encoding;

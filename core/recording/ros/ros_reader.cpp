@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-// Range of the search for streams that have not been met.
+// Range of the search for streams without messages so far.
 constexpr std::uint64_t kMostLooked_bytes = 64 << 20;
 constexpr int kMostLooked = 20'000;  // messages
 
@@ -32,7 +32,7 @@ RosReader::RosReader(const std::filesystem::path& path) : path_(path.string()) {
   if (files_.size() > 1) source_.reset();
 }
 
-// A single file must be readable, one of many need not.
+// A single file must be readable; one of several may be unreadable.
 bool RosReader::openFile(std::size_t index) {
   file_ = index;
   source_.reset();
@@ -53,7 +53,7 @@ void RosReader::matchTopics() {
     streams_of_topics_.push_back(topics_.add(source_->topics()[streams_of_topics_.size()].topic));
 }
 
-// Until all streams are known, but not through the whole file.
+// Until all streams are known, but not through the entire file.
 void RosReader::lookIntoFile() {
   const std::size_t faults = topics_.faults().size();
   const std::vector<ros::SourceTopic>& topics = source_->topics();
@@ -77,7 +77,7 @@ void RosReader::lookIntoFile() {
       if (streams_of_topics_[k] == stream) unknown[k] = false;
     if (source_->isIndexed()) source_->want(unknown);
   }
-  topics_.dropFaultsFrom(faults);  // reading will find them again
+  topics_.dropFaultsFrom(faults);  // reading finds them again
   source_->rewind();
 }
 
@@ -86,7 +86,7 @@ bool RosReader::nextFile() {
   const bool is_open = !started_ && source_ != nullptr;
   started_ = true;
   if (!is_open) {
-    const std::size_t faults = topics_.faults().size();  // the look at the files has found them
+    const std::size_t faults = topics_.faults().size();  // found during the search
     while (index < files_.size() && !openFile(index)) ++index;
     topics_.dropFaultsFrom(faults);
     if (index >= files_.size()) return false;

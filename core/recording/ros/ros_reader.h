@@ -1,5 +1,5 @@
-// ROS recordings: bags of ROS 1, and MCAP and sqlite3 files of ROS 2, these alone or as a folder of several
-// whose messages are one recording.
+// ROS recordings: bags of ROS 1, and MCAP and sqlite3 files of ROS 2, alone or as a folder of several
+// files that form one recording.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -36,7 +36,7 @@ class RosReader : public RecordingReader {
   std::string path_, format_;
   std::vector<std::filesystem::path> files_;
   ros::TopicStreams topics_;
-  std::unique_ptr<ros::MessageSource> source_;  // of the file being read
+  std::unique_ptr<ros::MessageSource> source_;  // the current file
   std::vector<std::size_t> streams_of_topics_;  // of source_
   std::size_t file_ = 0;
   bool started_ = false;

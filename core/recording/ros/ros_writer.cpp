@@ -21,8 +21,7 @@ RosWriter::RosWriter(const std::filesystem::path& path, const std::vector<Stream
   for (const StreamInfo& stream : streams) {
     const bool events = stream.type == StreamType::Events;
     if (!events && stream.type != StreamType::Imu && stream.type != StreamType::Frames) {
-      throw badInput(path_,
-                     fmt::format("stream {} holds neither events, IMU samples nor frames", stream.name));
+      throw badInput(path_, fmt::format("stream {} has neither events, IMU samples nor frames", stream.name));
     }
     if (events && !stream.resolution_px.known()) {
       throw badInput(path_, fmt::format("the resolution of stream {} is missing", stream.name));
@@ -42,7 +41,7 @@ void RosWriter::write(std::size_t stream, EventSpan events) {
   std::vector<Event>& gathered = checkedStream(stream, StreamType::Events).events;
   for (const Event& event : events) {
     requireTime(event.time_ns);
-    // A step back starts a message too: within one, readers sort.
+    // A step back also starts a message: readers sort within one.
     const bool full = !gathered.empty() && (event.time_ns < gathered.back().time_ns ||
                                             event.time_ns - gathered.front().time_ns >= kMessageSpan_ns ||
                                             gathered.size() >= kMessageEvents);
@@ -70,8 +69,8 @@ void RosWriter::writeFrame(std::size_t stream, const Frame& frame) {
                                      : encodeImage(frame, target.sequence, serialization_, message_);
   if (!encoded)
     throw calibrationFailed(
-        path_, fmt::format("a frame of {} has no place among sensor_msgs", target.info.name),
-        "JPEG, PNG and plain pixels have; of one stream all frames are either files or plain pixels");
+        path_, fmt::format("a frame of {} fits no message of sensor_msgs", target.info.name),
+        "Use JPEG, PNG or plain pixels; all frames of a stream must be either files or plain pixels");
   appendMessage(stream, target.sequence++, frame.time_ns, message_);
 }
 
@@ -96,8 +95,8 @@ void RosWriter::flushEvents(std::size_t stream) {
 
 void RosWriter::requireTime(std::int64_t time_ns) const {
   if (time_ns >= 0 && time_ns / kSecond_ns < seconds_end_) return;
-  throw calibrationFailed(path_, fmt::format("a ROS recording cannot hold the time {} ns", time_ns),
-                          fmt::format("It holds times from 0 to {} s", seconds_end_));
+  throw calibrationFailed(path_, fmt::format("a ROS recording cannot represent the time {} ns", time_ns),
+                          fmt::format("Its times range from 0 to {} s", seconds_end_));
 }
 
 RosWriter::Stream& RosWriter::checkedStream(std::size_t stream, StreamType type) {

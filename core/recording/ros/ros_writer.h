@@ -1,4 +1,4 @@
-// Common parts of the writers of ROS recordings: events gathered to messages, samples encoded, checks.
+// Common parts of the writers of ROS recordings: grouping of events into messages, encoding, checks.
 #pragma once
 
 #include "core/recording/recording_writer.h"
@@ -21,7 +21,7 @@ class RosWriter : public RecordingWriter {
 
  protected:
   // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams other than
-  // events, IMU samples and frames, or events without a resolution.
+  // events, IMU samples and frames, and for events without a resolution.
   RosWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
             Serialization serialization, std::int64_t seconds_end);
 
@@ -38,7 +38,7 @@ class RosWriter : public RecordingWriter {
     StreamInfo info;
     std::uint32_t sequence = 0;
     std::vector<Event> events;  // of the message being gathered
-    bool packed = false;        // frames as files of their own, as the first is
+    bool packed = false;        // frames are encoded files, like the first one
   };
 
   void flushEvents(std::size_t stream);

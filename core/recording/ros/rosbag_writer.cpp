@@ -14,8 +14,8 @@ namespace {
 
 using ros::sized;
 
-constexpr std::size_t kChunkBytes = 768 * 1024;  // what rosbag record uses
-constexpr std::size_t kBagHeaderBytes = 4096;    // of the whole record, by the format
+constexpr std::size_t kChunkBytes = 768 * 1024;  // as rosbag record
+constexpr std::size_t kBagHeaderBytes = 4096;    // size of the entire record, by the format
 constexpr std::int64_t kBagSecondsEnd = std::int64_t{1} << 32;
 
 std::string bytesOfTime(std::int64_t time_ns) {

@@ -1,4 +1,4 @@
-// ROS 1 bags, format 2.0, with all records that random access needs.
+// ROS 1 bags, format 2.0, with all records for random access.
 #pragma once
 
 #include "core/recording/part_file.h"
@@ -23,7 +23,7 @@ class RosbagWriter : public ros::RosWriter {
   // Connection of the stream of the same number.
   struct Connection {
     bool announced = false;         // its connection record is in a chunk
-    std::vector<IndexEntry> index;  // of the chunk being gathered
+    std::vector<IndexEntry> index;  // of the current chunk
   };
   struct ChunkInfo {
     std::uint64_t position;

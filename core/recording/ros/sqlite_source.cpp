@@ -15,7 +15,7 @@
 namespace evical::ros {
 namespace {
 
-// A path in a URI: what would end it is escaped.
+// Path in a URI, with escaped special characters.
 std::string uriOf(const std::filesystem::path& path, bool immutable) {
   std::string uri = "file:";
   for (const char character : std::filesystem::absolute(path).string()) {
@@ -28,14 +28,14 @@ std::string uriOf(const std::filesystem::path& path, bool immutable) {
   return uri + (immutable ? "?mode=ro&immutable=1" : "?mode=ro");
 }
 
-// A recorder still writes, or died: the newest messages are not yet in the file itself.
+// A recorder is still writing, or crashed: the newest messages are not yet in the file itself.
 bool hasWriteAheadLog(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path.string() + "-wal", error);
   return !error && size > 0;
 }
 
-// Size stated by the file's header; 0 without one.
+// Size stated by the file's header; 0 without header.
 std::uint64_t statedBytes(const std::filesystem::path& path) {
   std::array<unsigned char, 32> header{};
   std::ifstream file(path, std::ios::binary);
@@ -55,9 +55,9 @@ class SqliteSource::Database {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
     status_ = sqlite3_open_v2(uriOf(path, immutable).c_str(), &handle_, flags, nullptr);
     if (!ok()) return;
-    // A file of unknown origin must not run its code.
+    // Code in a file of unknown origin must not run.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
-    // Files that are shorter than stated are refused except in this mode.
+    // Files that are shorter than stated are only accepted in this mode.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_WRITABLE_SCHEMA, cut ? 1 : 0, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -88,7 +88,7 @@ class SqliteSource::Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  // True on a row; then ok() stays, at the end too.
+  // True on a row; ok() stays true at the end.
   bool step() {
     if (handle_ == nullptr) return false;
     status_ = sqlite3_step(handle_);
@@ -138,7 +138,7 @@ void SqliteSource::open() {
                                std::filesystem::file_size(path_), database_->problem()),
                    "Copy it again; try `sqlite3 FILE .recover`");
   }
-  throw badInput(path_.string(), "this SQLite file is no ROS 2 bag: it has no tables topics and messages");
+  throw badInput(path_.string(), "this SQLite file is not a ROS 2 bag: it has no tables topics and messages");
 }
 
 bool SqliteSource::hasTable(const char* name) {
@@ -163,12 +163,12 @@ void SqliteSource::listTopics() {
     if (const auto found = known.find(entry.topic.type); found != known.end())
       entry.topic.definition = found->second;
     if (const std::string format = statement.text(3); format != "cdr") {
-      entry.topic.type += fmt::format(" ({})", format);  // known to nobody
+      entry.topic.type += fmt::format(" ({})", format);  // unknown type
       entry.topic.definition.clear();
     }
     if (statement.text(1).empty() || statement.text(2).empty()) {
       sink_(FaultKind::Corrupt,
-            fmt::format("The table of topics is damaged: that with id {} has no name or no type.",
+            fmt::format("The table of topics is damaged: the entry with id {} has no name or no type.",
                         statement.integer(0)));
     }
     topic_of_id_[statement.integer(0)] = topics_.size();
@@ -178,7 +178,7 @@ void SqliteSource::listTopics() {
   throw badInput(path_.string(), fmt::format("the table of topics cannot be read: {}", database_->problem()));
 }
 
-// Only newer bags have them.
+// Only newer bags have message definitions.
 std::map<std::string, std::string> SqliteSource::definitions() {
   std::map<std::string, std::string> found;
   if (!hasTable("message_definitions")) return found;
@@ -255,13 +255,13 @@ bool SqliteSource::step() {
   return !messages_->ok() && readOnBehindDamage(database_->problem());
 }
 
-// In order of storage from the last message on, over what cannot be read. A page out of place ends
-// again and again where it did before, with messages that were met before: each query begins
-// behind the last one's beginning.
+// In order of storage from the last message on, skipping unreadable parts. A misplaced page ends
+// each query at the same point, with messages that were read before: each query begins
+// after the begin of the last one.
 bool SqliteSource::readOnBehindDamage(const std::string& reason) {
   sink_(FaultKind::Corrupt,
-        fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.", last_id_,
-                    reason));
+        fmt::format("The file is damaged after message {} ({}); readable messages after it are read.",
+                    last_id_, reason));
   by_time_ = false;
   if (last_id_ > from_id_) skip_ids_ = 0;
   from_id_ = std::max(from_id_, last_id_);
@@ -279,7 +279,7 @@ bool SqliteSource::handOut(SourceMessage& message) {
   const std::int64_t id = messages_->integer(0);
   if (!by_time_ && id <= last_id_) {
     sink_(FaultKind::Corrupt,
-          fmt::format("The message with id {} stands behind that with id {}; it is left out.", id, last_id_));
+          fmt::format("The message with id {} is after the one with id {}; it is left out.", id, last_id_));
     return false;
   }
   ++read_;

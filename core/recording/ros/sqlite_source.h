@@ -1,4 +1,4 @@
-// The sqlite3 files of ROS 2 bags (.db3): read-only and never changed, message by message.
+// sqlite3 files of ROS 2 bags (.db3): read-only, message by message.
 #pragma once
 
 #include "core/recording/ros/message_source.h"
@@ -30,7 +30,7 @@ class SqliteSource : public MessageSource {
   double fractionRead() const override;
 
  private:
-  class Database;  // sqlite3 stays behind these
+  class Database;  // hide sqlite3
   class Statement;
 
   void open();
@@ -52,11 +52,11 @@ class SqliteSource : public MessageSource {
   std::vector<bool> wanted_;
   std::map<std::int64_t, std::size_t> topic_of_id_;
   bool cut_ = false;             // shorter than its header states
-  bool by_time_ = true;          // else in the order in which messages were stored
+  bool by_time_ = true;          // otherwise in the order of storage
   std::int64_t last_id_ = 0;     // of the messages read, the largest
-  std::int64_t from_id_ = 0;     // where the query began
-  std::int64_t skip_ids_ = 1;    // where that met no new message
-  std::int64_t largest_id_ = 0;  // of all
+  std::int64_t from_id_ = 0;     // begin of the query
+  std::int64_t skip_ids_ = 1;    // step after a query without new messages
+  std::int64_t largest_id_ = 0;  // of all messages
   std::uint64_t count_ = 0, read_ = 0;
   std::string unpacked_;
 };

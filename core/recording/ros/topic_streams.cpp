@@ -134,25 +134,24 @@ void TopicStreams::finishLooking() {
     state.selected = info.readable && info.type != StreamType::Frames;
     if (state.stampless())
       addFault(info.name, FaultKind::NoStamps,
-               "Stamps are 0; the times of recording are used, which jitter by ms.");
+               "Stamps are 0; the times of recording are used, which have a jitter of some ms.");
     if (state.refused()) {
       addFault(info.name, FaultKind::Encoding,
-               fmt::format("The encoding \"{}\" cannot be read; readable are {}.", state.encoding,
+               fmt::format("The encoding \"{}\" cannot be read; use {}.", state.encoding,
                            state.readableEncodings()));
     }
     if (encoding == Encoding::LibcaerCmp) {
-      addFault(
-          info.name, FaultKind::Encoding,
-          "The encoding libcaer_cmp is lossy: drivers write some rows up to 7 px off, and times that wrap "
-          "at 65.5 ms in long messages. Record with the encoding libcaer.");
+      addFault(info.name, FaultKind::Encoding,
+               "The encoding libcaer_cmp is lossy: drivers write some rows with errors of up to 7 px, and "
+               "times that wrap at 65.5 ms in long messages. Record with the encoding libcaer.");
     }
   }
   listTriggers();
   listed_ = true;
 }
 
-// Separate streams, after all topics: like RAW files, for every topic that may have some, since they come
-// whenever a pin is pulsed, perhaps only at the end.
+// Separate streams, after all topics, as in RAW files, for every topic that may have triggers: a pin may be
+// pulsed at any time, perhaps only at the end.
 void TopicStreams::listTriggers() {
   for (std::size_t i = 0, topics = streams_.size(); i < topics; ++i) {
     if (encodingOf(states_[i].encoding) != Encoding::Evt3 || streams_[i].type != StreamType::Events) continue;
@@ -175,7 +174,7 @@ void TopicStreams::select(const std::string& path, const std::vector<std::size_t
       throw badInput(path,
                      fmt::format("the {} of {} are encoded as \"{}\"", streamTypeName(streams_[stream].type),
                                  streams_[stream].name, state.encoding),
-                     fmt::format("Readable are {}; record or convert them so", state.readableEncodings()));
+                     fmt::format("Record or convert them with one of these: {}", state.readableEncodings()));
     }
     state.selected = true;
   }
@@ -257,7 +256,7 @@ bool TopicStreams::decodeFrame(std::size_t stream, std::string_view message, std
   if (!parse(state.content, message, state.serialization, image)) return false;
   if (!isReadable(state.content, image.encoding)) {
     addFault(info.name, FaultKind::Encoding,
-             fmt::format("There are frames with the encoding \"{}\", which cannot be read; readable are {}.",
+             fmt::format("There are frames with the encoding \"{}\", which cannot be read; use {}.",
                          image.encoding, state.readableEncodings()));
     return true;
   }
@@ -333,10 +332,11 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
   info.host_clock_offset_s = offset->offset_s;
   const std::string drift =
       offset->drift_ppm ? fmt::format(", drifting by {:.1f} ppm", *offset->drift_ppm) : "";
-  addFault(info.name, FaultKind::HostClock,
-           fmt::format("Times are the sensor's own; the host's are later by {:.6f} s{}. For an IMU on the "
-                       "host's clock give the camera clock_offset_s: {:.6f}.",
-                       offset->offset_s, drift, offset->offset_s));
+  addFault(
+      info.name, FaultKind::HostClock,
+      fmt::format("Times are the sensor's; those of the host are later by {:.6f} s{}. With an IMU on the "
+                  "host's clock set the camera's clock_offset_s: {:.6f}.",
+                  offset->offset_s, drift, offset->offset_s));
 }
 
 void TopicStreams::addFault(const std::string& stream, FaultKind kind, const std::string& text) {

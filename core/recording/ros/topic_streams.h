@@ -1,5 +1,5 @@
-// The topics of a ROS recording as streams: which there are, and their messages decoded to packets. Shared by
-// all containers, which only hand out messages; one object follows a recording's files in order.
+// Topics of a ROS recording as streams: their list, and their messages decoded to packets. Shared by
+// all containers, which only return messages; one object processes a recording's files in order.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -17,18 +17,18 @@ namespace evical::ros {
 
 struct Topic {
   std::string name, type;
-  std::string md5, definition;  // empty where the container has none
+  std::string md5, definition;  // empty if the container has none
   Serialization serialization = Serialization::Ros1;
 };
 
 class TopicStreams {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  // The stream of this topic: a new one unless name and type are known, but none once looking has finished.
+  // The stream of this topic: a new one unless name and type are known, but none after finishLooking().
   std::size_t add(const Topic& topic);
   void countMessages(std::size_t stream, std::uint64_t count) { streams_[stream].messages += count; }
 
-  // Resolution, encoding, and whether stamps are stamps, from the first messages of a stream.
+  // Determines resolution, encoding, and the validity of stamps, from the first messages of a stream.
   void lookInto(std::size_t stream, std::string_view message);
   bool knows(std::size_t stream) const;  // true if more messages cannot change it
   void finishLooking();                  // selects the default streams, lists triggers
@@ -37,11 +37,11 @@ class TopicStreams {
   void select(const std::string& path, const std::vector<std::size_t>& streams);
   bool selected(std::size_t stream) const { return stream != kNone && states_[stream].selected; }
 
-  // Replaces the packet by the message's content, sorted; false if that is nothing. `place` is for messages:
-  // the place of the message in the file.
+  // Replaces the packet by the message's content, sorted; false if it is empty. `place`: the message's
+  // place in the file, for error messages.
   bool decode(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
               const std::string& place, Packet& packet);
-  // Rest of a message in which time ran far back; call before the next message.
+  // Rest of a message with a large step back in time; call before the next message.
   bool handOutRest(Packet& packet);
   // Conclusions that need the whole recording.
   void finishReading();
@@ -56,7 +56,7 @@ class TopicStreams {
     Serialization serialization = Serialization::Ros1;
     bool selected = false;
     int looked = 0;  // messages
-    // Stamps in the first messages. Some zeros and nothing else mean no stamps; a single zero may be
+    // Stamps in the first messages. Several zeros and nothing else mean missing stamps; a single zero may be
     // intended.
     std::uint64_t zero_stamps = 0, other_stamps = 0;
     bool stampless() const { return zero_stamps > 1 && other_stamps == 0; }
@@ -67,7 +67,7 @@ class TopicStreams {
     // Decoder of event packets.
     EventPacketDecoder decoder;
     std::optional<std::size_t> trigger_stream;
-    bool refused() const;  // its encoding
+    bool refused() const;  // by its encoding
     const char* readableEncodings() const;
   };
 
@@ -87,7 +87,7 @@ class TopicStreams {
   std::vector<StreamInfo> streams_;
   std::vector<State> states_;  // of streams_
   std::vector<RecordingFault> faults_;
-  std::vector<Event> rest_;  // of a message in which time ran far back
+  std::vector<Event> rest_;  // of a message with a large step back in time
   std::size_t rest_stream_ = 0;
   bool listed_ = false;
 };

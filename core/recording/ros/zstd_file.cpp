@@ -32,11 +32,11 @@ File temporaryFile(std::filesystem::path& path) {
 }
 
 [[noreturn]] void failWriting(const std::filesystem::path& path) {
-  throw calibrationFailed(path.string(), "the recording cannot be unpacked here",
-                          "Check the space on the disk, or set TMPDIR to a folder with more");
+  throw calibrationFailed(path.string(), "the recording cannot be unpacked into the temporary folder",
+                          "Free disk space, or set TMPDIR to another folder");
 }
 
-// Hands out how many bytes of the input were good.
+// Returns the number of intact bytes of the input.
 std::uint64_t unpack(std::istream& input, const File& output, const std::filesystem::path& target,
                      bool& whole) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
@@ -72,7 +72,7 @@ UnpackedZstdFile::UnpackedZstdFile(const std::filesystem::path& path, const Faul
     const std::uint64_t good = unpack(input, output, path_, whole);
     if (!whole) {
       sink(FaultKind::Truncated,
-           fmt::format("The packed file {} is cut off or damaged at byte {}; what is before is read.",
+           fmt::format("The packed file {} is cut off or damaged at byte {}; the part before is read.",
                        path.filename().string(), good));
     }
     if (std::fflush(output.get()) != 0) failWriting(path_);

@@ -9,7 +9,7 @@ namespace evical::ros {
 
 inline constexpr const char* kUnpackedEnding = ".unpacked";
 
-// Removes its file when it goes. A file that is cut off is unpacked as far as it goes.
+// Removes its file on destruction. A file that is cut off is unpacked up to the cut.
 class UnpackedZstdFile {
  public:
   // Throws CalibrationError: BadInput if nothing can be unpacked, CalibrationFailed if there is no space.

@@ -21,7 +21,7 @@ constexpr std::size_t kMostListed = 8;
 constexpr std::size_t kFewestForRate = 10;
 constexpr double kSlowestImu_hz = 20.0, kFastestImu_hz = 20'000.0;
 constexpr double kSlowestPossible_hz = 2.0,
-                 kFastestPossible_hz = 50'000.0;  // beyond, a stated unit is doubted
+                 kFastestPossible_hz = 50'000.0;  // above, a stated unit is doubtful
 
 using Axes = std::array<std::size_t, 3>;
 
@@ -32,7 +32,7 @@ std::vector<std::size_t> columnsOfKind(const TableHeader& header, ColumnKind kin
   return found;
 }
 
-// The three columns of each group that has all of them.
+// Columns of each complete group of three.
 std::vector<Axes> vectorsOf(const TableHeader& header, ColumnKind kind) {
   std::map<std::string, std::vector<std::size_t>> groups;
   for (const std::size_t i : columnsOfKind(header, kind)) groups[header.columns[i].group].push_back(i);
@@ -57,19 +57,19 @@ std::vector<Axes> vectorsOf(const TableHeader& header, ColumnKind kind) {
   return vectors;
 }
 
-// Header lines may be of any IMU; Kalibr's table is "timestamp, omega_x, ..., alpha_x, ...".
+// Header lines of any IMU; Kalibr's table is "timestamp, omega_x, ..., alpha_x, ...".
 std::vector<Axes> accelerationsOf(const TableHeader& header) {
   const std::vector<Axes> named = vectorsOf(header, ColumnKind::Acceleration);
   return named.empty() && header.has(ColumnKind::AngularRate) ? vectorsOf(header, ColumnKind::Alpha) : named;
 }
 
-// What the session would say; '?' where these names do not tell.
+// Proposed line for the session; '?' for names without a known meaning.
 std::string suggestion(const TableHeader& header) {
   std::string text;
   const auto add = [&](const std::string& name) { text += (text.empty() ? "" : ",") + name; };
   const std::vector<Axes> accelerations = accelerationsOf(header),
                           rates = vectorsOf(header, ColumnKind::AngularRate);
-  // Of several sensors the first is proposed.
+  // The first sensor is proposed if there are several.
   const auto isFurther = [](std::size_t i, const std::vector<Axes>& vectors) {
     return std::any_of(vectors.begin(), vectors.end(), [&](const Axes& axes) {
       return axes != vectors.front() && std::find(axes.begin(), axes.end(), i) != axes.end();
@@ -119,7 +119,7 @@ void refuse(const TableHeader& header, std::string problem, TextColumns& columns
   columns.advice = columnsAdvice(suggestion(header));
 }
 
-// How well a group of columns serves as the time; more is better.
+// Suitability of a group of columns as the time; more is better.
 int timeRank(const std::vector<std::size_t>& members, const TableHeader& header) {
   const std::string& group = header.columns[members.front()].group;
   const bool stamp = group.find("header_stamp") != std::string::npos;
@@ -132,7 +132,7 @@ std::optional<std::int64_t> unitOfTime(const ColumnName& column) {
   return timeUnitNamed(column.unit);
 }
 
-// Seconds and the rest of them: each finer column holds less than one of the next coarser unit.
+// Seconds and their fractions: each finer column is less than one unit of the next coarser one.
 bool areParts(const std::vector<std::size_t>& members, const TableHeader& header,
               std::span<const TableColumn> table) {
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -171,7 +171,7 @@ void chooseTime(const TableHeader& header, std::span<const TableColumn> table, T
     return group != best && timeRank(groups[group], header) == timeRank(groups[best], header);
   });
   if (doubtful)
-    columns.notes.push_back(fmt::format("Several columns are times; {} is used. If that is wrong, {}.",
+    columns.notes.push_back(fmt::format("Several columns are times; {} is used. If this is wrong, {}.",
                                         header.names[groups[best].front()],
                                         "name the columns in the session (columns)"));
 }
@@ -189,9 +189,8 @@ void chooseTimeUnit(std::span<const TableColumn> table, std::size_t rows, TextCo
     const bool possible = rate_hz >= kSlowestPossible_hz && rate_hz <= kFastestPossible_hz;
     if (possible || likely_ns == time.unit_ns) return;
     columns.notes.push_back(
-        fmt::format("The header says that times are in {}; then there are {:.4g} samples a second. In {} "
-                    "there would be {:.4g}: "
-                    "if so, correct the header, or name the columns in the session (columns).",
+        fmt::format("The header states times in {}, which gives {:.4g} samples a second; {} would "
+                    "give {:.4g}. Check the header, or name the columns in the session (columns).",
                     timeUnitName(time.unit_ns), rate_hz, timeUnitName(likely_ns),
                     rate_hz * static_cast<double>(time.unit_ns) / static_cast<double>(likely_ns)));
     return;
@@ -201,11 +200,11 @@ void chooseTimeUnit(std::span<const TableColumn> table, std::size_t rows, TextCo
       known && (time.unit_ns == kSecond_ns ? !table[time.column].numbers.whole
                                            : table[time.column].numbers.largest >= kEpoch_ns);
   if (!obvious)
-    columns.notes.push_back(
-        fmt::format("The header does not tell the unit of time; {} is assumed.", timeUnitName(time.unit_ns)));
+    columns.notes.push_back(fmt::format("The header does not state the unit of time; {} is assumed.",
+                                        timeUnitName(time.unit_ns)));
 }
 
-// False, and why, if the three columns have no unit that is known, or not the same.
+// False, with the reason, if the three columns have no known unit, or different ones.
 template <class Unit, class Read>
 bool takeUnit(const TableHeader& header, const Axes& axes, Read read, const char* sensor, Unit& unit,
               double& factor, TextColumns& columns) {
@@ -221,8 +220,7 @@ bool takeUnit(const TableHeader& header, const Axes& axes, Read read, const char
   if (first.empty()) return true;
   const auto known = read(first);
   if (!known) {
-    refuse(header, fmt::format("its header gives a unit of the {} that is not known: {}", sensor, first),
-           columns);
+    refuse(header, fmt::format("its header has an unknown unit of the {}: {}", sensor, first), columns);
     return false;
   }
   unit = known->unit;
@@ -260,8 +258,8 @@ void applyEventsOrPoints(const TableHeader& header, TextColumns& columns) {
     if (!found.empty()) column = found.front();
     if (found.size() > 1)
       refuse(header,
-             fmt::format("its header has two columns that may be the same: {} and {}", header.names[found[0]],
-                         header.names[found[1]]),
+             fmt::format("its header has two columns with the same meaning: {} and {}",
+                         header.names[found[0]], header.names[found[1]]),
              columns);
   };
   const bool events = header.has(ColumnKind::Polarity) || header.has(ColumnKind::EventType);
@@ -299,7 +297,7 @@ std::string whatIsMissing(const TableHeader& header) {
     return fmt::format("its header names no {}",
                        header.has(ColumnKind::AngularRate) ? "accelerometer" : "gyroscope");
   if (places)
-    return "its header names places x and y, but neither polarity (events) nor point (measured points)";
+    return "its header names columns x and y, but neither polarity (events) nor point (measured points)";
   return fmt::format("its header names neither events, IMU samples nor measured points: {}",
                      firstOf(header.names));
 }
@@ -347,7 +345,7 @@ TableHeader readTableHeader(std::string_view line, bool comment) {
   std::string text(trimmed(line, kAroundName));
   while (comment && !text.empty() && (text[0] == '#' || text[0] == '%' || text[0] == '/' || text[0] == ' '))
     text.erase(0, 1);
-  // A unit belongs to the name before it, also where blanks separate names.
+  // A unit belongs to the preceding name, also if blanks separate names.
   for (const char bracket : {'[', '('})
     for (std::size_t at = text.find(bracket); at != std::string::npos; at = text.find(bracket, at + 1))
       while (at > 0 && text[at - 1] == ' ') text.erase(--at, 1);
@@ -373,9 +371,8 @@ void applyHeader(const TableHeader& header, std::span<const TableColumn> table, 
     refuse(header, whatIsMissing(header), columns);
     if (lacksTimes(header))
       columns.advice =
-          "Add a column of times (t_s, t_ms, t_us or t_ns), best those of the sensor. The number of a row "
-          "over "
-          "the rate of samples serves only where no row is missing";
+          "Add a column of times (t_s, t_ms, t_us or t_ns), preferably the sensor's. Row numbers divided by "
+          "the rate of samples are only valid without missing rows";
     return;
   }
   if (header.has(ColumnKind::AngularRate)) {
@@ -392,7 +389,7 @@ void applyHeader(const TableHeader& header, std::span<const TableColumn> table, 
 std::string columnsAdvice(const std::string& names) {
   const bool open = names.find('?') != std::string::npos;
   return fmt::format(
-      "Name the columns {}, with the sensor: columns: \"{}\"{}; or put such a line on top of the "
+      "Name the columns {}, with the sensor: columns: \"{}\"{}; or put such a line at the top of the "
       "file",
       howTo(HowTo::EditSession), names,
       open ? " (for each ? one of t_s, t_ms, t_us, t_ns, ax, ay, az, gx, gy, gz, x, y, p, or - if it is not "

@@ -1,4 +1,4 @@
-// A table's header line: which of its names are events, IMU samples or points, and in which units.
+// A table's header line: its columns of events, IMU samples or points, and their units.
 #pragma once
 
 #include "core/recording/column_guess.h"
@@ -14,11 +14,11 @@
 
 namespace evical {
 
-// A column of numbers in the first rows.
+// Column of numbers in the first rows.
 struct TableColumn {
   ColumnNumbers numbers;
   std::vector<double> values;
-  std::size_t texts = 0;  // cells that are no numbers
+  std::size_t texts = 0;  // cells without a number
 };
 
 struct TableHeader {
@@ -27,20 +27,21 @@ struct TableHeader {
   bool comment = false;
 
   bool has(ColumnKind kind) const;
-  bool namesTable() const;         // there is a time, and what an event, a sample or a point has
+  bool namesTable() const;         // time and all columns of an event, a sample or a point
   std::size_t recognised() const;  // columns of a known kind
 };
 
 TableHeader readTableHeader(std::string_view line, bool comment);
 
-// Fills in `columns`, or says in `problem` and `advice` why these names cannot be told.
+// Fills in `columns`, or sets `problem` and `advice` if the names are ambiguous.
 void applyHeader(const TableHeader& header, std::span<const TableColumn> table, std::size_t rows,
                  TextColumns& columns);
 
-// The session's line, and where it goes.
+// Proposed line for the session, and its place there.
 std::string columnsAdvice(const std::string& names);
 
-// The unit that whole or fractional times are in: IMUs give 20 to 20 000 samples a second; of events see guessTimeUnit_ns.
+// Unit of whole or fractional times: IMUs give 20 to 20 000 samples a second; for events see
+// guessTimeUnit_ns.
 std::int64_t guessUnit_ns(const TableColumn& time, StreamType type);
 
 }  // namespace evical

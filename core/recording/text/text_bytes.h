@@ -1,4 +1,4 @@
-// The bytes of a text file from its beginning to its end, unpacked where it is packed with gzip.
+// Bytes of a text file from begin to end, unpacked if it is packed with gzip.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace evical {
 
 bool isGzip(std::string_view first_bytes);
 
-// The first bytes, unpacked; fewer where the file is shorter or damaged.
+// The first bytes, unpacked; fewer if the file is shorter or damaged.
 std::string firstTextBytes(const std::filesystem::path& path, std::size_t count);
 
 class TextBytes {
@@ -22,9 +22,9 @@ class TextBytes {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit TextBytes(const std::filesystem::path& path);
 
-  // Number of bytes read; 0 at the end, and if a packed file cannot be unpacked any further.
+  // Number of bytes read; 0 at the end, and if a packed file is damaged from here on.
   std::size_t read(char* bytes, std::size_t count);
-  bool isDamaged() const { return damaged_; }  // the end came before that of what is packed
+  bool isDamaged() const { return damaged_; }  // a packed file ended too early
 
   // Size of the file on the disk.
   std::uint64_t size() const { return size_; }

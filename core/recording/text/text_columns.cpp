@@ -66,7 +66,7 @@ TextStyle styleOf(std::string_view line) {
   return all && std::any_of(cells.begin(), cells.end(), hasDecimalComma) ? comma : style;
 }
 
-// The first lines of a table: rows of numbers, and the lines above them.
+// First lines of a table: rows of numbers, and the lines above them.
 class TableHead {
  public:
   // `line` has its number in the file. False if the text is not a table.
@@ -80,7 +80,7 @@ class TableHead {
       if (rows++ == 0) first_row = number;
       return true;
     }
-    if (rows > 0) return true;  // a bad line among rows is the reader's to report
+    if (rows > 0) return true;  // the reader reports a bad line among rows
     if (!comment && number == 1 && readSize(line)) return true;
     const bool is_text =
         std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
@@ -94,7 +94,7 @@ class TableHead {
   TextStyle style;
   std::vector<TableColumn> columns;
   std::vector<TableHeader> headers;               // lines above the rows that may name columns
-  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, where there are as many
+  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, if these exist
   std::size_t rows = 0;
   std::uint64_t first_row = 1;
   Resolution size_px;
@@ -109,7 +109,7 @@ class TableHead {
     return true;
   }
 
-  // Two whole numbers: width and height, as e2vid's first line has them.
+  // Two whole numbers: width and height, as in e2vid's first line.
   bool readSize(std::string_view line) {
     std::vector<std::string_view> sides;
     splitColumns(line, sides);
@@ -188,7 +188,7 @@ bool guessImu(const TableHead& head, TextColumns& columns) {
   const bool first = isGravity(medianOf(head.first_norms)), second = isGravity(medianOf(head.second_norms));
   if (first == second) {
     columns.problem =
-        "no header names the columns, and its numbers do not show which are the accelerometer's";
+        "no header names the columns, and the numbers do not show which ones are the accelerometer's";
     columns.advice = columnsAdvice("t_s,ax,ay,az,gx,gy,gz");
     return false;
   }
@@ -216,13 +216,13 @@ void describeGuess(TextColumns& columns) {
   const bool conventional =
       (order == "t,x,y,p" || order == "t,ax,ay,az,gx,gy,gz") && columns.time.front().unit_ns == kSecond_ns;
   if (conventional) return;
-  columns.notes.push_back(
-      fmt::format("There is no header; the columns are taken for {}, t in {}. If that is wrong, put a line "
-                  "such as \"t_{},{}\" on top.",
-                  order, unit, unit, events ? "x,y,p" : "ax,ay,az,gx,gy,gz"));
+  columns.notes.push_back(fmt::format(
+      "There is no header; the columns are interpreted as {}, t in {}. If this is wrong, add a line "
+      "such as \"t_{},{}\" at the top.",
+      order, unit, unit, events ? "x,y,p" : "ax,ay,az,gx,gy,gz"));
 }
 
-// The line above the rows that names their columns; nullptr without one.
+// The line above the rows that names their columns; nullptr if absent.
 const TableHeader* headerOf(const TableHead& head) {
   const auto fits = [&](const TableHeader& header) {
     return head.rows == 0 || header.names.size() == head.columns.size();
@@ -305,7 +305,7 @@ void splitColumns(std::string_view line, const TextStyle& style, std::vector<std
     columns.push_back(trimmed(line.substr(0, end), kAroundCell));
     if (end != std::string_view::npos) line.remove_prefix(end + 1);
   }
-  while (!columns.empty() && columns.back().empty()) columns.pop_back();  // behind a last comma
+  while (!columns.empty() && columns.back().empty()) columns.pop_back();  // after a last comma
 }
 
 bool parseCell(std::string_view text, const TextStyle& style, double& number) {

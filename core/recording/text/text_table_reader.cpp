@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kTextPacketEvents = 10'000;
 constexpr std::int64_t kTextPacketSpan_ns = 10'000'000;
 constexpr std::size_t kTextPacketSamples = 10;
-constexpr int kMostBadLines = 10;  // reported one by one
+constexpr int kMostBadLines = 10;  // reported individually
 constexpr std::size_t kHead_bytes = std::size_t{1} << 16;
 constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
 
@@ -91,7 +91,7 @@ void TextTableReader::addSource(const std::filesystem::path& path, const std::st
   if (columns.type == StreamType::Other)
     throw badInput(path.string(),
                    "the lines are neither events nor IMU samples, and no header names the columns",
-                   "Put a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" on top");
+                   "Add a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" at the top");
   if (path.extension() == ".csv" || path.stem().extension() == ".csv") format_ = "csv";
   StreamInfo stream;
   stream.name = name;
@@ -114,7 +114,7 @@ void TextTableReader::select(const std::vector<std::size_t>& streams) {
   for (const std::size_t stream : streams) sources_.at(stream).wanted = true;
 }
 
-// The stream that is behind goes first, so that files are read side by side.
+// The stream with the earliest time is read first, so that all files advance together.
 bool TextTableReader::read(Packet& packet) {
   packet.clear();
   while (packet.empty()) {
@@ -136,7 +136,7 @@ bool TextTableReader::read(Packet& packet) {
   return true;
 }
 
-// A packet ends where time steps back: within a packet events are in order, and nothing is rearranged.
+// A packet ends if time steps back: events within a packet are in order, and nothing is rearranged.
 void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector<Event>& events) {
   if (source.has_next_event) events.push_back(source.next_event);
   source.has_next_event = false;
@@ -177,7 +177,7 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Ra
   }
 }
 
-// A packet has the points of one time.
+// A packet contains the points of one time.
 void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points) {
   if (source.next_point) points.push_back(*source.next_point);
   source.next_point.reset();
@@ -206,9 +206,9 @@ void TextTableReader::finish(Source& source, std::size_t stream) {
          fmt::format("{} lines are left out: their type is neither 0 (darker) nor 1 (brighter).",
                      source.other_types)});
   if (!source.lines.isDamaged()) return;
-  faults_.push_back({streams_[stream].name, FaultKind::Truncated, 0.0,
-                     fmt::format("The packed file is damaged after line {}; what comes behind is lost.",
-                                 source.lines.number())});
+  faults_.push_back(
+      {streams_[stream].name, FaultKind::Truncated, 0.0,
+       fmt::format("The packed file is damaged after line {}; the rest is lost.", source.lines.number())});
 }
 
 bool TextTableReader::isNoRow(const Source& source, std::string_view line) {

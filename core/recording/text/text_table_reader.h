@@ -38,10 +38,10 @@ class TextTableReader : public RecordingReader {
     bool wanted = true;
     bool finished = false;
     std::int64_t last_ns;
-    Event next_event{};  // read, but it belongs to the next packet
+    Event next_event{};  // already read; belongs to the next packet
     bool has_next_event = false;
-    std::optional<MeasuredPoint> next_point = {};  // the same
-    std::uint64_t other_types = 0;                 // lines that are not events, by their type
+    std::optional<MeasuredPoint> next_point = {};  // as next_event
+    std::uint64_t other_types = 0;                 // lines of other types than events
   };
 
   void addSource(const std::filesystem::path& path, const std::string& names);
@@ -56,7 +56,7 @@ class TextTableReader : public RecordingReader {
   static bool isNoRow(const Source& source, std::string_view line);
   void addBadLine(const Source& source, std::size_t stream);
 
-  std::vector<Source> sources_;  // one a stream
+  std::vector<Source> sources_;  // one per stream
   std::vector<StreamInfo> streams_;
   std::vector<RecordingFault> faults_;
   std::string format_ = "text";

@@ -10,7 +10,7 @@
 namespace evical {
 namespace {
 
-// Differences between the kinds of text.
+// Parameters of the kinds of text.
 struct TextStyle {
   const char *events_file, *imu_file;
   const char *events_header, *imu_header;
@@ -39,11 +39,11 @@ class TextWriter : public RecordingWriter {
       const bool events = stream.type == StreamType::Events;
       if (!events && stream.type != StreamType::Imu) {
         throw badInput(folder.string(),
-                       fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+                       fmt::format("stream {} has neither events nor IMU samples", stream.name));
       }
       for (const auto& [type, file] : files_) {
         if (type == stream.type)
-          throw badInput(folder.string(), "text holds one stream of each type only", "Write a bag");
+          throw badInput(folder.string(), "text can only contain one stream of each type", "Write a bag");
       }
       files_.emplace_back(stream.type,
                           std::make_unique<PartFile>(folder / (events ? style.events_file : style.imu_file)));
@@ -94,7 +94,7 @@ class TextWriter : public RecordingWriter {
     fmt::format_to(std::back_inserter(text_), "{}{}.{:09}", sign, size_ns / kSecond_ns, size_ns % kSecond_ns);
   }
 
-  // {} writes as many digits as bring the same number back.
+  // {} writes as many digits as needed to read the same number back.
   void appendVector(const Eigen::Vector3d& vector) {
     for (const double value : vector)
       fmt::format_to(std::back_inserter(text_), "{}{}", style_.separator, value);

@@ -17,25 +17,25 @@ std::string percent(double share) {
   return number(100.0 * share, 0) + " %";
 }
 
-// What mends windows of this outcome.
+// Advice that reduces windows of this outcome.
 const char* remedy(WindowOutcome outcome) {
   switch (outcome) {
     case WindowOutcome::TooFewEvents:
-      return "Keep moving: a camera at rest sees nothing. If it did move, lower the camera's contrast "
+      return "Keep moving: an event camera at rest sees nothing. If it did move, lower its contrast "
              "thresholds.";
     case WindowOutcome::TooFewCircles:
       return "Keep the board in view, in focus and evenly lit; go closer if the circles are small.";
     case WindowOutcome::NoLattice:
     case WindowOutcome::TooFewInGrid:
-      return "Keep more of the board in the image, and clutter that moves out of it.";
+      return "Keep more of the board in the image, and keep moving clutter out of it.";
     case WindowOutcome::Ambiguous:
-      return "Show the whole board more often: parts without an edge of it cannot be placed.";
+      return "Show the whole board more often: a part without an edge of the board is ambiguous.";
     case WindowOutcome::RefinementFailed:
-      return "Move more evenly, or more slowly: circles are blurred or overlaid by other edges.";
+      return "Move more smoothly or more slowly: circles are blurred or overlap with other edges.";
     case WindowOutcome::Blurred:
-      return "Move more slowly, or set a shorter exposure and more light: frames are blurred.";
+      return "Move more slowly, or use a shorter exposure and more light: frames are blurred.";
     case WindowOutcome::Unreadable:
-      return "Copy the recording again: many of its pictures are damaged.";
+      return "Copy the recording again: many of its images are damaged.";
     default:
       return "";
   }
@@ -55,14 +55,16 @@ void adviseDetection(const std::string& name, const CameraMeasures& camera, std:
     const WindowOutcome worst = mostFrequentLoss(camera);
     const int lost = camera.outcomes[static_cast<std::size_t>(worst)];
     if (lost > kWorthNaming * camera.windows)
-      all.push_back({remedy(worst),
-                     fmt::format("{}: the board was found in {} of the windows; most others: {} ({}).", name,
-                                 percent(camera.detectionRate()), windowOutcomeName(worst), lost)});
+      all.push_back(
+          {remedy(worst),
+           fmt::format(
+               "{}: the board was found in {} of the windows. Most frequent reason for the others: {} ({}).",
+               name, percent(camera.detectionRate()), windowOutcomeName(worst), lost)});
   }
   if (camera.views > 0 && camera.partial > kManyPartial * camera.views)
     all.push_back(
-        {"Let the whole board be in the image more of the time: step back a little, or use a smaller board.",
-         fmt::format("{}: {} of the views show only a part of it.", name,
+        {"Keep the whole board in the image for longer: step back a little, or use a smaller board.",
+         fmt::format("{}: {} of the views show only part of the board.", name,
                      percent(static_cast<double>(camera.partial) / camera.views))});
 }
 
@@ -71,10 +73,9 @@ void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::
   if (camera.views == 0) return;
   if (!camera.cells.empty() && camera.coveredShare() < kCovered) {
     const std::string empty = emptyRegions(camera);
-    all.push_back({empty.empty()
-                       ? "Move the board through all of the image, to its corners."
-                       : "Move the board through all of the image; it was hardly ever at: " + empty + ".",
-                   fmt::format("{}: circles in {} of the image.", name, percent(camera.coveredShare()))});
+    all.push_back({empty.empty() ? "Move the board through the whole image, into its corners."
+                                 : "Move the board through the whole image. Hardly covered: " + empty + ".",
+                   fmt::format("{}: circles cover {} of the image.", name, percent(camera.coveredShare()))});
   }
   if (camera.poses.empty()) return;
   const auto spread = [&](double BoardPose::*angle) {
@@ -85,11 +86,12 @@ void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::
   };
   const double x_deg = spread(&BoardPose::tilt_x_deg), y_deg = spread(&BoardPose::tilt_y_deg);
   if (std::min(x_deg, y_deg) < kTilted_deg)
-    all.push_back({fmt::format("Tilt the camera against the board more, about its {} axis: 30 degrees to "
-                               "either side do no harm.",
-                               x_deg < y_deg ? "x" : "y"),
-                   fmt::format("{}: tilts spread over {} deg about x, {} deg about y.", name,
-                               number(x_deg, 0), number(y_deg, 0))});
+    all.push_back(
+        {fmt::format(
+             "Tilt the camera more about its {} axis, up to 30 degrees to either side of the board's normal.",
+             x_deg < y_deg ? "x" : "y"),
+         fmt::format("{}: the tilts span {} deg about x and {} deg about y.", name, number(x_deg, 0),
+                     number(y_deg, 0))});
 }
 
 void adviseLens(const std::string& name, const CameraMeasures& camera, const CameraFit& fit,
@@ -100,12 +102,12 @@ void adviseLens(const std::string& name, const CameraMeasures& camera, const Cam
     if (cell.residuals >= kLeast) largest_px = std::max(largest_px, cell.mean_residual_px.norm());
   constexpr double kBias_px = 0.1;
   if (largest_px > std::max(kBias_px, 0.7 * fit.reprojection_rms_px))
-    all.push_back({"Calibrate the intrinsics anew: the lens model does not fit everywhere.",
-                   fmt::format("{}: parts of the image are off by up to {} px in the mean.", name,
+    all.push_back({"Calibrate the intrinsics again: the lens model does not fit the whole image.",
+                   fmt::format("{}: the mean residual reaches {} px in parts of the image.", name,
                                significant(largest_px, 2))});
 }
 
-// The axis that moved least, where it moved far less than is good.
+// Advice for the axis with the least motion, if that is below `enough`.
 void adviseAxis(const std::string& name, const Eigen::Vector3d& motion, double enough, const char* verb,
                 const char* unit, std::vector<Advice>& all) {
   Eigen::Index axis = 0;
@@ -113,7 +115,7 @@ void adviseAxis(const std::string& name, const Eigen::Vector3d& motion, double e
   if (least >= enough) return;
   all.push_back(
       {fmt::format("{} the {} axis of {} more.", verb, kAxes.at(static_cast<std::size_t>(axis)), name),
-       fmt::format("RMS {}, {}, {} {} on x, y, z; {} and more are good.", significant(motion.x(), 2),
+       fmt::format("RMS of x, y, z: {}, {}, {} {}; aim for at least {}.", significant(motion.x(), 2),
                    significant(motion.y(), 2), significant(motion.z(), 2), unit, significant(enough, 2))});
 }
 
@@ -123,11 +125,11 @@ void adviseNoise(const std::string& name, const char* sensor, double found, doub
   if (!(found > 0.0) || !(given > 0.0)) return;
   const double ratio = found / given;
   if (ratio < kFactor && ratio > 1.0 / kFactor) return;
-  all.push_back(
-      {fmt::format("Check the {}'s noise density: these residuals are those of {} {}.", sensor,
-                   significant(ratio * density, 2), unit),
-       fmt::format("{}: residuals are {} times what {} {} gives{}.", name, significant(ratio, 2),
-                   significant(density, 2), unit, ratio > 1.0 ? "; vibration and shocks do that too" : "")});
+  all.push_back({fmt::format("Check the {}'s noise density: the residuals correspond to {} {}.", sensor,
+                             significant(ratio * density, 2), unit),
+                 fmt::format("{}: the residuals are {} times those expected from {} {}{}.", name,
+                             significant(ratio, 2), significant(density, 2), unit,
+                             ratio > 1.0 ? "; vibration and shocks have the same effect" : "")});
 }
 
 void adviseImu(const std::string& name, const ImuData& given, const ImuMeasures& imu,
@@ -143,7 +145,7 @@ void adviseImu(const std::string& name, const ImuData& given, const ImuMeasures&
               given.noise.accelerometer_density, "m/s\u00b2/\u221aHz", all);
 }
 
-// Sigmas fall with the square root of the time that is recorded.
+// Sigmas decrease with the square root of the recorded time.
 void adviseDuration(const ReportData& data, const Measures& measures, std::vector<Advice>& all) {
   constexpr double kShort_s = 15.0, kReasonable_s = 180.0;
   double worst = 0.0;
@@ -153,15 +155,16 @@ void adviseDuration(const ReportData& data, const Measures& measures, std::vecto
                       1e3 * sigma.time_offset_std_s / data.needs.time_offset_ms});
   const double asked_s = worst * worst * measures.duration_s;
   if (worst > 1.0 && measures.duration_s > 0.0) {
-    all.push_back({asked_s < kReasonable_s
-                       ? fmt::format("Record longer: about {} s of the same motion would meet the needs.",
-                                     number(std::ceil(asked_s / 5.0) * 5.0, 0))
-                       : "Move faster and in more directions: recording longer alone would not do.",
-                   fmt::format("The largest sigma is {} times what is needed, after {} s.",
-                               significant(worst, 2), number(measures.duration_s, 1))});
+    all.push_back(
+        {asked_s < kReasonable_s
+             ? fmt::format("Record longer: about {} s of the same motion would meet the required sigmas.",
+                           number(std::ceil(asked_s / 5.0) * 5.0, 0))
+             : "Move faster and in more directions: a longer recording alone would not be enough.",
+         fmt::format("The largest sigma is {} times the required one after {} s.", significant(worst, 2),
+                     number(measures.duration_s, 1))});
   } else if (measures.duration_s > 0.0 && measures.duration_s < kShort_s) {
-    all.push_back({"Record 20 s or more: sigmas shrink with the square root of the time.",
-                   fmt::format("This recording has {} s.", number(measures.duration_s, 1))});
+    all.push_back({"Record at least 20 s: sigmas decrease with the square root of the time.",
+                   fmt::format("This recording lasts {} s.", number(measures.duration_s, 1))});
   }
 }
 
@@ -172,15 +175,16 @@ void adviseFaults(const ReportData& data, std::vector<Advice>& all) {
   };
   static constexpr std::array<Remedy, 8> kRemedies = {{
       {FaultKind::Gap,
-       "Record without losses: a faster disk, a local disk, or fewer events (bias settings, event rate "
+       "Avoid data loss: use a faster or a local disk, or reduce the events (bias settings, event rate "
        "control)."},
       {FaultKind::BackwardTime,
-       "Find out why times run backwards: a restarted driver, or two sources on one topic."},
-      {FaultKind::Jitter, "Let the sensor stamp its own samples: stamps made on arrival jitter."},
-      {FaultKind::Truncated, "Stop the recorder before you cut its power or copy the file."},
-      {FaultKind::Corrupt, "Check the disk or the transfer: the file has damaged parts."},
-      {FaultKind::SaturatedAxis, "Move less violently, or set a larger range of the IMU."},
-      {FaultKind::StuckAxis, "Check the IMU: an axis that never changes is broken or misread."},
+       "Find out why timestamps decrease: the driver was restarted, or two sources share one topic."},
+      {FaultKind::Jitter, "Use the sensor's own timestamps: timestamps set on arrival jitter."},
+      {FaultKind::Truncated, "Stop the recorder before you switch off the power or copy the file."},
+      {FaultKind::Corrupt, "Check the disk and the transfer: parts of the file are damaged."},
+      {FaultKind::SaturatedAxis, "Move less abruptly, or set a larger measuring range of the IMU."},
+      {FaultKind::StuckAxis,
+       "Check the IMU: an axis whose value never changes is defective or decoded incorrectly."},
       {FaultKind::HotPixels, "Mask hot pixels in the camera's driver."},
   }};
   for (const Remedy& remedy : kRemedies) {
@@ -199,8 +203,8 @@ void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
     if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
   if (worst == nullptr || (validation->rms_sigmas < kFar && std::abs(worst->normalised()) < kVeryFar)) return;
   all.push_back(
-      {"Make sure that nothing gives way between camera and IMU, and take the sigmas for too small here.",
-       fmt::format("Two halves of the recording differ by {} sigmas (RMS); the most, {} sigmas, in {}.",
+      {"Make sure that camera and IMU are rigidly connected. Regard the sigmas of this result as too small.",
+       fmt::format("The two halves of the recording differ by {} sigmas (RMS), and by {} sigmas in {}.",
                    number(validation->rms_sigmas, 1), number(std::abs(worst->normalised()), 1),
                    worst->name)});
 }
@@ -250,9 +254,9 @@ void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& p
   const std::vector<Advice> all = adviceFor(data, measures);
   const bool failed = data.named.result->status == CalibrationStatus::Failed;
   if (failed && all.empty()) return;
-  page.beginSection("advice", "What to do better next time");
-  if (failed) page.text(paragraph("", "First see to the reason above. Beyond that, the data say:"));
-  if (all.empty()) page.text(paragraph("", "Nothing stands out: a recording like this one will do again."));
+  page.beginSection("advice", "Advice for the next recording");
+  if (failed) page.text(paragraph("", "First fix the problem above. The data also suggest:"));
+  if (all.empty()) page.text(paragraph("", "No improvement is needed: a similar recording is suitable."));
   std::string items;
   for (const Advice& each : all)
     items += element("li", "", escaped(each.what) + " <small>" + escaped(each.evidence) + "</small>");

@@ -1,4 +1,4 @@
-// What to do better next time: each piece only where the data say so, with the number that says it.
+// Advice for the next recording: each item is triggered by a measured value, which is given with it.
 #pragma once
 
 #include "core/report/html/html_report.h"
@@ -11,12 +11,12 @@ namespace evical::html {
 
 struct Advice {
   std::string what;      // one sentence, imperative
-  std::string evidence;  // what was measured
+  std::string evidence;  // the measured value
 };
 
-// Thirds of the image where hardly any circle was, in words: "top left, centre"; empty where there is none.
+// Names of the image's thirds with hardly any circle: "top left, middle centre". Empty if there are none.
 std::string emptyRegions(const CameraMeasures& camera);
-// What mends most of the windows without the board; empty where there is none.
+// Advice for the most frequent reason why the board was not found; empty if it was always found.
 std::string remedyForMissed(const CameraMeasures& camera);
 
 std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures);

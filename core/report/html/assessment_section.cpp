@@ -33,7 +33,7 @@ std::string valueHtml(const ValueWithSigma& number) {
   return number.isThere() ? withSigma(number.value, number.sigma) : "";
 }
 
-// Without the columns that are empty in all rows.
+// Table without the columns that are empty in all rows.
 std::string tableOf(std::vector<std::string> header, Rows rows) {
   for (std::size_t column = header.size(); column-- > 1;) {
     if (std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return !row[column].empty(); }))
@@ -83,14 +83,12 @@ void writeFindings(const Assessment& assessment, ReportPage& page) {
   }
   page.text(tableOf(
       {"", "from", "change", "in sigmas", "at the image's edge", "detectable", "required", "verdict"}, rows));
-  page.text(paragraph(
-      "small",
-      fmt::format(
-          "A change is what this quantity has moved by if it alone has moved; of a lens it is the RMS over "
-          "the image. A change of the <i>detectable</i> size is found with a probability of 95 %, in any "
-          "direction it goes; the verdict asks for the <i>required</i> one. Where nothing has changed, a "
-          "change is seen in {} % of all cases at most.",
-          plain(100.0 * assessment.false_alarms))));
+  page.text(paragraph("small",
+                      fmt::format("<i>Change</i> assumes that only this quantity has changed; for a lens it "
+                                  "is the RMS over the image. A change of the <i>detectable</i> size is "
+                                  "found with a probability of 95 %, in any direction; the verdict needs the "
+                                  "<i>required</i> size. The probability of a false alarm is at most {} %.",
+                                  plain(100.0 * assessment.false_alarms))));
   page.text("<details><summary>Numbers</summary>" +
             tableOf({"", "", "before", "now, alone", "both together", "unit"}, numbers) + "</details>\n");
 }

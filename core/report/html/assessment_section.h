@@ -1,4 +1,4 @@
-// What the pages of a check, a maintenance and a repeat have in common.
+// Common parts of the pages of a check, a maintenance and a repeat.
 #pragma once
 
 #include "core/data/assessment.h"
@@ -23,7 +23,7 @@ std::string changeHtml(const Finding& finding);
 // A list of texts, which are escaped here; nothing if there are none.
 void writeTexts(const std::vector<std::string>& texts, ReportPage& page);
 
-// The page, and the tables behind its plots.
+// The page, and the tables of its plots.
 std::vector<ReportFile> filesOf(const PageHead& head, const ReportPage& verdict, const ReportPage& page);
 
 }  // namespace evical::html

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxisColours = {"c0", "c1", "c2"};
 
-// One sensor's biases at the knots, less their means.
+// Biases of one sensor at the knots, minus their means.
 struct Drift {
   std::string file, title, unit;
   const BiasDrift& knots;
@@ -34,7 +34,7 @@ PlotTable biasTable(const Drift& drift) {
 void writeDrift(const Drift& drift, ReportPage& page) {
   const PlotTable table = biasTable(drift);
   PlotFrame frame;
-  frame.title = drift.title + ": bias less its mean";
+  frame.title = drift.title + ": bias minus its mean";
   frame.x_label = "time [s]";
   frame.y_label = drift.unit;
   frame.x = rangeOf(table.values[0], 0.0);
@@ -57,7 +57,7 @@ void writeDrift(const Drift& drift, ReportPage& page) {
     }
   }
   plot.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z"}});
-  page.figure(plot.svg(), "Straight lines between knots; bars are one standard deviation of the bias there.",
+  page.figure(plot.svg(), "The bias is linear between knots; bars are one standard deviation at the knots.",
               &table);
   page.keep(table);
 }

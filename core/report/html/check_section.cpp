@@ -1,4 +1,4 @@
-// Is the old calibration still good?
+// Section of a check of an older calibration.
 #include "core/report/assessment_report.h"
 #include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"

@@ -1,4 +1,4 @@
-// Where and when the board was seen, and how the rig was moved.
+// Sections about the detections: positions and times of the board, and motion of the rig.
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
@@ -48,7 +48,7 @@ PlotTable circlesTable(const BoardObservations& camera, std::size_t index) {
 std::string timelineSvg(const PlotTable& runs, const PlotTable& counts, const CameraMeasures& camera,
                         int on_board) {
   PlotFrame frame;
-  frame.title = "windows over time, by what became of them";
+  frame.title = "windows over time by outcome";
   frame.x_label = "time [s]";
   frame.y_label = "circles in the grid";
   frame.x = {runs.values[1].front(), std::max(runs.values[2].back(), runs.values[1].front() + 1e-3)};
@@ -71,16 +71,16 @@ std::string timelineSvg(const PlotTable& runs, const PlotTable& counts, const Ca
 std::string outcomeTable(const CameraMeasures& camera) {
   static constexpr std::array<const char*, kWindowOutcomeCount> kMeaning = {
       "the whole board",
-      "a part of it: enough circles to place it",
-      "near standstill, or nothing in view",
-      "too few things that look like circles: board out of view, blurred, or of low contrast",
-      "circles, but in no lattice",
-      "a lattice of too few circles: the board only just in view",
-      "several ways to lay the board on what was seen",
-      "circles lost when all were fitted together: blur or clutter",
-      "the board moved too far while the frame was exposed",
-      "a damaged picture",
-      "the board was found, and a person left the window out after a look at its residuals"};
+      "part of the board, with enough circles to identify them",
+      "almost no motion, or nothing in view",
+      "too few circle candidates: board out of view, blurred, or of low contrast",
+      "circle candidates that do not form a lattice",
+      "a lattice of too few circles: only a small part of the board in view",
+      "several placements of the board explain the events equally well",
+      "circles lost in the joint fit of all circles: blur or clutter",
+      "the board moved too far during the exposure of the frame",
+      "a damaged image",
+      "the board was found, but the window was rejected by hand because of its residuals"};
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < kWindowOutcomeCount; ++k) {
     if (camera.outcomes[k] == 0) continue;
@@ -90,7 +90,7 @@ std::string outcomeTable(const CameraMeasures& camera) {
                     number(100.0 * camera.outcomes[k] / std::max(1, camera.windows), 1) + "\u00a0%",
                     kMeaning[k]});
   }
-  return table({"outcome", "windows", "share", "what it means"}, rows);
+  return table({"outcome", "windows", "share", "meaning"}, rows);
 }
 
 PlotTable cellTable(const CameraMeasures& camera, std::size_t index) {
@@ -126,11 +126,11 @@ void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportP
   page.figure(
       scatter.svg(),
       fmt::format(
-          "Where circles were measured (one in {} shown). Empty corners leave the lens unproven there.",
+          "Measured circle centres (one in {} shown). In empty corners the lens model is not verified.",
           strideFor(camera.centres_px.size(), kMost)),
       &centres);
   page.figure(map.svg(),
-              fmt::format("How many, in each part: {} % of the parts have some.",
+              fmt::format("Number of circles in each part of the image: {} % of the parts have at least one.",
                           number(100.0 * camera.coveredShare(), 0)),
               &cells);
   page.endRow();
@@ -163,15 +163,15 @@ void writeBoardPoses(const CameraMeasures& camera, std::size_t index, ReportPage
     poses.add({pose.time_s, pose.distance_m, pose.tilt_x_deg, pose.tilt_y_deg, pose.turn_deg});
   }
   page.beginRow();
-  page.figure(angleScatter(poses, 2, 3, "tilt of the board against the camera",
+  page.figure(angleScatter(poses, 2, 3, "tilt of the board relative to the camera",
                            "tilt about the camera's x axis [deg]", "tilt about its y axis [deg]")
                   .svg(),
-              "How the board was tilted. A wide cloud in both directions separates distance from rotation.",
+              "Tilts of the board. A wide spread in both directions separates distance from rotation.",
               &poses);
-  page.figure(angleScatter(poses, 4, 1, "turn about the optical axis and distance",
-                           "turn about the optical axis [deg]", "distance to the board [m]")
+  page.figure(angleScatter(poses, 4, 1, "rotation about the optical axis and distance",
+                           "rotation about the optical axis [deg]", "distance to the board [m]")
                   .svg(),
-              "Turns about the optical axis, and distances.", &poses);
+              "Rotations about the optical axis, and distances.", &poses);
   page.endRow();
   page.keep(poses);
 }
@@ -225,8 +225,8 @@ void writeDetections(const ReportData& data, const Measures& measures, ReportPag
     const PlotTable runs = timelineTable(data.cameras[i], i), counts = circlesTable(data.cameras[i], i);
     page.figure(
         timelineSvg(runs, counts, camera, points),
-        fmt::format("The bar says what became of each window, the dots how many of the board's {} circles "
-                    "were found. Long stretches without the board are lost for the calibration.",
+        fmt::format("The bar shows each window's outcome, the dots the number of found circles (the board "
+                    "has {}). Stretches without the board do not contribute to the calibration.",
                     points),
         &runs);
     page.text(outcomeTable(camera));
@@ -261,12 +261,13 @@ void writeExcitation(const ReportData& data, const Measures& measures, ReportPag
     const PlotTable table = excitationTable(imu, i);
     page.beginRow();
     page.figure(
-        excitationSvg(table, 0, 1, "turning about each axis", "rad/s"),
-        "Turning about the IMU's axes: RMS (solid) and largest rate (pale). An axis that hardly turns leaves "
-        "rotation and translation along others open.",
+        excitationSvg(table, 0, 1, "rotation about each axis", "rad/s"),
+        "Angular rate about the IMU's axes: RMS (solid) and maximum (pale). If there is little rotation "
+        "about an axis, the rotation, and the translation along the other axes, are poorly constrained.",
         &table);
     page.figure(excitationSvg(table, 2, 3, "acceleration along each axis", "m/s\u00b2"),
-                "Specific force along them, about its mean: RMS (solid) and largest (pale).", &table);
+                "Specific force along the IMU's axes minus its mean: RMS (solid) and maximum (pale).",
+                &table);
     page.endRow();
     page.text(paragraph(
         "small", fmt::format("{} samples/s over {} s.", number(imu.rate_hz, 1), number(imu.duration_s, 1))));

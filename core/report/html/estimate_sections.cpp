@@ -1,4 +1,4 @@
-// How the estimate was reached, how sure it is, and what the run was.
+// Convergence, uncertainty, split-half check, and the run's notes, options and timing.
 #include "core/numerics/angles.h"
 #include "core/report/html/heat_map.h"
 #include "core/report/html/html_text.h"
@@ -22,7 +22,7 @@ PlotTable convergenceTable(const std::vector<IterationRecord>& iterations) {
   return table;
 }
 
-// How far each camera's translation and time offset still were from their last values.
+// Differences of each camera's pose and time offset from their final values, by iteration.
 PlotTable distanceTable(const std::vector<IterationRecord>& iterations, std::size_t camera) {
   PlotTable table(fmt::format("plots/camera{}_convergence.csv", camera + 1),
                   {"iteration", "translation_to_last_mm", "rotation_to_last_deg", "time_offset_to_last_ms"});
@@ -57,7 +57,7 @@ PlotFrame iterationFrame(const PlotTable& table, const char* title, const char* 
 
 void writeCost(const PlotTable& table, ReportPage& page) {
   PlotFrame frame = iterationFrame(table, "cost over the iterations", "cost");
-  constexpr double kWide = 20.0;  // from here on decades say more than the values themselves
+  constexpr double kWide = 20.0;  // ratio from which the scale is logarithmic
   const AxisRange range = rangeOf(table.values[2], 0.0);
   frame.y_decades = range.low > 0.0 && range.high > kWide * range.low;
   const std::vector<double> cost = frame.y_decades ? decades(table.values[2], 1e-12) : table.values[2];
@@ -69,14 +69,14 @@ void writeCost(const PlotTable& table, ReportPage& page) {
   plot.line(table.values[0], cost, "c2");
   plot.points(table.values[0], cost, "c2", 5.0);
   page.figure(plot.svg(),
-              "Half the sum of squares of all weighted residuals. Dashed lines part the stages, which "
-              "weigh and release differently: only within one does the cost have to fall.",
+              "Half the sum of squares of all weighted residuals. Dashed lines separate the stages, which "
+              "have different weights and free parameters: the cost must decrease within each stage only.",
               &table);
 }
 
 void writeDistances(const ReportData& data, std::size_t camera, ReportPage& page) {
   const PlotTable table = distanceTable(data.named.result->iterations, camera);
-  PlotFrame frame = iterationFrame(table, "distance from the last values", "distance");
+  PlotFrame frame = iterationFrame(table, "difference from the final values", "distance");
   constexpr double kLeast = 1e-6;
   frame.y = rangeOf(decades(table.values[1], kLeast));
   for (std::size_t k = 2; k <= 3; ++k) frame.y = joined(frame.y, rangeOf(decades(table.values[k], kLeast)));
@@ -85,11 +85,11 @@ void writeDistances(const ReportData& data, std::size_t camera, ReportPage& page
   for (std::size_t k = 1; k <= 3; ++k)
     plot.line(table.values[0], decades(table.values[k], kLeast), fmt::format("c{}", k - 1));
   plot.legend({{"c0", "translation [mm]"}, {"c1", "rotation [deg]"}, {"c2", "time [ms]"}});
-  page.figure(plot.svg(),
-              fmt::format("How far {} still was from its last values; they should stop moving well below "
-                          "their sigmas.",
-                          escaped(cameraName(data, camera))),
-              &table);
+  page.figure(
+      plot.svg(),
+      fmt::format("Differences of {} from its final values. They should converge to well below the sigmas.",
+                  escaped(cameraName(data, camera))),
+      &table);
   page.keep(table);
 }
 
@@ -99,13 +99,13 @@ std::string observabilityWords(const ReportData& data) {
       std::count_if(u.observability.begin(), u.observability.end(), [](double v) { return v < 1.0; });
   std::string text = fmt::format("The least certain direction is <b>{}</b>. ", escaped(u.weakest));
   const double weakest = u.observability.front();
-  text += fmt::format("Against the needs ({} deg, {} mm, {} ms) its sigma is {} times what is allowed. ",
-                      plain(data.needs.rotation_deg), plain(data.needs.translation_mm),
-                      plain(data.needs.time_offset_ms),
-                      significant(1.0 / std::sqrt(std::max(weakest, 1e-12)), 2));
-  text += unmet == 0
-              ? fmt::format("All {} directions meet the needs.", u.observability.size())
-              : fmt::format("{} of {} directions do not meet the needs.", unmet, u.observability.size());
+  text += fmt::format(
+      "Relative to the required sigmas ({} deg, {} mm, {} ms) it has {} times the allowed sigma. ",
+      plain(data.needs.rotation_deg), plain(data.needs.translation_mm), plain(data.needs.time_offset_ms),
+      significant(1.0 / std::sqrt(std::max(weakest, 1e-12)), 2));
+  text += unmet == 0 ? fmt::format("All {} directions meet the required sigmas.", u.observability.size())
+                     : fmt::format("{} of {} directions do not meet the required sigmas.", unmet,
+                                   u.observability.size());
   return text;
 }
 
@@ -117,9 +117,9 @@ void writeObservability(const ReportData& data, ReportPage& page) {
   for (std::size_t i = 0; i < values.size(); ++i)
     table.add({static_cast<double>(i + 1), 1.0 / std::sqrt(std::max(values[i], 1e-12))});
   PlotFrame frame;
-  frame.title = "sigma over need, direction by direction";
+  frame.title = "sigma relative to the required one, by direction";
   frame.x_label = "direction, the weakest first";
-  frame.y_label = "sigma / need";
+  frame.y_label = "sigma / required";
   frame.x = {0.0, static_cast<double>(values.size())};
   frame.y = {0.0, 1.1 * std::max(1.0, table.values[1].front())};
   frame.height = 180.0;
@@ -132,8 +132,8 @@ void writeObservability(const ReportData& data, ReportPage& page) {
   }
   plot.segment(0.0, 1.0, frame.x.high, 1.0, "ink dashed");
   page.figure(plot.svg(),
-              "Sigmas of independent directions, in units of what is needed. Bars above the dashed line "
-              "are needs that this recording does not meet.",
+              "Sigmas of independent directions relative to the required ones. Directions above the dashed "
+              "line do not meet the requirement.",
               &table);
   page.keep(table);
 }
@@ -143,7 +143,7 @@ std::string largestDifference(const std::vector<QuantityDifference>& quantities)
       quantities.begin(), quantities.end(),
       [](const auto& a, const auto& b) { return std::abs(a.normalised()) < std::abs(b.normalised()); });
   if (largest == quantities.end()) return "";
-  return fmt::format("The furthest apart is {}: {} {}, {} sigmas.", escaped(largest->name),
+  return fmt::format("The largest difference is in {}: {} {}, {} sigmas.", escaped(largest->name),
                      significant(largest->difference), escaped(largest->unit),
                      number(std::abs(largest->normalised()), 1));
 }
@@ -186,8 +186,8 @@ void writeUncertainty(const ReportData& data, ReportPage& page) {
     const PlotTable table = correlationTable(u, names);
     page.figure(
         heatMapSvg("correlation of all quantities", names, u.correlation),
-        "Correlation: warm positive, cold negative, the stronger the fuller (values show when the pointer "
-        "rests on a cell). Strong colour off the diagonal: the recording tells these two only together.",
+        "Correlation: warm colours are positive, cold ones negative; point at a cell to see its value. A "
+        "strong colour off the diagonal: the recording determines these two only in combination.",
         &table);
     page.keep(table);
   }
@@ -203,20 +203,19 @@ void writeSplitHalfCheck(const ReportData& data, ReportPage& page) {
     page.endSection();
     return;
   }
-  page.text(paragraph("", fmt::format("Estimated once more from every other block of {} s ({} windows), and "
-                                      "from the blocks between ({} windows). The "
-                                      "two differ by <b>{} sigmas</b> (RMS over the quantities below). About "
-                                      "1 is what honest sigmas give; more than 2 "
-                                      "says that something slower than noise is at work: a rig that gives "
-                                      "way, changing temperature, intrinsics that "
-                                      "do not fit.",
-                                      number(validation->block_s, 2), validation->windows[0],
-                                      validation->windows[1], number(validation->rms_sigmas, 2))));
+  page.text(paragraph(
+      "",
+      fmt::format("Estimated again from every other block of {} s ({} windows), and from the blocks between "
+                  "({} windows). The two differ by <b>{} sigmas</b> (RMS over the quantities below). About 1 "
+                  "is expected. More than 2 indicates errors that change more slowly than noise: a rig that "
+                  "is not rigid, changing temperature, or intrinsics that do not fit.",
+                  number(validation->block_s, 2), validation->windows[0], validation->windows[1],
+                  number(validation->rms_sigmas, 2))));
   page.text(paragraph("", largestDifference(validation->quantities)));
   PlotTable table("plots/split_half_check.csv", {"difference", "sigma", "sigmas"});
   table.label_column = "quantity";
   PlotFrame frame;
-  frame.title = "difference of the halves in sigmas";
+  frame.title = "difference between the halves in sigmas";
   frame.x_label = "quantity, as numbered in the table";
   frame.y_label = "difference / sigma";
   std::vector<std::vector<std::string>> rows;
@@ -236,9 +235,12 @@ void writeSplitHalfCheck(const ReportData& data, ReportPage& page) {
     const double x = static_cast<double>(i), sigmas = table.values[2][i];
     plot.bar(x + 0.2, x + 0.8, 0.0, sigmas, std::abs(sigmas) > 3.0 ? "bad" : "c2");
   }
-  page.figure(plot.svg(), "Some 5 % beyond 2 sigmas are chance; any beyond 4 is not.", &table);
+  page.figure(plot.svg(),
+              "About 5 % of the differences exceed 2 sigmas by chance; a difference above 4 sigmas is not "
+              "due to chance.",
+              &table);
   page.text("<details><summary>All differences</summary>\n" +
-            html::table({"", "quantity", "difference", "sigma of it", "unit", "in sigmas"}, rows) +
+            html::table({"", "quantity", "difference", "its sigma", "unit", "in sigmas"}, rows) +
             "</details>\n");
   page.keep(table);
   page.endSection();
@@ -246,7 +248,7 @@ void writeSplitHalfCheck(const ReportData& data, ReportPage& page) {
 
 void writeRun(const ReportData& data, ReportPage& page) {
   const CalibrationResult& result = *data.named.result;
-  page.beginSection("run", "The recording's faults, options, timing");
+  page.beginSection("run", "Faults of the recording, options, timing");
   page.heading("Faults and notes");
   std::string items;
   for (const RecordingFault& fault : data.faults) items += element("li", "", escaped(fault.text));
@@ -266,8 +268,7 @@ void writeRun(const ReportData& data, ReportPage& page) {
   for (const OptionRow& row : data.named.options)
     rows.push_back({"<code>" + escaped(row.name) + "</code>", escaped(row.value), escaped(row.default_value),
                     escaped(row.help)});
-  page.text(rows.empty() ? paragraph("", "None.")
-                         : table({"option", "value", "default", "what it does"}, rows));
+  page.text(rows.empty() ? paragraph("", "None.") : table({"option", "value", "default", "meaning"}, rows));
   page.heading("Time and memory");
   const Timing& t = result.timing;
   page.text(
@@ -275,7 +276,8 @@ void writeRun(const ReportData& data, ReportPage& page) {
              "memory [MB]"},
             {{number(t.read_s, 2), number(t.detect_s, 2), number(t.initialise_s, 2), number(t.optimise_s, 2),
               number(t.split_half_check_s, 2), number(t.total_s, 2), number(result.memory_peak_mb, 0)}}));
-  page.text(paragraph("small", "Reading and detecting overlap. evical " + escaped(data.named.version)));
+  page.text(
+      paragraph("small", "Reading and detection overlap in time. evical " + escaped(data.named.version)));
   page.endSection();
 }
 

@@ -1,4 +1,4 @@
-// A square matrix of numbers between -1 and 1 as coloured cells, rows and columns named alike.
+// Square matrix of numbers between -1 and 1 as coloured cells; rows and columns have the same names.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace evical::html {
 
-// Positive values get class "warm", negative ones "cold", the stronger the more opaque; each cell says its
-// value when hovered over.
+// Positive values have class "warm", negative ones "cold", with an opacity that grows with their size; each
+// cell has its value as tooltip.
 std::string heatMapSvg(const std::string& title, const std::vector<std::string>& names,
                        const Eigen::MatrixXd& values);
 

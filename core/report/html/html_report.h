@@ -1,5 +1,5 @@
-// report.html: one self-contained page that says how good a calibration is, why, and what to do better; and
-// the numbers behind its plots as CSV. Also of a failed calibration: the reason, and what there is.
+// report.html: one self-contained page with the quality of a calibration, its reasons and advice; and its
+// plots' data as CSV. A failed calibration has a report, too: the reason, and the available data.
 #pragma once
 
 #include "core/data/calibration_check.h"
@@ -22,22 +22,21 @@ struct ReportNeeds {
   double rotation_deg = 0.1, translation_mm = 1.0, time_offset_ms = 0.1;
 };
 
-// Lists may be empty or shorter than those of the result where a calibration failed early.
+// Lists may be empty or shorter than those of the result if a calibration failed early.
 struct ReportData {
   const NamedResult& named;
-  std::string recording;               // as people know it: the file's name
+  std::string recording;               // the file's name
   std::vector<SeenBoard> boards = {};  // by camera
   std::int64_t start_ns = 0;
   std::span<const BoardObservations> cameras = {};
-  std::span<const CameraLens> lenses = {};  // what they were seen with
+  std::span<const CameraLens> lenses = {};  // used for the detection
   std::span<const ImuData> imus = {};
   std::span<const Resolution> resolutions_px = {};
   std::span<const RecordingFault> faults = {};
   ReportNeeds needs = {};
-  // By camera: as calibrated first; empty where all were given.
+  // By camera, if calibrated first; empty if all were given.
   std::span<const std::optional<IntrinsicsResult>> intrinsics = {};
-  const CalibrationCheck* check =
-      nullptr;  // of an older result by this recording, where it was made for that
+  const CalibrationCheck* check = nullptr;  // check of an older result, if requested
 };
 
 struct ReportFile {

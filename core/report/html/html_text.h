@@ -1,4 +1,4 @@
-// Text and numbers as they may stand in HTML, SVG and CSV: escaped, and never "nan" or "inf".
+// Text and numbers for HTML, SVG and CSV: escaped, and never "nan" or "inf".
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@ namespace evical::html {
 
 inline constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-// For text and for attributes in double quotes; control characters that XML does not know become '?'.
+// Escapes text and attributes in double quotes; control characters that XML does not allow become '?'.
 std::string escaped(std::string_view text);
 
-// Fixed decimals; a dash where there is no number.
+// Fixed decimals; a dash if the value is not finite.
 std::string number(double value, int decimals);
-// About `digits` significant digits, without an exponent where that stays short.
+// About `digits` significant digits, without an exponent if the text stays short.
 std::string significant(double value, int digits = 3);
-// The shortest that says a given number: "0.1", "20".
+// Shortest text of a given number: "0.1", "20".
 std::string plain(double value);
 // "12.345 ± 0.012": as many decimals as the sigma's second digit; sigma 0 or unknown: the value alone.
 std::string withSigma(double value, double sigma, int most_decimals = 6);
@@ -25,7 +25,7 @@ std::string withSigma(double value, double sigma, int most_decimals = 6);
 std::string element(std::string_view tag, std::string_view css_class, std::string_view content);
 std::string paragraph(std::string_view css_class, std::string_view escaped_text);
 
-// What stands above a plot.
+// Title above a plot.
 std::string plotTitle(std::string_view title);
 
 // A table with a header line; cells are HTML already.

@@ -1,5 +1,4 @@
-// Cameras whose intrinsics were calibrated first: the numbers, how well pixels are
-// known, where views are missing.
+// Cameras whose intrinsics were calibrated first: parameters, accuracy of the projection, missing views.
 #include "core/base/element.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/report/html/heat_map.h"
@@ -23,7 +22,7 @@ std::vector<std::string> parameterNames(const CameraIntrinsics& camera) {
   return names;
 }
 
-// With a column of what the batch made of them, where it solved for them.
+// Parameters, with a column for the batch's values if it refined them.
 std::string parameterTable(const ReportData& data, std::size_t index) {
   const IntrinsicsResult& found = *data.intrinsics[index];
   const auto& cameras = data.named.result->state.cameras;
@@ -41,7 +40,7 @@ std::string parameterTable(const ReportData& data, std::size_t index) {
     if (solved) row.push_back(withSigma(solved_values[k], (*solved_std)[k]));
     row.emplace_back(k < 4 ? "px" : "");
   }
-  return solved ? table({"", "found first", "solved with everything else", "unit"}, rows)
+  return solved ? table({"", "calibrated first", "refined in the joint optimisation", "unit"}, rows)
                 : table({"", "value", "unit"}, rows);
 }
 
@@ -69,7 +68,7 @@ PlotTable cellTable(const ImageMap& image, Resolution size, std::size_t index) {
   return cells;
 }
 
-// Cells the stronger the larger their number, which is written in units of 1 / `per_unit`.
+// Cells with an opacity that grows with their value; values are written in units of 1 / `per_unit`.
 std::string mapSvg(const PlotTable& cells, std::size_t column, Resolution size, const char* title,
                    const char* css_class, double per_unit) {
   SvgPlot map(imageFrame(size.width_px, size.height_px, title));
@@ -92,14 +91,15 @@ void writeMaps(const IntrinsicsResult& found, std::size_t index, ReportPage& pag
   if (found.image.cells.empty() || !size.known()) return;
   const PlotTable cells = cellTable(found.image, size, index);
   page.beginRow();
+  page.figure(mapSvg(cells, 5, size, "standard deviation of projected rays [0.001 px]", "warm", 1e3),
+              fmt::format("Standard deviation of projected points: {} px RMS over the image, at most {} px. "
+                          "Record more views in the weak parts.",
+                          significant(found.image.rms_px, 2), significant(found.image.max_px, 2)),
+              &cells);
   page.figure(
-      mapSvg(cells, 5, size, "standard deviation of projected rays [0.001 px]", "warm", 1e3),
-      fmt::format("How well it is known where a ray is seen: {} px RMS over the image, at most {} px. "
-                  "Weak parts need views.",
-                  significant(found.image.rms_px, 2), significant(found.image.max_px, 2)),
+      mapSvg(cells, 4, size, "circles of the chosen views", "c2", 1.0),
+      "Parts of the image in which the lens was measured; elsewhere the model interpolates or extrapolates.",
       &cells);
-  page.figure(mapSvg(cells, 4, size, "circles of the chosen views", "c2", 1.0),
-              "Where the lens was measured; between and beyond, the model speaks alone.", &cells);
   page.endRow();
   page.keep(cells);
 }
@@ -108,8 +108,8 @@ void writeCamera(const ReportData& data, std::size_t index, ReportPage& page) {
   const IntrinsicsResult& found = *data.intrinsics[index];
   page.heading("Camera " + cameraName(data, index));
   page.text(paragraph(
-      "", fmt::format("{}, {} x {} px, from {} of {} views ({} circles, {} dropped), tilted by up to {} deg; "
-                      "reprojection {} px RMS.",
+      "", fmt::format("{}, {} x {} px, from {} of {} views ({} circles, {} rejected), tilted by up to {} "
+                      "deg; reprojection {} px RMS.",
                       cameraModelTitle(found.intrinsics.model), found.intrinsics.resolution_px.width_px,
                       found.intrinsics.resolution_px.height_px, found.views_used, found.views_found,
                       found.circles_used, found.circles_rejected, number(found.largest_tilt_deg, 0),
@@ -121,8 +121,7 @@ void writeCamera(const ReportData& data, std::size_t index, ReportPage& page) {
   writeMaps(found, index, page);
   page.figure(
       heatMapSvg("correlation of the intrinsics", parameterNames(found.intrinsics), correlationOf(found)),
-      "Parameters that the views tell apart badly are strongly coloured; together they may still "
-      "project well.");
+      "Strong colours: parameters that the views hardly separate. Their combination may still be accurate.");
 }
 
 }  // namespace

@@ -18,20 +18,20 @@ namespace html {
 namespace {
 
 constexpr std::array<const char*, 3> kPartColours = {"c0", "c1", "c2"};
-constexpr std::size_t kMostPoints = 2000;  // of a plot; maintenance's own CSV has all
+constexpr std::size_t kMostPoints = 2000;  // of a plot; the CSV file of the maintenance has all
 
 void writeSteps(const Maintenance& maintenance, ReportPage& page) {
   if (maintenance.steps.empty()) return;
-  page.beginSection("steps", "Changes on the way");
+  page.beginSection("steps", "Detected changes");
   std::vector<std::vector<std::string>> rows;
   for (const MaintenanceStep& step : maintenance.steps)
     rows.push_back({number(step.at_s, 1), number(step.noticed_s, 1), findingHtml(step), changeHtml(step),
                     escaped(evical::joined(step.alternatives))});
-  page.text(table({"at, s", "noticed at, s", "what", "change", "or else"}, rows));
+  page.text(table({"time, s", "detected at, s", "quantity", "change", "alternative"}, rows));
   page.endSection();
 }
 
-// Numbers of one unit beside each other, with a band of one sigma as faint lines.
+// Numbers of one unit in one plot, with a band of one sigma as faint lines.
 void drawTracked(const MaintenanceTrack& track, const TrackedQuantity& quantity, const std::string& file,
                  const Maintenance& maintenance, ReportPage& page) {
   const std::size_t count = quantity.numbers.size();
@@ -51,7 +51,7 @@ void drawTracked(const MaintenanceTrack& track, const TrackedQuantity& quantity,
     plotted.add(row);
   }
   if (plotted.rows() < 2) return;
-  // The first moments, of which hardly anything is known, would squeeze all others.
+  // The first values have large sigmas, which would compress the scale.
   const std::size_t skipped = std::min<std::size_t>(plotted.rows() / 10, 10);
   PlotFrame frame;
   frame.title = fmt::format("{} of {}", quantity.title, ofSensor(track.sensor, track.against));
@@ -82,8 +82,8 @@ void drawTracked(const MaintenanceTrack& track, const TrackedQuantity& quantity,
   }
   plot.legend(legend);
   page.figure(plot.svg(),
-              "Difference from the old calibration, as known at each moment; faint lines are one standard "
-              "deviation to either side, a dark line is a change that was noticed.",
+              "Difference from the old calibration, as estimated at each time. Faint lines are one standard "
+              "deviation to either side, a dark line is a detected change.",
               &plotted);
   page.keep(plotted);
 }
@@ -104,7 +104,7 @@ void drawStops(const MaintainedImu& imu, const std::string& file, ReportPage& pa
     plotted.add(
         {0.5 * (stop.from_s + stop.to_s), stop.residual_m_s2, stop.sigma_m_s2, stop.used ? 1.0 : 0.0});
   PlotFrame frame;
-  frame.title = fmt::format("What stops leave of gravity's norm, {}", imu.name);
+  frame.title = fmt::format("residual of gravity's norm at stops, {}", imu.name);
   frame.x_label = "s";
   frame.y_label = "m/s^2";
   frame.x = rangeOf(std::array{imu.from_s, imu.to_s});
@@ -121,8 +121,8 @@ void drawStops(const MaintainedImu& imu, const std::string& file, ReportPage& pa
     plot.points(std::vector{x}, std::vector{y}, colour, 6.0);
   }
   page.figure(plot.svg(),
-              "With the numbers of now each stop's specific force is gravity to within its bar, one standard "
-              "deviation. Red ones contradict the others and are left out.",
+              "Norm of each stop's specific force minus gravity, with the current parameters; bars are one "
+              "standard deviation. Red stops contradict the others and are excluded.",
               &plotted);
   page.keep(plotted);
 }
@@ -137,14 +137,14 @@ void writeStops(const Maintenance& maintenance, ReportPage& page) {
     if (imu.stops.empty()) continue;
     page.heading(imu.name);
     page.text(paragraph(
-        "", fmt::format("{} stops. Least known from them: {}.", imu.stops.size(), escaped(imu.weakest))));
+        "", fmt::format("{} stops. Weakest direction: {}.", imu.stops.size(), escaped(imu.weakest))));
     drawStops(imu, fmt::format("plots/stops{}.csv", picture), page);
   }
   page.endSection();
 }
 
 void writeNotesOf(const Maintenance& maintenance, ReportPage& page) {
-  page.beginSection("run", "To know");
+  page.beginSection("run", "Notes");
   std::vector<std::string> texts = maintenance.notes;
   for (const MaintainedImu& imu : maintenance.imus)
     texts.push_back(fmt::format("{}: stream {}, {:.1f} Hz, from {:.1f} s to {:.1f} s", imu.name, imu.stream,
@@ -160,7 +160,7 @@ void writeNotesOf(const Maintenance& maintenance, ReportPage& page) {
 
 std::vector<ReportFile> reportFiles(const Maintenance& maintenance) {
   html::ReportPage verdict, page;
-  html::writeAssessmentVerdict(maintenance, "Are the IMUs still as they were calibrated?", verdict);
+  html::writeAssessmentVerdict(maintenance, "Is the IMUs' calibration still good?", verdict);
   html::writeSteps(maintenance, page);
   if (!maintenance.findings.empty()) {
     page.beginSection("findings", "Since the calibration");

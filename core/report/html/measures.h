@@ -1,5 +1,4 @@
-// What a report says of the recording, as numbers: where the board was seen, how it was moved, what the
-// residuals look like. Plots and advice both rest on these.
+// Measures of a recording: positions of the board, motion, residuals. Plots and advice use them.
 #pragma once
 
 #include "core/report/html/html_report.h"
@@ -12,14 +11,14 @@
 
 namespace evical::html {
 
-// One cell of the image plane: how many circles were measured in it, and the mean of their residuals.
+// One cell of the image plane: number of circles measured in it, and the mean of their residuals.
 struct SensorCell {
   Eigen::Vector2d low_px = Eigen::Vector2d::Zero(), high_px = Eigen::Vector2d::Zero();  // on the sensor
   int circles = 0, residuals = 0;
   Eigen::Vector2d mean_residual_px = Eigen::Vector2d::Zero();  // predicted - measured
 };
 
-// How the board stood in one view, by the trajectory.
+// Pose of the board in one view, from the trajectory.
 struct BoardPose {
   double time_s = 0.0, distance_m = 0.0;
   double tilt_x_deg = 0.0, tilt_y_deg = 0.0;  // of its normal, about the camera's x and y axes
@@ -33,13 +32,13 @@ struct CameraMeasures {
   int windows = 0, views = 0, partial = 0;
   double duration_s = 0.0;
   std::vector<Eigen::Vector2d> centres_px;  // on the sensor
-  std::vector<SensorCell> cells;            // row by row; empty where the resolution is unknown
+  std::vector<SensorCell> cells;            // row by row; empty if the resolution is unknown
   std::vector<BoardPose> poses;             // empty without a trajectory
 
-  // It was found in those that a person rejected, too.
+  // Includes windows that were rejected by hand.
   int found() const { return views + outcomes[static_cast<std::size_t>(WindowOutcome::RejectedByHand)]; }
   double detectionRate() const { return windows > 0 ? static_cast<double>(found()) / windows : 0.0; }
-  double coveredShare() const;  // of the cells: those with at least one circle
+  double coveredShare() const;  // share of the cells with at least one circle
 };
 
 struct AxisMoments {
@@ -52,7 +51,7 @@ struct ImuMeasures {
   AxisMoments rate_rad_s, force_m_s2;                     // as measured
   SignalPrediction signals;                               // empty without a trajectory
   AxisMoments rate_residual, force_residual;              // measured - predicted
-  double rate_sigma_rad_s = 0.0, force_sigma_m_s2 = 0.0;  // of a sample, by the noise densities given
+  double rate_sigma_rad_s = 0.0, force_sigma_m_s2 = 0.0;  // of a sample, from the given noise densities
 };
 
 struct Measures {

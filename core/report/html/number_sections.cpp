@@ -1,4 +1,4 @@
-// Verdict, results with their sigmas, how the sensors sit.
+// Verdict, results with their sigmas, geometry of the sensors.
 #include "core/base/element.h"
 #include "core/base/shell_word.h"
 #include "core/data/intrinsics_result.h"
@@ -33,7 +33,7 @@ std::string htmlUnit(std::string unit) {
   return unit;
 }
 
-// Three numbers of a quantity, from those that `chosen` takes.
+// Row of the three numbers of a quantity that `chosen` selects.
 template <class Chosen>
 std::vector<std::string> vectorRow(const std::string& name, const ShownQuantity& quantity,
                                    const std::string& unit, Chosen&& chosen) {
@@ -51,7 +51,7 @@ void addAngles(Rows& rows, const Eigen::Quaterniond& rotation) {
                   warning.empty() ? "deg" : "deg (" + warning + ")"});
 }
 
-// One row of three numbers, two of a matrix, with angles below the rotation that leads to the reference.
+// One row of three numbers, two rows for a matrix. Angles are below the rotation to the reference.
 void addVectors(Rows& rows, const ShownQuantity& quantity, const Eigen::Quaterniond& rotation) {
   const std::string title = quantity.info->title, unit = htmlUnit(unitAndRemark(quantity));
   if (quantity.info->shape == QuantityShape::UpperTriangle) {
@@ -86,12 +86,12 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
   const std::string name = escaped(cameraName(data, i));
   std::string text;
   text += tile(name + ": rotation", largestSigma(kDegPerRad * sigma.rotation_std_rad, "deg"),
-               fmt::format("largest sigma; needed {}", plain(data.needs.rotation_deg)));
+               fmt::format("largest sigma; required {}", plain(data.needs.rotation_deg)));
   text += tile(name + ": translation", largestSigma(1e3 * sigma.translation_std_m, "mm"),
-               fmt::format("largest sigma; needed {}", plain(data.needs.translation_mm)));
+               fmt::format("largest sigma; required {}", plain(data.needs.translation_mm)));
   text += tile(name + ": time offset",
                withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s) + " ms",
-               fmt::format("sigma needed {}", plain(data.needs.time_offset_ms)));
+               fmt::format("required sigma {}", plain(data.needs.time_offset_ms)));
   const CameraFit fit = elementOrNone(data.named.result->cameras, i);
   text += tile(name + ": reprojection", significant(fit.reprojection_rms_px) + " px",
                fmt::format("RMS of {} circles", fit.circles_used));
@@ -131,9 +131,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
-                  state.lens.solved         ? "as solved with everything else"
-                  : state.lens.foundFirst() ? "as calibrated first"
-                                            : "as given",
+                  state.lens.solved         ? "refined in the joint optimisation"
+                  : state.lens.foundFirst() ? "calibrated first"
+                                            : "given",
                   cameraModelTitle(intrinsics->model), intrinsics->resolution_px.width_px,
                   intrinsics->resolution_px.height_px, number(intrinsics->focal_length_px.x(), 3),
                   number(intrinsics->focal_length_px.y(), 3), number(intrinsics->principal_point_px.x(), 3),
@@ -164,7 +164,7 @@ struct PlacedSensor {
   bool camera = false;
 };
 
-// Seen along the third of the reference's axes; `across` and `up` are the two that span the picture.
+// View along the third axis of the reference; `across` and `up` are the axes of the picture.
 std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int up, double extent_mm) {
   PlotFrame frame;
   frame.title = fmt::format("sensors in the plane of {} and {}", kAxes.at(static_cast<std::size_t>(across)),
@@ -180,7 +180,7 @@ std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int
     low = low.cwiseMin(Eigen::Vector2d(t_mm[across], t_mm[up]));
     high = high.cwiseMax(Eigen::Vector2d(t_mm[across], t_mm[up]));
   }
-  constexpr double kEndOn = 0.3;  // an axis that looks shorter than this points at the reader, or away
+  constexpr double kEndOn = 0.3;  // projected axes shorter than this point towards the reader, or away
   const double arm_mm = 0.45 * extent_mm, margin_mm = 1.25 * arm_mm;
   frame.x = {low.x() - margin_mm, high.x() + margin_mm};
   frame.y = {low.y() - margin_mm, high.y() + margin_mm};
@@ -204,12 +204,12 @@ std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int
   return plot.svg();
 }
 
-// What the command line prints and the window has a button for.
+// Suggested setting, as the command line prints it; the window has a button for it.
 std::string repairText(const std::optional<Repair>& repair) {
   if (!repair) return {};
-  return paragraph("repair", "What may mend it: calibrate again with " +
+  return paragraph("repair", "Possible fix: calibrate again with " +
                                  element("code", "", escaped("--set " + shellWord(repair->text()))) +
-                                 ", or by the button beside the result's verdict in the window.");
+                                 ", or with the button next to the verdict in the window.");
 }
 
 }  // namespace
@@ -217,11 +217,11 @@ std::string repairText(const std::optional<Repair>& repair) {
 void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page) {
   const CalibrationResult& result = *data.named.result;
   const char* const status = statusName(result.status);
-  const char* const meaning = result.status == CalibrationStatus::Ok
-                                  ? "The calibration meets the needs stated for it."
-                              : result.status == CalibrationStatus::Doubtful
-                                  ? "There are numbers, but do not rely on them before you have read why."
-                                  : "There is no calibration.";
+  const char* const meaning =
+      result.status == CalibrationStatus::Ok ? "The calibration meets the required sigmas."
+      : result.status == CalibrationStatus::Doubtful
+          ? "The calibration has a result, but do not rely on it before you have read the reason."
+          : "The calibration has no result.";
   page.text(fmt::format("<div class=\"verdict {0}\"><b>{0}</b><div><p>{1}</p>{2}{3}</div></div>\n", status,
                         meaning, result.reason.empty() ? "" : paragraph("reason", escaped(result.reason)),
                         repairText(result.repair)));
@@ -284,18 +284,17 @@ void writeSensors(const ReportData& data, ReportPage& page) {
     extent_mm = std::max(extent_mm, 1e3 * sensor.reference_from_sensor.translation_m.norm());
   if (state.cameras.empty()) return;
   extent_mm = std::max(extent_mm, 5.0);
-  page.beginSection("sensors", "How the sensors sit");
+  page.beginSection("sensors", "Geometry of the sensors");
   page.beginRow();
   page.figure(sensorView(sensors, 0, 1, extent_mm), "Seen along the reference's z axis.");
   page.figure(sensorView(sensors, 0, 2, extent_mm), "Seen along its y axis.");
   page.figure(sensorView(sensors, 1, 2, extent_mm), "Seen along its x axis.");
   page.endRow();
-  page.text(paragraph(
-      "note",
-      "Each sensor with its axes (a ring: the axis points at you or away); cameras look along their z axis "
-      "(x right, y down in the image). "
-      "Compare with the device: a camera that looks the wrong way means swapped axes or streams, and "
-      "a dashed arm much longer than the device means a board of another size."));
+  page.text(paragraph("note",
+                      "Each sensor with its axes (a ring: the axis points towards you or away). Cameras look "
+                      "along their z axis (x right, y down in the image). Compare with the device: a camera "
+                      "that looks the wrong way indicates swapped axes or streams; a dashed arm much longer "
+                      "than the device indicates a wrong board size."));
   page.endSection();
 }
 

@@ -1,4 +1,4 @@
-// The numbers behind one plot: it is drawn from nothing else, and they are written beside the report as CSV.
+// Data of one plot, which is drawn only from them. They are written next to the report as CSV.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 namespace evical::html {
 
 struct PlotTable {
-  std::string file;                         // "plots/camera1_windows.csv"; no sensor's name in it
+  std::string file;                         // "plots/camera1_windows.csv"; without the sensor's name
   std::vector<std::string> columns;         // with units
   std::vector<std::vector<double>> values;  // by column, all of one length
-  std::string label_column;                 // a first column of words; empty for none
+  std::string label_column;                 // header of a first column of labels; empty if there is none
   std::vector<std::string> labels;
 
   PlotTable(std::string file_name, std::vector<std::string> column_names);
@@ -19,10 +19,10 @@ struct PlotTable {
   std::size_t rows() const { return values.empty() ? 0 : values.front().size(); }
 };
 
-// What isn't finite is an empty cell; labels are quoted.
+// Values that are not finite become empty cells; labels are quoted.
 std::string tableCsv(const PlotTable& table);
 
-// Of `count` things, each how many-th is shown so that at most `most` are.
+// Stride that shows at most `most` of `count` items.
 std::size_t strideFor(std::size_t count, std::size_t most);
 
 }  // namespace evical::html

@@ -41,7 +41,7 @@ void drawDistances(const Repeatability& repeat, ReportPage& page) {
   }
   if (table.rows() == 0) return;
   PlotFrame frame;
-  frame.title = "How far each recording is from the others";
+  frame.title = "difference of each recording from the others";
   frame.y_label = "chi-square";
   frame.x_names = table.labels;
   frame.x = {0.0, static_cast<double>(table.rows())};
@@ -55,11 +55,10 @@ void drawDistances(const Repeatability& repeat, ReportPage& page) {
     plot.segment(x + 0.1, table.values[1][k], x + 0.9, table.values[1][k], "ink");
     plot.segment(x + 0.1, table.values[2][k], x + 0.9, table.values[2][k], "muted");
   }
-  page.figure(
-      plot.svg(),
-      "Each bar is one recording against all others that fit; above the dark line it does not fit them. "
-      "The light line is what chance makes on average of a rig that moves as far as it may by itself.",
-      &table);
+  page.figure(plot.svg(),
+              "Each bar compares one recording with all others that fit; above the dark line it does not "
+              "fit. The light line is the expected value for a rig within its allowed drift.",
+              &table);
   page.keep(table);
 }
 
@@ -73,12 +72,12 @@ void writeRecordings(const Repeatability& repeat, ReportPage& page) {
                         : fmt::format("<b class=\"bad\">{}</b>", outcomeWords(recording.outcome)),
                     recording.freedom > 0 ? number(recording.chi_square, 1) : "",
                     recording.freedom > 0 ? number(recording.limit, 1) : "", differsText(recording)});
-  page.text(table({"", "", "chi-square", "limit", "what differs, or why"}, rows));
+  page.text(table({"", "", "chi-square", "limit", "difference, or reason"}, rows));
   drawDistances(repeat, page);
   page.endSection();
 }
 
-// To the second digit of what numbers vary by.
+// Rounded to the second digit of the variation between recordings.
 std::string asVarying(double value, const RepeatedNumber& of) {
   double size = of.mean_sigma > 0.0 ? of.mean_sigma : of.deviation;
   if (of.joint_sigma > 0.0) size = std::min(size, of.joint_sigma);
@@ -93,20 +92,20 @@ void writeStatistics(const Repeatability& repeat, ReportPage& page) {
       rows.push_back({escaped(quantity.sensor + "." + each.name), asVarying(each.mean, each),
                       asVarying(each.deviation, each), asVarying(each.mean_sigma, each),
                       each.count > 1 ? number(each.ratio(), 2) : "",
-                      quantity.common ? withSigma(each.joint, each.joint_sigma) : "each its own",
+                      quantity.common ? withSigma(each.joint, each.joint_sigma) : "separate",
                       escaped(each.unit)});
-  page.text(table({"", "mean", "standard deviation", "mean sigma", "ratio", "all together", "unit"}, rows));
+  page.text(table({"", "mean", "standard deviation", "mean sigma", "ratio", "joint solution", "unit"}, rows));
   page.text(paragraph(
       "small",
       fmt::format(
-          "The standard deviation is over the recordings that fit. The mean sigma is what the recordings "
-          "themselves say of it, without what all of them were told alike. Where sigmas are honest the ratio "
-          "of both is about 1; of few recordings it scatters widely: over all numbers it is {}.",
+          "The standard deviation is over the recordings that fit. The mean sigma is that of single "
+          "recordings, without the share of priors that all have in common. With realistic sigmas the ratio "
+          "of both is about 1; with few recordings it varies widely. Over all numbers it is {}.",
           number(repeat.rms_ratio, 2))));
   page.endSection();
 }
 
-// Numbers of one unit, in one picture.
+// Numbers of one unit in one plot.
 struct Panel {
   const RepeatedQuantity* quantity;
   std::vector<const RepeatedNumber*> numbers;
@@ -177,18 +176,17 @@ void drawPanel(const Panel& panel, const std::vector<std::string>& columns, cons
     }
   }
   plot.legend(legend);
-  page.figure(
-      plot.svg(),
-      panel.quantity->common
-          ? "Each recording alone, less the solution of all together; bars are one standard deviation."
-          : "Each recording alone, less their mean; bars are one standard deviation.",
-      &table);
+  page.figure(plot.svg(),
+              panel.quantity->common
+                  ? "Each recording alone minus the joint solution; bars are one standard deviation."
+                  : "Each recording alone minus the mean; bars are one standard deviation.",
+              &table);
   page.keep(table);
 }
 
 void writePictures(const Repeatability& repeat, ReportPage& page) {
   if (repeat.columns.size() < 2) return;
-  page.beginSection("spread", "Recordings beside each other");
+  page.beginSection("spread", "Comparison of the recordings");
   int picture = 0;
   for (const RepeatedQuantity& quantity : repeat.quantities)
     for (const Panel& panel : panelsOf(quantity))
@@ -202,13 +200,13 @@ void writePictures(const Repeatability& repeat, ReportPage& page) {
 std::vector<ReportFile> reportFiles(const Repeatability& repeat) {
   html::ReportPage verdict, page;
   const std::size_t count = repeat.recordings.size();
-  html::writeAssessmentVerdict(
-      repeat, fmt::format("Does the calibration come out the same from {} recordings?", count), verdict);
+  html::writeAssessmentVerdict(repeat, fmt::format("Do {} recordings give the same calibration?", count),
+                               verdict);
   html::writeRecordings(repeat, page);
   if (!repeat.quantities.empty()) html::writeStatistics(repeat, page);
   html::writePictures(repeat, page);
   if (!repeat.notes.empty()) {
-    page.beginSection("notes", "To know");
+    page.beginSection("notes", "Notes");
     html::writeTexts(repeat.notes, page);
     page.endSection();
   }

@@ -1,4 +1,4 @@
-// The page while it is being written: its sections, and the tables behind the plots.
+// Page under construction: its sections, and the tables of its plots.
 #pragma once
 
 #include "core/report/html/html_report.h"
@@ -19,9 +19,9 @@ class ReportPage {
 
   void heading(std::string_view text);                 // a sensor's name: escaped here
   void text(std::string_view html) { body_ += html; }  // HTML already
-  // What to look for is the caption's business; names the CSV file when there is a table.
+  // The caption explains what to look for; it names the CSV file if there is a table.
   void figure(const std::string& svg, std::string_view caption, const PlotTable* table = nullptr);
-  void beginRow() { body_ += "<div class=\"row\">\n"; }  // figures side by side where there is room
+  void beginRow() { body_ += "<div class=\"row\">\n"; }  // figures side by side if there is room
   void endRow() { body_ += "</div>\n"; }
   void keep(PlotTable table) { tables_.push_back(std::move(table)); }
 
@@ -34,7 +34,7 @@ class ReportPage {
   std::vector<PlotTable> tables_;
 };
 
-// What stands above a page.
+// Header of a page.
 struct PageHead {
   std::string title, version, remark;  // the remark follows the version
 };
@@ -44,7 +44,7 @@ std::string document(const PageHead& head, const ReportPage& verdict, const Repo
 std::string cameraName(const ReportData& data, std::size_t index);
 std::string imuName(const ReportData& data, std::size_t index);
 
-// The sections, in the page's order. Each leaves itself out where there is nothing to show.
+// The sections, in the page's order. A section without content is omitted.
 void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeCheckVerdict(const ReportData& data, ReportPage& page);
 void writeCheck(const ReportData& data, ReportPage& page);

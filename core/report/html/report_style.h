@@ -1,4 +1,4 @@
-// The page's looks: light and dark by what the reader's system prefers, narrow screens, paper.
+// Style sheet: light and dark as the reader's system prefers, narrow screens, paper.
 #pragma once
 
 namespace evical::html {

@@ -1,4 +1,4 @@
-// How well the result explains the data: circles, gyroscope, accelerometer.
+// Residuals of circles, gyroscope and accelerometer.
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
@@ -43,14 +43,15 @@ void writeScatter(const std::vector<CircleResidual>& residuals, std::size_t inde
   plot.circle(0.0, 0.0, rms_px, "ink");
   page.figure(
       plot.svg(),
-      fmt::format("One in {} circles; the ring is the RMS, {} px. The cloud should be round and centred.",
-                  strideFor(residuals.size(), kMost), significant(rms_px)),
+      fmt::format(
+          "One in {} circles; the ring is the RMS, {} px. The distribution should be round and centred.",
+          strideFor(residuals.size(), kMost), significant(rms_px)),
       &scatter);
   page.keep(scatter);
 }
 
 void writeBias(const CameraMeasures& camera, std::size_t index, ReportPage& page) {
-  constexpr int kLeast = 20;  // circles that make a mean
+  constexpr int kLeast = 20;  // fewest circles for a mean
   if (camera.cells.empty()) return;
   PlotTable bias(fmt::format("plots/camera{}_bias.csv", index + 1),
                  {"x_px", "y_px", "dx_px", "dy_px", "circles"});
@@ -78,12 +79,11 @@ void writeBias(const CameraMeasures& camera, std::size_t index, ReportPage& page
     plot.arrow(v[0][i], v[1][i], v[0][i] + stretch * v[2][i], v[1][i] + stretch * v[3][i], "c0");
   }
   plot.points(bias.values[0], bias.values[1], "muted", 3.0);
-  page.figure(
-      plot.svg(),
-      fmt::format("Mean residual in each part of the image; the longest arrow is {} px. Arrows that point in "
-                  "or out all around mean that the intrinsics do not fit.",
-                  significant(largest_px, 2)),
-      &bias);
+  page.figure(plot.svg(),
+              fmt::format("Mean residual in each part of the image; the longest arrow is {} px. If all "
+                          "arrows point inwards or outwards, the intrinsics do not fit.",
+                          significant(largest_px, 2)),
+              &bias);
   page.keep(bias);
 }
 
@@ -119,13 +119,13 @@ void writePerWindow(const std::vector<CircleResidual>& residuals, std::size_t in
   SvgPlot plot(frame);
   plot.points(windows.values[0], windows.values[1], "c2", 2.8);
   page.figure(plot.svg(),
-              "RMS of each window. Spikes are windows that were placed badly, or moments in which the rig "
-              "was hit; slow drifts, a trajectory that cannot follow.",
+              "RMS of each window. Spikes: misidentified boards, or shocks to the rig. Slow drifts: motion "
+              "that the trajectory's spline cannot follow.",
               &windows);
   page.keep(windows);
 }
 
-// One sensor of an IMU: what it measured, and what the spline says.
+// Measured and predicted signal of one sensor of an IMU.
 struct Signal {
   std::string file, title, unit;
   const std::vector<Eigen::Vector3d>& measured;
@@ -147,7 +147,7 @@ PlotTable signalTable(const Signal& signal, const std::vector<double>& time_s) {
   return table;
 }
 
-// Of all samples; the normal curve is that of the noise density given.
+// Histogram of all samples; the normal curve is that of the given noise density.
 PlotTable histogramTable(const Signal& signal) {
   constexpr int kBins = 61;
   const double widest = std::max({4.0 * signal.sigma, 4.0 * signal.residual.deviation.maxCoeff(), 1e-9});
@@ -189,7 +189,7 @@ void writeSignal(const Signal& signal, const std::vector<double>& time_s, Report
   constexpr std::array<const char*, 3> kColours = {"c0", "c1", "c2"};
   const PlotTable table = signalTable(signal, time_s), histogram = histogramTable(signal);
   const std::size_t stride = strideFor(time_s.size(), 1500);
-  SvgPlot both(timeFrame(table, signal.title + " against the spline", signal.unit, 1, 6));
+  SvgPlot both(timeFrame(table, signal.title + ": measurement and spline", signal.unit, 1, 6));
   SvgPlot residuals([&] {
     PlotFrame frame = timeFrame(table, signal.title + " residuals", signal.unit, 7, 9);
     frame.height = 190.0;
@@ -214,22 +214,22 @@ void writeSignal(const Signal& signal, const std::vector<double>& time_s, Report
   bars.line(histogram.values[0], histogram.values[4], "ink dashed");
   both.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z: dots measured, line spline"}});
   residuals.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z"}});
-  bars.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z"}, {"ink", "noise density given"}});
-  page.figure(both.svg(),
-              fmt::format("{}: one in {} samples, and what the trajectory says.", signal.title, stride),
-              &table);
+  bars.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z"}, {"ink", "given noise density"}});
+  page.figure(
+      both.svg(),
+      fmt::format("{}: one in {} samples, and the prediction of the trajectory.", signal.title, stride),
+      &table);
   page.figure(residuals.svg(),
-              "What is left over. It should look like noise: waves mean a spline that is too stiff or "
-              "a time offset that drifts; bursts, shocks or vibration.",
+              "Residuals. They should look like noise. Waves: a spline that is too stiff, or a time offset "
+              "that drifts. Bursts: shocks or vibration.",
               &table);
   const double found = std::sqrt(signal.residual.deviation.squaredNorm() / 3.0);
   page.figure(
       bars.svg(),
-      fmt::format(
-          "All samples: standard deviation {} {}, {} times what the noise density says (dashed). Much "
-          "wider curves: a noise density that is too small, or vibration.",
-          significant(found), signal.unit,
-          signal.sigma > 0.0 ? significant(found / signal.sigma, 2) : "\u2013"),
+      fmt::format("All samples: standard deviation {} {}, {} times that of the noise density (dashed). If it "
+                  "is much wider, the given noise density is too small, or there is vibration.",
+                  significant(found), signal.unit,
+                  signal.sigma > 0.0 ? significant(found / signal.sigma, 2) : "\u2013"),
       &histogram);
   page.keep(table);
   page.keep(histogram);
@@ -245,11 +245,11 @@ void writeReprojection(const ReportData& data, const Measures& measures, ReportP
     const std::vector<CircleResidual> residuals = usedResiduals(data, i);
     if (residuals.empty()) continue;
     page.heading("Camera " + cameraName(data, i));
-    page.text(paragraph(
-        "", fmt::format("{} px RMS over {} circles of {} windows; {} circles dropped as outliers. The "
-                        "residuals are {} times what the front end expected.",
-                        significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
-                        fit.circles_rejected, significant(fit.normalised_rms, 2))));
+    page.text(
+        paragraph("", fmt::format("{} px RMS over {} circles of {} windows; {} circles rejected as outliers. "
+                                  "The residuals are {} times those expected by the front end.",
+                                  significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
+                                  fit.circles_rejected, significant(fit.normalised_rms, 2))));
     page.beginRow();
     writeScatter(residuals, i, fit.reprojection_rms_px, page);
     if (i < measures.cameras.size()) writeBias(measures.cameras[i], i, page);
@@ -263,7 +263,7 @@ void writeInertial(const ReportData& data, const Measures& measures, ReportPage&
   if (std::all_of(measures.imus.begin(), measures.imus.end(),
                   [](const auto& imu) { return imu.signals.rate_rad_s.time_s.empty(); }))
     return;
-  page.beginSection("inertial", "Gyroscope and accelerometer against the spline");
+  page.beginSection("inertial", "Gyroscope and accelerometer: residuals");
   for (std::size_t i = 0; i < measures.imus.size(); ++i) {
     const ImuMeasures& imu = measures.imus[i];
     const auto& [rate, force] = imu.signals;

@@ -1,5 +1,5 @@
-// Plots as inline SVG: axes, lines, points, bars, arrows. Colours are CSS classes, so that the page decides
-// on light and dark. What is not finite or outside the range is not drawn (lines break there).
+// Plots as inline SVG: axes, lines, points, bars, arrows. Colours are CSS classes, so that the page defines
+// light and dark. Values that are not finite or outside the range are not drawn (lines break there).
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ struct AxisRange {
   double low = 0.0, high = 1.0;
 };
 
-// Of all finite values, with a margin on both sides; never empty.
+// Range of all finite values, with a margin on both sides; never empty.
 AxisRange rangeOf(std::span<const double> values, double margin_share = 0.05);
 AxisRange joined(const AxisRange& a, const AxisRange& b);
 
@@ -23,12 +23,12 @@ struct PlotFrame {
   AxisRange x, y;
   double width = 860.0, height = 240.0;
   bool y_down = false;                    // image coordinates
-  bool y_decades = false;                 // y is a power of ten: ticks say 10^y
+  bool y_decades = false;                 // y is a power of ten: ticks show 10^y
   std::vector<std::string> x_names = {};  // instead of ticks, at 0.5, 1.5, ...
   bool equal_scale = false;               // one unit is as long along x as along y
 };
 
-// Pixels of an image.
+// Axes in pixels of an image.
 PlotFrame imageFrame(int width_px, int height_px, const std::string& title);
 
 struct LegendEntry {

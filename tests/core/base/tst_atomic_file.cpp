@@ -143,7 +143,7 @@ class TestAtomicFile : public QObject {
       std::filesystem::remove_all(entry.path());
   }
 
-  // Run by run in another process that is killed at any moment: a mark means that all are of its run.
+  // Runs in another process that is killed at any time: if the mark exists, all files must be of its run.
   void killedRun_leavesNoPartsOfTwo() {
     constexpr int kFiles = 20, kKills = 60;
     const auto nameOf = [&](int file) { return folder() / (file == kFiles ? "mark" : std::to_string(file)); };

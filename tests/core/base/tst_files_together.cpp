@@ -51,7 +51,7 @@ class TestFilesTogether : public QObject {
       FilesTogether files;
       files.makeFolder(place);
       files.write({place / "kept.yaml", "new"});
-      // A folder stands where a file is wanted: what was written before is not placed either.
+      // A folder has the name of a required file: then the files written before are not placed either.
       std::filesystem::create_directories(place / "folder");
       QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write({place / "folder", "x"}));
     }

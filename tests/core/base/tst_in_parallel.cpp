@@ -22,7 +22,7 @@ class TestInParallel : public QObject {
     inParallel(2, 0, [](std::size_t) { QFAIL("there is no part"); });
   }
 
-  // Neither part could end without the other.
+  // Neither part could end if the other did not run at the same time.
   void twoThreads_workAtTheSameTime() {
     std::latch both(2);
     inParallel(2, 2, [&](std::size_t) { both.arrive_and_wait(); });

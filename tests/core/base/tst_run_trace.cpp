@@ -50,7 +50,7 @@ double computed_s() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Of the thread's own time, however busy the machine is.
+// Counts the thread's computing time only, independent of other load.
 void computeFor(double seconds) {
   const double end_s = computed_s() + seconds;
   volatile double sum = 0.0;
@@ -93,7 +93,8 @@ class TestRunTrace : public QObject {
   void threads_haveRowsAndTheirTime() {
     Shown shown;
     RunTrace trace(shown);
-    if (!std::ifstream("/proc/self/schedstat")) QSKIP("this system does not tell what threads compute");
+    if (!std::ifstream("/proc/self/schedstat"))
+      QSKIP("this system does not report the computing time of threads");
     std::thread other([] { computeFor(0.05); });
     computeFor(0.05);
     other.join();

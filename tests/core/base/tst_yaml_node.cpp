@@ -72,7 +72,7 @@ class TestYamlNode : public QObject {
     };
     const char* const kValue = "a: 1\nb: x\n";
     add(
-        "missing key", kValue, [](const YamlNode& n) { n["c"]; }, "file.yaml: c", "is missing. Add 'c' here");
+        "missing key", kValue, [](const YamlNode& n) { n["c"]; }, "file.yaml: c", "is missing. Add 'c'");
     add(
         "unknown key", "a: 1\nrwos: 3\n",
         [](const YamlNode& n) {
@@ -81,10 +81,10 @@ class TestYamlNode : public QObject {
         "file.yaml: rwos (line 2)", "unknown key. Did you mean 'rows'?");
     add(
         "key twice", "a: 1\nb: 2\na: 3\n", [](const YamlNode& n) { n.keys(); }, "file.yaml: a (line 3)",
-        "is there twice");
+        "occurs twice");
     add(
         "key that is a list", "[1, 2]: 3\n", [](const YamlNode& n) { n.keys(); }, "file.yaml",
-        "a key that is no plain word");
+        "a key that is not a plain word");
     add(
         "no map", "a: 1\n", [](const YamlNode& n) { n["a"].keys(); }, "file.yaml: a (line 1)",
         "must be a map");
@@ -102,10 +102,10 @@ class TestYamlNode : public QObject {
         "not a number");
     add(
         "too large", kValue, [](const YamlNode& n) { n["a"].real(0.0, 0.5, "m"); }, "file.yaml: a (line 1)",
-        "1 m is above the most of 0.5 m");
+        "1 m is above the maximum of 0.5 m");
     add(
         "too small", kValue, [](const YamlNode& n) { n["a"].integer(2, 5); }, "file.yaml: a (line 1)",
-        "1 is below the least of 2");
+        "1 is below the minimum of 2");
     add(
         "not whole", "a: 1.5\n", [](const YamlNode& n) { n["a"].integer(0, 5); }, "file.yaml: a (line 1)",
         "'1.5' is not a whole number");
@@ -153,7 +153,7 @@ class TestYamlNode : public QObject {
       QFAIL("must throw");
     } catch (const CalibrationError& error) {
       QVERIFY2(
-          QString(error.what()).contains(QRegularExpression("file.yaml \\(line [23]\\): is no valid YAML")),
+          QString(error.what()).contains(QRegularExpression("file.yaml \\(line [23]\\): is not valid YAML")),
           error.what());
     }
   }

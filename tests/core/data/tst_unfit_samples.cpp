@@ -16,7 +16,7 @@ using namespace evical;
 using Samples = std::vector<ImuSample>;
 using Indices = std::vector<std::size_t>;
 
-// Brisk turns of 2 Hz and shakes of 7 Hz, with a usual sensor's noise.
+// Fast rotations at 2 Hz and shakes at 7 Hz, with the noise of a typical sensor.
 Samples moved(double rate_hz, std::size_t count = 4000) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.01);
@@ -60,7 +60,7 @@ class TestUnfitSamples : public QObject {
   void secondClock_isFound();
 };
 
-// A sensor of 62.5 Hz, say, in a stream of 200 Hz: its samples repeat three or four times.
+// A sensor of 62.5 Hz in a stream of 200 Hz: its samples repeat three or four times.
 void TestUnfitSamples::heldSamples_countOnce_data() {
   QTest::addColumn<double>("own_hz");
   for (const double own_hz : {62.5, 100.0, 50.0}) QTest::addRow("%g Hz", own_hz) << own_hz;
@@ -112,7 +112,7 @@ void TestUnfitSamples::secondClock_isFound() {
   const std::vector<SecondClock> clocks = findSecondClocks(samples);
   QCOMPARE(clocks.size(), std::size_t{1});
   QVERIFY(clocks[0].begin == 800 && clocks[0].end == 1200 && std::abs(clocks[0].rate - 2.0) < 1e-9);
-  // A clock that was set back for good, and samples that were lost.
+  // A clock that was set back permanently, and lost samples.
   Samples reset = moved(200.0, 2000);
   for (std::size_t i = 1000; i < 2000; ++i) reset[i].time_ns -= 3'000'000'000;
   QVERIFY(findSecondClocks(reset).empty());
@@ -148,7 +148,7 @@ void TestUnfitSamples::isolatedErrors_areFound() {
   QCOMPARE(withFitForces(samples)[700].time_ns, samples[701].time_ns);
 }
 
-// With them a good sample or two between may go, but nothing further away.
+// A good sample or two between them may be removed, too, but nothing further away.
 void TestUnfitSamples::neighbouringErrors_areFound() {
   Samples samples = moved(200.0);
   samples[1000].specific_force_m_s2.x() += 50.0;
@@ -167,7 +167,7 @@ void TestUnfitSamples::firstAndLastSample_areLeftToTheBatch() {
   QCOMPARE(leftOut(findUnfitSamples(Samples{})), std::size_t{0});
 }
 
-// A sensor that holds each value for ten samples jumps all the time.
+// A sensor that repeats each value for ten samples has steps all the time.
 void TestUnfitSamples::frequentJumps_areTheSensorsWay() {
   Samples samples = moved(1000.0);
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -175,7 +175,7 @@ void TestUnfitSamples::frequentJumps_areTheSensorsWay() {
   QCOMPARE(findUnfitSamples(samples).accelerometer_spikes, Indices{});
 }
 
-// As between the blocks of one half of a recording.
+// Gaps as between the blocks of one half of a recording.
 void TestUnfitSamples::gap_isNoJump() {
   Samples samples = moved(200.0);
   for (std::size_t i = samples.size() / 2; i < samples.size(); ++i) samples[i].time_ns += 2'300'000'000;
@@ -200,7 +200,7 @@ void TestUnfitSamples::saturation_isLeftOutWithItsNeighbours() {
   }
 }
 
-// Below the full scale of any sensor, too.
+// Also below the full scale of any sensor.
 void TestUnfitSamples::saturation_ofOnePeak_isFound() {
   Samples samples = moved(200.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -211,7 +211,7 @@ void TestUnfitSamples::saturation_ofOnePeak_isFound() {
   QVERIFY(findUnfitSamples(samples).saturated[0].size() > 100);
 }
 
-// Coarse steps meet their largest value twice in a row by chance.
+// With coarse quantisation the largest value appears twice in a row by chance.
 void TestUnfitSamples::extremesOfMotion_areNoLimit() {
   Samples samples = moved(200.0);
   for (ImuSample& sample : samples)

@@ -1,4 +1,4 @@
-// Edges that are kept of a recording: memory is bounded, and what is left is spread over all of it.
+// Edges kept from a recording: memory is bounded, and the kept ones are spread over the whole recording.
 #include "core/egomotion/camera_record.h"
 
 #include "tests/support/test_program.h"

@@ -1,4 +1,4 @@
-// A camera beside a gyroscope, from edges that a known motion makes: errors, and sigmas over seeds.
+// A camera next to a gyroscope, with edges simulated from a known motion: errors, and sigmas over seeds.
 #include "core/egomotion/rotation_alignment.h"
 
 #include "core/base/error.h"
@@ -26,7 +26,7 @@ Eigen::Quaterniond mounting() {
   return quaternionExp(Eigen::Vector3d(0.4, -1.5, 0.3));
 }
 
-// Sums of sinusoids, of the IMU; `axes`: how much of each the rig turns about.
+// Sums of sinusoids as the IMU's motion; `axes`: amplitude of the rotation about each axis.
 Eigen::Vector3d rateAt(double time_s, const Eigen::Vector3d& axes) {
   Eigen::Vector3d rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -114,7 +114,8 @@ class TestRotationAlignment : public QObject {
     QVERIFY2((found.gyroscope_bias_rad_s - kBias).norm() < 0.005, "rad/s");
   }
 
-  // Walking about, and turning about a point that is 0.2 m beside the camera: v = w x l is a turn to who knows no depths.
+  // Walking, and rotation about a point at 0.2 m from the camera: v = w x l looks like a rotation if depths
+  // are unknown.
   void translation_doesNotTurnTheResult_data() {
     QTest::addColumn<double>("lever_x_m");
     QTest::addColumn<bool>("walks");
@@ -152,12 +153,13 @@ class TestRotationAlignment : public QObject {
       const double late_s = found.time_offset_s - kOffset_s;
       offset += late_s * late_s / found.covariance(3, 3) / kSeeds;
     }
-    // RMS of up to 1.4, of 36 and of 12 numbers; below one, as what depths may leave is in them too.
+    // RMS values of up to 1.4, of 36 and of 12 quantities; below one, since sigmas include the uncertainty
+    // from unknown depths.
     QVERIFY2(rotation > 0.2 && rotation < 1.96, qPrintable(QString::number(rotation)));
     QVERIFY2(offset > 0.1 && offset < 2.2, qPrintable(QString::number(offset)));
   }
 
-  // Turning about one axis leaves the rotation about it open, and the sigmas say so.
+  // Rotation about one axis does not determine the rotation about it; the sigmas show this.
   void oneAxis_leavesThatAxisOpen() {
     Rig rig;
     rig.axes = {0.0, 0.0, 1.0};

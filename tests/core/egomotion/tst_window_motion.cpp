@@ -1,4 +1,4 @@
-// A camera's motion in a window from slopes that a known motion makes.
+// A camera's motion in a window, estimated from slopes simulated from a known motion.
 #include "core/egomotion/window_motion.h"
 
 #include "core/egomotion/edge_row.h"
@@ -39,7 +39,7 @@ class TestWindowMotion : public QObject {
   Q_OBJECT
 
  private slots:
-  // Of a point that stands still, seen by a camera that moves for a short time.
+  // Image motion of a static point, seen by a camera that moves for a short time.
   void imageMotion_matchesNumericDifferences() {
     const Eigen::Vector3d point(0.4, -0.3, 1.7), rate(0.3, -0.5, 0.8), velocity(0.2, 0.6, -0.4);
     const Eigen::Vector2d place = point.hnormalized();
@@ -72,13 +72,13 @@ class TestWindowMotion : public QObject {
     options.depth_error = 0.2;
     const WindowMotion found = motionOf(camera, 1, options);
     QCOMPARE(found.use, WindowUse::Used);
-    // Patches do not end where depths do: 2 % of the rate.
+    // Image patches do not coincide with regions of equal depth: an error of 2 % of the rate.
     QVERIFY2((found.rate_rad_s - kRate).norm() < (speed > 0.0 ? 0.02 : 1e-3), "rad/s");
     QVERIFY(found.inliers > 0.9);
     QCOMPARE(found.rotation_alone, speed == 0.0);
   }
 
-  // It weighs windows against each other where the alignment begins, so what counts is how it compares.
+  // It weights windows relative to each other at the start of the alignment, so only ratios matter.
   void covariance_growsAsTheErrorsDo() {
     constexpr int kSeeds = 40;
     std::array<double, 2> errors = {}, variances = {};
@@ -92,7 +92,7 @@ class TestWindowMotion : public QObject {
       }
     }
     const double grown = (variances[1] / variances[0]) / (errors[1] / errors[0]);
-    QVERIFY2(errors[1] > 4.0 * errors[0], "noise tells");
+    QVERIFY2(errors[1] > 4.0 * errors[0], "noise must increase the error");
     QVERIFY2(grown > 0.5 && grown < 2.0, qPrintable(QString::number(grown)));
   }
 

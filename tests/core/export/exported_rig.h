@@ -1,4 +1,4 @@
-// A rig with known numbers, and how far a camera as another program would read it is from ours.
+// A rig with known parameters, and the difference between a camera as another program would read it and ours.
 #pragma once
 
 #include "core/export/export_target.h"
@@ -17,7 +17,7 @@ struct RigKind {
   int cameras = 2;
   int frames = 0;  // frame cameras, behind the others, as far from each other
 };
-// Offsets are whole microseconds, for formats that hold no more.
+// Offsets are whole microseconds, since some formats store no more.
 NamedResult rig(const RigKind& kind);
 
 using Lens = std::function<Eigen::Vector2d(const Eigen::Vector3d& point_in_camera)>;
@@ -26,7 +26,7 @@ using Lens = std::function<Eigen::Vector2d(const Eigen::Vector3d& point_in_camer
 Lens radtanLens(const std::vector<double>& fx_fy_cx_cy, const std::vector<double>& distortion);
 Lens fisheyeLens(const std::vector<double>& fx_fy_cx_cy, const std::vector<double>& distortion);
 
-// A camera as a program understands a file. Its IMU's frame may be another than ours.
+// A camera as a program interprets a file. Its IMU's frame may differ from ours.
 struct ReadCamera {
   Eigen::Matrix4d camera_from_imu;
   double time_offset_s = 0.0;  // t_imu = t_camera + that
@@ -39,7 +39,7 @@ struct ReadCamera {
 double worstDifference_px(const NamedResult& result, std::size_t camera, const ReadCamera& theirs);
 
 ExportedFiles exportTo(const NamedResult& result, const std::string& target);
-bool hasNote(const ExportedFiles& exported, const char* part);  // that has these words in it
+bool hasNote(const ExportedFiles& exported, const char* part);  // the note that contains this text
 
 // Content of an exported file.
 std::string contentOf(const ExportedFiles& exported, const std::string& path);

@@ -1,4 +1,4 @@
-// Files for programs about cameras and frames, read back in each program's own convention.
+// Files for programs about cameras and frames, read back with each program's own convention.
 #include "core/base/error.h"
 #include "core/export/distortion_fit.h"
 #include "tests/core/export/exported_rig.h"
@@ -75,7 +75,7 @@ class TestExportCameras : public QObject {
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "ros");
     const Lens lens = rosLens(yamlOf(exported, "ros/left.yaml"));
-    const double offset_s = result.result->state.cameras[0].time_offset_s;  // said in a comment
+    const double offset_s = result.result->state.cameras[0].time_offset_s;  // stated in a comment
     const QString script = QString::fromStdString(contentOf(exported, "ros/static_transforms.sh"));
     QVERIFY(script.contains("left 0.007301 s"));
     const auto tf = QRegularExpression(
@@ -166,7 +166,7 @@ class TestExportCameras : public QObject {
     QVERIFY(worstDifference_px(result, 1,
                                {right_from_left * imu_from_left.inverse(), cameras[1].time_offset_s,
                                 rosLens(right)}) < kExportCamerasSame_px);
-    // A point's rectified pixels lie in one row, and their distance in x is f B / z.
+    // A point's rectified pixels are in one row, and their distance in x is f B / z.
     const Eigen::Vector3d in_left(0.2, -0.3, 1.5),
         in_right = (right_from_left * in_left.homogeneous()).head<3>();
     const Eigen::Vector3d level_left = dataMatrix(left["rectification_matrix"]) * in_left;
@@ -210,7 +210,8 @@ class TestExportCameras : public QObject {
       const YAML::Node camera = root["cameras"][numbered("C", static_cast<Eigen::Index>(i))];
       const auto f = numbers(camera["focalLength"]), c = numbers(camera["principalPoint"]);
       const Eigen::Matrix4d this_from_first = matrix(numbers(camera["transformationToC0"]), 4, 4);
-      const double offset_s = i == 0 ? 1e-6 * imu["timeOffsetMicros"].as<double>() : -0.0021;  // one for all
+      const double offset_s =
+          i == 0 ? 1e-6 * imu["timeOffsetMicros"].as<double>() : -0.0021;  // one for all cameras
       QVERIFY(worstDifference_px(
                   result, i,
                   {this_from_first * first_from_imu, offset_s,
@@ -218,7 +219,7 @@ class TestExportCameras : public QObject {
               kExportCamerasSame_px);
     }
     QCOMPARE(numbers(imu["omegaOffsetAvg"])[1], -0.02);
-    // Metadata of a camera must have four more keys, or is not there; an IMU is looked up by its camera's name.
+    // Metadata of a camera must have all four keys or be absent; an IMU is found by its camera's name.
     QVERIFY(!root["cameras"]["C0"]["metadata"]);
     QVERIFY(imu["metadata"]["calibrationTime"] && imu["metadata"]["comment"]);
     QCOMPARE(imu["name"].as<std::string>(), root["cameras"]["C0"]["name"].as<std::string>());
@@ -259,7 +260,7 @@ class TestExportCameras : public QObject {
     QCOMPARE(static_cast<double>(file["overall_rms_reprojection_error"]), 0.125);
   }
 
-  // A lens that none of the coefficients comes near is refused, not bent.
+  // A lens that no set of coefficients approximates is refused, not written with large errors.
   void metavision_ofAStrongFisheye_isRefused() {
     RigKind kind;
     kind.fisheye = true;
@@ -267,7 +268,7 @@ class TestExportCameras : public QObject {
     test::ownResult(result).state.cameras[0].lens.detection_intrinsics->focal_length_px = {110.0, 110.0};
     try {
       exportTo(result, "metavision");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY2(error.problem().find("equidistant distortion") != std::string::npos, error.what());
     }
@@ -306,7 +307,7 @@ class TestExportCameras : public QObject {
                                   root["TEMPORAL"]["TO_CjToBr"][i]["value"].as<double>(), lens}) <
               kExportCamerasSame_px);
     }
-    // A type's name stands at its first appearance only, and pointers count on.
+    // A type's name is written at its first appearance only, and pointer numbers increase.
     const YAML::Node cameras = root["INTRI"]["Camera"];
     QCOMPARE(cameras[0]["value"]["polymorphic_id"].as<unsigned>(), 2147483649U);
     QCOMPARE(cameras[0]["value"]["polymorphic_name"].as<std::string>(),
@@ -338,7 +339,7 @@ class TestExportCameras : public QObject {
         QVERIFY2(data[note] && data[note].IsScalar(), note);
   }
 
-  // Every target writes what its sources' comments promise, for every kind of rig that it takes.
+  // Every target writes the files that its source comments describe, for every kind of rig that it supports.
   void everyTarget_statesWhoWroteIt() {
     const NamedResult result = rig({});
     for (const ExportTarget& target : exportTargets()) {
@@ -358,7 +359,7 @@ class TestExportCameras : public QObject {
     const std::filesystem::path folder = scratch.path().toStdString();
     writeExportedFiles(folder / "new", exportTo(rig({}), "kalibr").files);
     QVERIFY(std::filesystem::exists(folder / "new/kalibr/camchain-imucam.yaml"));
-    // A folder that cannot be made: a file is in its place.
+    // A folder that cannot be created: a file has its name.
     const std::vector<FileContent> files{{"a/one.txt", "1"}, {"two.txt/b", "2"}};
     writeFileWhole(folder / "two.txt", "in the way");
     QVERIFY_THROWS_EXCEPTION(CalibrationError, writeExportedFiles(folder, files));

@@ -1,4 +1,5 @@
-// Calibration files laid out as those of data sets, read as the data sets' own tools and their users' do.
+// Calibration files in the layouts of data sets, read like in the data sets' own tools and in their users'
+// tools.
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
 #include "tests/core/export/exported_rig.h"
@@ -55,7 +56,8 @@ Eigen::Matrix3d threeByThree(const YAML::Node& camera_matrix) {
   return (Eigen::Matrix3d() << k.at(0), 0.0, k.at(2), 0.0, k.at(1), k.at(3), 0.0, 0.0, 1.0).finished();
 }
 
-// As get_camera_calib_dsec_yaml of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp, 79ef978) takes a camera.
+// Reads a camera like get_camera_calib_dsec_yaml of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp,
+// 79ef978).
 Lens dsecLens(const YAML::Node& camera, const std::string& type) {
   if (camera["camera_type"].as<std::string>() != type) throw std::runtime_error("another type");
   if (camera["resolution"][1].as<int>() != 260 || camera["resolution"][0].as<int>() != 346)
@@ -79,7 +81,8 @@ Eigen::Matrix4d poseOfExportDataSets(const cv::FileNode& pose) {
   return full.matrix();
 }
 
-// As get_camera_calib_json of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp, 79ef978) takes one of TUM-VIE.
+// Reads a camera of TUM-VIE like get_camera_calib_json of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp,
+// 79ef978).
 Lens tumVieLens(const cv::FileNode& root, int i) {
   if (static_cast<double>(root["resolution"][i][0]) != 346.0 ||
       static_cast<double>(root["resolution"][i][1]) != 260.0)
@@ -101,8 +104,9 @@ cv::FileStorage tumVieFile(const ExportedFiles& exported) {
           cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON};
 }
 
-// As evimo/dataset.h of better-flow/evimo (02db528) reads a camera's folder: read_params, read_cam_intr, read_extr; the
-// time offset as read_camera_extrinsics of tools/evimo2_v2_generate/generate_extrinsics_npz.py (35286e2) calls it.
+// Reads a camera's folder like evimo/dataset.h of better-flow/evimo (02db528): read_params, read_cam_intr,
+// read_extr; the time offset has its name in read_camera_extrinsics of
+// tools/evimo2_v2_generate/generate_extrinsics_npz.py (35286e2).
 struct EvimoCamera {
   std::map<std::string, std::string> parameters;
   std::vector<double> lens, place, background;
@@ -185,7 +189,7 @@ class TestExportDataSets : public QObject {
     }
   }
 
-  // A point has one row in both rectified images, and its disparity gives it back.
+  // A point has the same row in both rectified images, and its disparity determines the point.
   void dsec_disparityIsDepth_data() {
     QTest::addColumn<int>("left");
     QTest::addColumn<int>("right");
@@ -216,7 +220,7 @@ class TestExportDataSets : public QObject {
     const Eigen::Matrix4d q = rowsMatrix(root["disparity_to_depth"][key.toStdString()]);
     const Eigen::Vector3d back = (q * Eigen::Vector4d(a.x(), a.y(), a.x() - b.x(), 1.0)).hnormalized();
     QVERIFY((back - on_left).norm() < 1e-12);
-    // Loaders take it apart into baseline and focal length.
+    // Loaders split it into baseline and focal length.
     QVERIFY(std::abs(1.0 / q(3, 2) - right_from_left.topRightCorner<3, 1>().norm()) < 1e-12);
     QVERIFY(q(2, 3) == k(left)(0, 0) && q(2, 3) > 0.0);
   }
@@ -251,7 +255,7 @@ class TestExportDataSets : public QObject {
     QVERIFY(!root["intrinsics"]["cam1"] && !places["R_rect1"] && !root["disparity_to_depth"]["cams_12"]);
     QVERIFY(isSaid(exported, "left event camera: left, right event camera: right, left frame camera: none"));
     QVERIFY(isSaid(exported, "add to the stamps of left 0.007301 s, right -0.0021 s"));
-    QVERIFY(isSaid(exported, "DSEC says nothing of IMUs: left imu"));
+    QVERIFY(isSaid(exported, "DSEC has no IMUs: left imu"));
     const std::string text = contentOf(exported, "dsec/cam_to_cam.yaml");
     QVERIFY(text.find("right -0.0021 s") != std::string::npos);
 
@@ -286,15 +290,15 @@ class TestExportDataSets : public QObject {
     wide.fisheye = true;
     NamedResult strong = rig(wide);
     ownResult(strong).state.cameras[0].lens.detection_intrinsics->focal_length_px = {110.0, 110.0};
-    QVERIFY(refusal(strong, "dsec").find("DSEC has no place for equidistant distortion") !=
+    QVERIFY(refusal(strong, "dsec").find("DSEC does not support equidistant distortion") !=
             std::string::npos);
     RigKind third;
     third.third_radial = true;
     QVERIFY(
-        isSaid(exportTo(rig(third), "dsec"), "DSEC has no place for radial-tangential distortion with k3"));
+        isSaid(exportTo(rig(third), "dsec"), "DSEC does not support radial-tangential distortion with k3"));
     RigKind three;
     three.cameras = 3;
-    QVERIFY(isSaid(exportTo(rig(three), "dsec"), "DSEC has two cameras of a kind: third is left out"));
+    QVERIFY(isSaid(exportTo(rig(three), "dsec"), "DSEC has two cameras per kind: third is left out"));
   }
 
   // Event cameras are 2 and 3 there, whether or not there are frames.
@@ -309,7 +313,7 @@ class TestExportDataSets : public QObject {
     kind.fisheye = true;
     NamedResult result = frames ? eventsAndFramesForExportDataSets(true) : rig(kind);
     for (CameraState& camera : ownResult(result).state.cameras)
-      camera.time_offset_s = 0.007301;  // one for all
+      camera.time_offset_s = 0.007301;  // one for all cameras
     const ExportedFiles exported = exportTo(result, "tum-vie");
     const cv::FileStorage file = tumVieFile(exported);
     const cv::FileNode root = file["value0"];
@@ -335,11 +339,11 @@ class TestExportDataSets : public QObject {
 
   void tumVie_holdsItsOneLensOnly() {
     const ExportedFiles exported = exportTo(eventsAndFramesForExportDataSets(), "tum-vie");
-    QVERIFY(isSaid(exported, "frame1: TUM-VIE has no place for radial-tangential distortion: refitted"));
-    QVERIFY(isSaid(exported, "TUM-VIE takes one time offset for all cameras: that of frame0"));
+    QVERIFY(isSaid(exported, "frame1: TUM-VIE does not support radial-tangential distortion: refitted"));
+    QVERIFY(isSaid(exported, "TUM-VIE supports one time offset for all cameras: that of frame0"));
     RigKind one;
     one.cameras = 1;
-    QVERIFY(refusal(rig(one), "tum-vie").find("Take basalt") != std::string::npos);
+    QVERIFY(refusal(rig(one), "tum-vie").find("Use basalt") != std::string::npos);
   }
 
   void evimo2_reprojects_data() {

@@ -1,5 +1,5 @@
-// Files for visual-inertial programs, read back in each program's own convention: a world point must land on
-// the same pixel, and the IMU must measure the same.
+// Files for visual-inertial programs, read back with each program's own convention: a world point must
+// project to the same pixel, and the IMU must measure the same.
 #include "core/base/error.h"
 #include "core/geometry/lens_fit.h"
 #include "tests/core/export/exported_rig.h"
@@ -27,7 +27,7 @@ Lens kalibrLens(const YAML::Node& camera) {
                                                                   : fisheyeLens(intrinsics, distortion);
 }
 
-// What our IMU measures for a force and a rate in our IMU's frame.
+// The measurement of our IMU for a specific force and a rate in our IMU's frame.
 struct Measured {
   Eigen::Vector3d force, rate;
 };
@@ -120,7 +120,7 @@ class TestExportInertial : public QObject {
     QVERIFY(exported.notes.empty());
   }
 
-  // PyYAML takes 1e-05 for a string, OpenCV and ORB-SLAM3 take 0 for an integer.
+  // PyYAML reads 1e-05 as a string, OpenCV and ORB-SLAM3 read 0 as an integer.
   void numbers_haveDecimalPoints() {
     NamedResult result = rig({});
     test::ownResult(result).state.cameras[0].time_offset_s = 1e-5;
@@ -147,9 +147,9 @@ class TestExportInertial : public QObject {
                            {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
                             kalibrLens(camera), turn});
     QVERIFY(worst_px <= fitted.worst_px + kExportInertialSame_px);
-    QCOMPARE(exported.notes.size(), 2U);  // one a camera
+    QCOMPARE(exported.notes.size(), 2U);  // one per camera
     QVERIFY(QString::fromStdString(exported.notes[0])
-                .contains("left: Kalibr has no place for radial-tangential distortion with k3"));
+                .contains("left: Kalibr does not support radial-tangential distortion with k3"));
   }
 
   void openVins_reprojects() {
@@ -229,7 +229,7 @@ class TestExportInertial : public QObject {
          {"output_path", "pose_graph_save_path", "imu_topic", "image0_topic", "cam0_calib"})
       QVERIFY2(vins[key].isString(), key);
     QVERIFY(QString::fromStdString(exported.notes.back())
-                .contains("no place for scales and misalignment, which are up to 1.1 %"));
+                .contains("does not support scales and misalignment, which are up to 1.1 %"));
   }
 
   void orbSlam3_reprojects_data() { vinsFusion_reprojects_data(); }
@@ -237,7 +237,7 @@ class TestExportInertial : public QObject {
     QFETCH(bool, fisheye);
     RigKind kind;
     kind.fisheye = fisheye;
-    kind.third_radial = !fisheye;  // it has a place for k3
+    kind.third_radial = !fisheye;  // the format has a field for k3
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "orb-slam3");
     // ORB-SLAM3 itself rounds the matrices to float (dt: f): the text has more digits.
@@ -256,7 +256,7 @@ class TestExportInertial : public QObject {
     const Eigen::Matrix4d imu_from_first = dataMatrix(settings["IMU.T_b_c1"]);
     const Eigen::Matrix4d first_from_second = dataMatrix(settings["Stereo.T_c1_c2"]);
     const auto& cameras = result.result->state.cameras;
-    // The stamps are to be shifted by what the comment and the note say.
+    // The comment and the note state by how much the stamps must be shifted.
     QVERIFY(QString::fromStdString(exported.notes.back()).contains("0.007301 s (left) -0.0021 s (right)"));
     QVERIFY(worstDifference_px(result, 0, {imu_from_first.inverse(), cameras[0].time_offset_s, lens(1)}) <
             kExportInertialSame_px);
@@ -267,7 +267,7 @@ class TestExportInertial : public QObject {
     cv::FileStorage opened(contentOf(exported, "orb-slam3/settings.yaml"),
                            cv::FileStorage::READ | cv::FileStorage::MEMORY);
     QVERIFY(opened["Camera1.fx"].isReal() && opened["IMU.GyroWalk"].isReal());
-    // Settings.cc: what it demands, and as which type.
+    // Settings.cc: required keys and their types.
     for (const char* const key : {"Camera.fps", "Camera.RGB", "Camera.width", "Camera.height",
                                   "ORBextractor.nFeatures", "ORBextractor.nLevels", "ORBextractor.iniThFAST",
                                   "ORBextractor.minThFAST", "IMU.InsertKFsWhenLost"})
@@ -280,7 +280,7 @@ class TestExportInertial : public QObject {
           "IMU.Frequency"})
       QVERIFY2(opened[key].isReal(), key);
     const auto of_lens = [](const std::string& note) {
-      return note.find("takes camera 1's distortion for camera 2") != std::string::npos;
+      return note.find("uses camera 1's distortion for camera 2") != std::string::npos;
     };
     QCOMPARE(std::count_if(exported.notes.begin(), exported.notes.end(), of_lens), 1);
   }
@@ -289,7 +289,7 @@ class TestExportInertial : public QObject {
     RigKind kind;
     kind.inertial = false;
     const std::string settings = contentOf(exportTo(rig(kind), "orb-slam3"), "orb-slam3/settings.yaml");
-    QVERIFY(settings.find("so that t_left = t_cam + that") != std::string::npos);
+    QVERIFY(settings.find("so that t_left = t_cam + offset") != std::string::npos);
     QVERIFY(settings.find("IMU.Frequency") == std::string::npos);
   }
 
@@ -326,7 +326,7 @@ class TestExportInertial : public QObject {
               .toRotationMatrix();
       reference_from_camera.translation() << number(p, "px"), number(p, "py"), number(p, "pz");
       const double offset_s =
-          i == 0 ? 1e-9 * value["cam_time_offset_ns"].as<double>() : -0.0021;  // one for all
+          i == 0 ? 1e-9 * value["cam_time_offset_ns"].as<double>() : -0.0021;  // one for all cameras
       QVERIFY(
           worstDifference_px(
               result, i,
@@ -337,7 +337,7 @@ class TestExportInertial : public QObject {
     }
   }
 
-  // kb4 is no radtan: refitted to within what is stated.
+  // kb4 is not radtan: the lens is refitted within the stated error.
   void basalt_ofRadtan_isRefitted() {
     RigKind kind;
     kind.mapped = false;
@@ -360,10 +360,10 @@ class TestExportInertial : public QObject {
     QVERIFY(fitted.worst_px < 2.0);
     QVERIFY(worst_px <= fitted.worst_px + kExportInertialSame_px);
     const QString readme = QString::fromStdString(contentOf(exported, "basalt/README.txt"));
-    QVERIFY(readme.contains("left: Basalt has no place for radial-tangential distortion: refitted"));
+    QVERIFY(readme.contains("left: Basalt does not support radial-tangential distortion: refitted"));
   }
 
-  // The program shifts images, and takes events as they are.
+  // The program shifts images and uses events unchanged.
   void ultimateSlam_shiftsImagesOnly() {
     NamedResult result = rig({});
     result.cameras[1].kind = CameraKind::Frames;
@@ -395,7 +395,7 @@ class TestExportInertial : public QObject {
           const std::size_t at = flags.find("\n--" + name + "=");
           return at == std::string::npos ? 0.0 : std::stod(flags.substr(at + name.size() + 4));
         };
-        QCOMPARE(flag("timeshift_cam_imu"), 0.0);  // of images, and there are none
+        QCOMPARE(flag("timeshift_cam_imu"), 0.0);  // of images, and there are no images
         offset_s = result.result->state.cameras[0].time_offset_s;
         const std::string notes = fmt::format("{}", fmt::join(exported.notes, "\n"));
         QVERIFY2(
@@ -404,7 +404,7 @@ class TestExportInertial : public QObject {
         QCOMPARE(flag("swe_imu_rate"), 997.5);
         QCOMPARE(flag("acc_noise_density"), 1.75e-3);
         QVERIFY(flag("vio_ceres_sigma_gyro_drift") > 0.0 && flag("vio_ceres_sigma_gyro_drift") < 1e-3);
-        QVERIFY(flags.find("bias_random_walk") == std::string::npos);  // a prior's sigma there
+        QVERIFY(flags.find("bias_random_walk") == std::string::npos);  // the sigma of a prior in that program
         QCOMPARE(flag("vio_gyr_bias_init_y"), -0.02);
         QCOMPARE(calib["cameras"][0]["camera"]["label"].as<std::string>(), std::string("dvs"));
       }

@@ -1,5 +1,5 @@
-// Exported files in other programs' own loaders, and in the libraries that those read with, where Debian has them as a
-// package: what our readers (core/report/export/read_back) say of the same files must be true.
+// Exported files in other programs' own loaders, and in the libraries that those use, if Debian has them as a
+// package: the results of our readers (core/report/export/read_back) for the same files must be correct.
 #include "core/export/read_back.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/test_program.h"
@@ -44,7 +44,7 @@ using namespace evical::test;
 
 namespace {
 
-// The rig's files of one target, on the disk, and what our reader takes of them.
+// The rig's files of one target, on disk, and our reader's result for them.
 struct OnDisk {
   explicit OnDisk(const std::string& target) {
     const NamedResult result = rig({});
@@ -82,7 +82,7 @@ bool hasModule(const char* module) {
 }  // namespace
 
 #ifdef EVICAL_CEREAL
-// As basalt-headers' headers_serialization.h names them.
+// Structures with the names of basalt-headers' headers_serialization.h.
 namespace {
 
 struct BasaltPose {
@@ -175,7 +175,7 @@ class TestExportLoaders : public QObject {
       QVERIFY2(ran.output.contains(frame), qPrintable(ran.output));
   }
 
-  // What Kalibr's ConfigReader.py asks of PyYAML: floats that are floats, and ints that are ints.
+  // Types that Kalibr's ConfigReader.py requires from PyYAML: floats must be floats, and ints must be ints.
   void kalibrFiles_haveTheTypesOfPyYaml() {
     if (!hasModule("yaml")) QSKIP("python3-yaml is not installed");
     const OnDisk kalibr("kalibr");
@@ -202,7 +202,7 @@ class TestExportLoaders : public QObject {
     QCOMPARE(words.at(2).toDouble(), cameras.at(1).lens.value().focal_length_px.x());
   }
 
-  // boost::property_tree, as dv-processing's calibrations are parsed with.
+  // boost::property_tree, with which dv-processing parses calibrations.
   void dvCalibration_isTakenByBoost() {
 #ifdef EVICAL_BOOST_TREE
     const OnDisk dv("dv-processing");
@@ -235,7 +235,7 @@ class TestExportLoaders : public QObject {
 #endif
   }
 
-  // cereal, as Basalt's calibrations are parsed with.
+  // cereal, with which Basalt parses calibrations.
   void basaltCalibration_isTakenByCereal() {
 #ifdef EVICAL_CEREAL
     const OnDisk basalt("basalt");
@@ -267,14 +267,14 @@ class TestExportLoaders : public QObject {
 #endif
   }
 
-  // gflags, which ends the program where it does not know a flag.
+  // gflags, which ends the program at an unknown flag.
   void flags_areTakenByGflags() {
 #ifdef EVICAL_GFLAGS
     const OnDisk slam("ultimate-slam");
     QVERIFY(gflags::ReadFromFlagsFile(slam.folder.filePath("ultimate-slam/imu.flags").toStdString(), "slam",
                                       false));
     const ReadFile& read = slam.read.files.back();
-    QVERIFY(FLAGS_timeshift_cam_imu == 0.0 && read.cameras.empty());  // it moves images, and there are none
+    QVERIFY(FLAGS_timeshift_cam_imu == 0.0 && read.cameras.empty());  // it shifts images; there are none
     QCOMPARE(FLAGS_swe_imu_rate, read.imus.at(0).rate_hz.value());
     QCOMPARE(FLAGS_gyro_noise_density, read.imus[0].noise.value().gyroscope_density);
     QCOMPARE(FLAGS_acc_noise_density, read.imus[0].noise.value().accelerometer_density);

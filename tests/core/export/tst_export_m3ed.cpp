@@ -90,7 +90,7 @@ class File {
   hid_t file_ = -1;
 };
 
-// What its load_remapping takes from a group, and cv2 after it.
+// The keys that load_remapping reads from a group and passes to cv2.
 constexpr const char* kTheirScript = R"(
 import sys, h5py, numpy as np
 f = h5py.File(sys.argv[1], 'r')
@@ -122,7 +122,7 @@ class TestExportM3ed : public QObject {
                                   result.result->state.cameras[i].time_offset_s, file.lens(groups[i])}) <
               1e-9);
     }
-    // Its readers demand it to be exact.
+    // Its readers require exact values.
     QVERIFY(file.place("/prophesee/left") == Eigen::Matrix4d::Identity());
   }
 
@@ -135,7 +135,7 @@ class TestExportM3ed : public QObject {
     const File file(contentOf(files, "m3ed/calibration.h5"));
     QVERIFY(file.has("/prophesee/left/calib") && !file.has("/ovc") && !file.has("/prophesee/right"));
     const std::string text = contentOf(files, "m3ed/README.txt");
-    QVERIFY(text.find("M3ED has no place for radial-tangential distortion with k3") != std::string::npos);
+    QVERIFY(text.find("M3ED does not support radial-tangential distortion with k3") != std::string::npos);
     QVERIFY(text.find("add to the stamps of left 0.007301 s") != std::string::npos);
   }
 

@@ -1,4 +1,4 @@
-// Files for people's own programs: OpenCV's FileStorage, and a function for MATLAB and Octave.
+// Files for users' own programs: OpenCV's FileStorage, and a function for MATLAB and Octave.
 #include "core/base/atomic_file.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/own_result.h"
@@ -31,7 +31,7 @@ cv::FileStorage openCvFile(const ExportedFiles& exported, const std::string& pat
 cv::Mat matAt(const cv::FileStorage& file, const char* key) {
   cv::Mat read;
   file[key] >> read;
-  if (read.type() != CV_64F) throw std::runtime_error(std::string(key) + " is no matrix of doubles");
+  if (read.type() != CV_64F) throw std::runtime_error(std::string(key) + " is not a matrix of doubles");
   return read;
 }
 
@@ -43,7 +43,8 @@ std::vector<double> fxFyCxCy(const Eigen::Matrix3d& k) {
   return {k(0, 0), k(1, 1), k(0, 2), k(1, 2)};
 }
 
-// What the samples write: opencv/opencv, samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp.
+// Keys of OpenCV's sample: opencv/opencv,
+// samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp.
 Lens openCvLens(const cv::FileStorage& camera) {
   if (static_cast<int>(camera["image_width"]) != 346 || static_cast<int>(camera["image_height"]) != 260)
     throw std::runtime_error("size");
@@ -171,11 +172,11 @@ class TestExportNumbers : public QObject {
         state.cameras[0].reference_from_camera * Eigen::Vector3d(0.0, 0.1, 0.0);
     const ExportedFiles exported = exportTo(result, "opencv");
     QVERIFY_THROWS_EXCEPTION(std::runtime_error, contentOf(exported, "opencv/extrinsics.yml"));
-    QVERIFY(hasNote(exported, "left and right do not sit side by side"));
+    QVERIFY(hasNote(exported, "left and right are not side by side"));
   }
 
-  // MathWorks' stereoParametersFromOpenCV (2021-2024): principal points + 1, the rotation transposed, the translation as
-  // it is; its cameraParameters takes the transposed matrix, [k1 k2 k3] and [p1 p2].
+  // MathWorks' stereoParametersFromOpenCV (2021-2024): principal points + 1, the rotation transposed, the
+  // translation unchanged; its cameraParameters takes the transposed matrix, [k1 k2 k3] and [p1 p2].
   void matlab_reprojects() {
     RigKind kind;
     kind.third_radial = true;
@@ -219,7 +220,7 @@ class TestExportNumbers : public QObject {
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "matlab");
     const std::string script = contentOf(exported, "matlab/evical_rig.m");
-    QVERIFY(hasNote(exported, "no place for equidistant distortion"));
+    QVERIFY(hasNote(exported, "do not support equidistant distortion"));
     const Eigen::Matrix4d imu_from_camera =
         matrix(assigned(script, "rig.cameras(1).ReferenceFromCamera"), 4, 4);
     const Lens lens = fisheyeLens(fromOne(assigned(script, "rig.cameras(1).FocalLength"),
@@ -230,7 +231,7 @@ class TestExportNumbers : public QObject {
             kExportNumbersSame_px);
   }
 
-  // The toolbox is not there: functions of its names take the same arguments, and hand them back.
+  // The toolbox is missing: functions with its names accept the same arguments and return them.
   void matlab_runsInOctave_data() {
     QTest::addColumn<bool>("toolbox");
     QTest::newRow("without the toolbox") << false;

@@ -40,7 +40,7 @@ void require(bool held, const char* what) {
   if (!held) throw std::runtime_error(what);
 }
 
-// As zipfile does: the directory at the end leads to the files, whose own headers say the same.
+// Like zipfile: the directory at the end refers to the files, whose own headers must agree with it.
 std::map<std::string, std::string> filesOfZip(const std::string& zip) {
   const std::size_t end = zip.rfind("PK\x05\x06");
   require(end != std::string::npos && end + 22 == zip.size(), "no end of the directory");
@@ -120,7 +120,7 @@ Eigen::MatrixXd matrixOf(const Array& array) {
   return matrix(array.numbers, array.shape[0], array.shape[1]);
 }
 
-// What NumPy prints of them: name, type, shape, and all numbers or texts.
+// NumPy's printed form: name, type, shape, and all numbers or texts.
 QByteArray linesOf(const std::map<std::string, Array>& arrays) {
   QByteArray lines;
   for (const auto& [name, array] : arrays) {
@@ -214,7 +214,7 @@ class TestExportNumpy : public QObject {
     QCOMPARE(arrays.at("gravity_m_s2").numbers[1], 9.7);
   }
 
-  // What was not estimated has no sigma, and no zero that looks like one.
+  // A quantity that was not estimated has no sigma, and no zero that looks like one.
   void uncertainty_isInSiUnits() {
     auto arrays = arraysOf(exportedNpz(uncertainRig({})));
     QVERIFY(std::isnan(arrays.at("right.rotation_std").numbers[2]));
@@ -242,7 +242,7 @@ class TestExportNumpy : public QObject {
     QCOMPARE(array.texts[0], std::string("a\uFFFD\uFFFDz\uFFFD"));
   }
 
-  // The same arrays as this test's own reading of them.
+  // The same arrays as read by this test.
   void numpy_readsThem() {
     if (QProcess::execute("/usr/bin/python3", {"-c", "import numpy"}) != 0)
       QSKIP("python3-numpy is not installed");

@@ -1,5 +1,5 @@
-// What was exported, read from disk as each target's program does: nothing but rounding lies between it and the result,
-// and what the program would not take is found and named.
+// Exported files, read from disk like in each target's program: they differ from the result by rounding only,
+// and content that the program would reject is found and named.
 #include "core/base/error.h"
 #include "core/export/read_back.h"
 #include "tests/core/export/exported_rig.h"
@@ -21,7 +21,7 @@ namespace {
 constexpr double kExportReadBackSame_px = 1e-9, kSame_deg = 1e-11, kSame_mm = 1e-11,
                  kExportReadBackSame = 1e-12;
 
-// The target's files below the folder; nothing where the target cannot hold the result.
+// The target's files below the folder; none if the target cannot represent the result.
 bool exportInto(const QTemporaryDir& folder, const NamedResult& result, const std::string& target) {
   try {
     writeExportedFiles(folder.path().toStdString(),
@@ -32,7 +32,7 @@ bool exportInto(const QTemporaryDir& folder, const NamedResult& result, const st
   }
 }
 
-// Without the exporter's care that a file is on the disk.
+// Without the exporter's check that a file is on disk.
 void overwrite(const QTemporaryDir& folder, const FileContent& file) {
   QFile written(folder.filePath(QString::fromStdString(file.path.string())));
   QVERIFY(written.open(QIODevice::WriteOnly));
@@ -70,7 +70,7 @@ class TestExportReadBack : public QObject {
   void everyTarget_readsBack_whereNumbersHaveCommas() {
     const NamedResult result = rig({});
     const GermanLocale german;
-    if (!german.isThere()) QSKIP("localedef made no locale de_DE: the package locales is missing");
+    if (!german.isThere()) QSKIP("localedef cannot create the locale de_DE: the package locales is missing");
     for (const ExportTarget& target : exportTargets()) {
       const QTemporaryDir folder;
       if (!exportInto(folder, result, target.name)) continue;
@@ -86,7 +86,7 @@ class TestExportReadBack : public QObject {
     QTest::addColumn<bool>("mapped");
     QTest::addColumn<bool>("inertial");
     QTest::addColumn<int>("cameras");
-    QTest::addColumn<int>("model");  // CameraModel; -1: as the rig has it
+    QTest::addColumn<int>("model");  // CameraModel; -1: the rig's own
     const auto row = [](const char* target, const char* what, const RigKind& kind, int model = -1) {
       QTest::addRow("%s, %s", target, what) << target << kind.fisheye << kind.third_radial << kind.mapped
                                             << kind.inertial << kind.cameras << model;
@@ -118,7 +118,7 @@ class TestExportReadBack : public QObject {
     const ExportTarget& row = exportTarget(target.toStdString(), "test");
     QTemporaryDir folder;
     if (!exportInto(folder, result, row.name)) {
-      // Of wide lenses, or where it asks for an IMU or a second camera, a target may refuse.
+      // A target may refuse wide lenses, and rigs without an IMU or a second camera that it requires.
       QVERIFY(model >= 0 || !inertial || cameras == 1);
       return;
     }
@@ -128,7 +128,7 @@ class TestExportReadBack : public QObject {
     QCOMPARE(difference.cameras, std::min(result.cameras.size(), read.most_cameras));
     QVERIFY(difference.imus <= std::min(result.imus.size(), read.most_imus));
     QVERIFY(difference.lens_px || difference.refitted_px);
-    // Nothing but what the files round.
+    // Only the rounding of the files.
     double rounding = 0.0, step_s = 0.0;
     for (const ReadFile& file : read.files) {
       rounding = std::max(rounding, file.rounding);
@@ -146,8 +146,8 @@ class TestExportReadBack : public QObject {
     QVERIFY(QString::fromStdString(check.text).startsWith(target + ": reads back: "));
   }
 
-  // Each number of a result is in the files of each target that has a place for it: a result that differs does not
-  // read back.
+  // Each quantity of a result is in the files of every target that supports it: a modified result must not
+  // read back as equal.
   void anotherResult_isFound_data() {
     QTest::addColumn<QString>("target");
     for (const ExportTarget& target : exportTargets()) QTest::newRow(target.name) << target.name;
@@ -172,7 +172,7 @@ class TestExportReadBack : public QObject {
       own.focal_length_px.x() += 0.1;
       state.cameras[0].lens = givenLens(own);
     };
-    // 0.1 px of focal length is less than some lenses' refits are off.
+    // 0.1 px of focal length is less than the error of some lenses' refits.
     QVERIFY(found(lens) || !same.lens_px);
     QCOMPARE(found([&](CalibrationState& state) {
                state.cameras[last].reference_from_camera.translation_m.y() += 1e-5;
@@ -182,7 +182,8 @@ class TestExportReadBack : public QObject {
              same.time_ms.has_value());
   }
 
-  // Programs that take something of one camera for both: refused, or refitted, so that what is written reads back.
+  // Programs that use one value for both cameras: the rig is refused or refitted, so that the written values
+  // read back.
   void unlikeCameras_readBackOrAreRefused_data() { anotherResult_isFound_data(); }
   void unlikeCameras_readBackOrAreRefused() {
     QFETCH(QString, target);
@@ -223,18 +224,18 @@ class TestExportReadBack : public QObject {
     row("kalibr", "camchain-imucam.yaml", "timeshift_cam_imu: 0.007301", "timeshift_cam_imu: 7.301e-03x",
         "cam0.timeshift_cam_imu");
     row("kalibr", "camchain-imucam.yaml", "timeshift_cam_imu: 0.007301", "timeshift_cam_imu: 0.0073",
-        "left: the time offset is off by 0.001 ms");
+        "left: the time offset differs by 0.001 ms");
     row("kalibr", "camchain.yaml", "camera_model", "model", "cam0.camera_model");
     row("kalibr", "imu.yaml", "update_rate: 997.5", "", "imu0.update_rate");
     row("kalibr", "input-left_imu.yaml", "update_rate: 997.5", "update_rate: 99e1", "update_rate");
     row("openvins", "kalibr_imucam_chain.yaml", "T_cam_imu:", "T_camera:", "cam0.T_cam_imu");
     row("openvins", "kalibr_imucam_chain.yaml", "timeshift_cam_imu: 0.", "timeshift: 0.",
-        "left: the time offset is off by 7.3 ms");  // it takes 0 then
+        "left: the time offset differs by 7.3 ms");  // it takes 0 then
     row("openvins", "kalibr_imu_chain.yaml", "model: rpng", "model: kalibr",
-        "the accelerometer's scales and misalignment are off");
+        "the accelerometer's scales and misalignment differ");
     row("vins-fusion", "vins.yaml", "max_cnt: 150", "", "max_cnt");
     row("vins-fusion", "vins.yaml", "td: 0.007301", "td: -0.007301",
-        "left: the time offset is off by 14.6 ms");
+        "left: the time offset differs by 14.6 ms");
     row("vins-fusion", "right.yaml", "fx: ", "f: ", "projection_parameters.fx");
     row("orb-slam3", "settings.yaml", "Camera.fps: 20", "Camera.fps: 20.0", "Camera.fps");
     row("orb-slam3", "settings.yaml", "dt: f", "dt: d", "Stereo.T_c1_c2: must have dt f");
@@ -244,16 +245,16 @@ class TestExportReadBack : public QObject {
     row("basalt", "calibration.json", "kb4", "kb8", "value0.intrinsics[0].camera_type");
     row("svo", "calib.yaml", "imu_params:", "imu:", "imu_params");
     row("svo", "calib.yaml", "delay_imu_cam: -0.007301", "delay_imu_cam: 0.007301",
-        "left: the time offset is off by 14.6 ms");
+        "left: the time offset differs by 14.6 ms");
     row("ultimate-slam", "calib.yaml", "label: dvs", "label: left", "cameras[0].camera.label");
-    row("ultimate-slam", "imu.flags", "--acc_noise_density", "--acc_noise", "--acc_noise is no flag");
+    row("ultimate-slam", "imu.flags", "--acc_noise_density", "--acc_noise", "--acc_noise is not a flag");
     row("esvo", "left.yaml", "T_right_left:", "T_left_right:", "T_right_left");
     row("esvo", "right.yaml", "distortion_coefficients", "coefficients", "distortion_coefficients");
     row("esvo", "right.yaml", "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [2",
         "projection_matrix:\n  data: [3", "rectification_matrix");
     row("esvo2", "right.yaml", "T_b_c:", "T_c_b:", "T_b_c");
     row("esvo2", "left.yaml", "T_b_c:", "T_c_b:", "T_b_c");
-    // As Evical wrote it once: "No such node (patternType)".
+    // An earlier version of Evical wrote this: "No such node (patternType)".
     row("dv-processing", "calibration.json", "\"position\"",
         "\"metadata\": {\"comment\": \"\"}, \"position\"", "cameras.C0.metadata.patternType");
     row("dv-processing", "calibration.json", "\"S0\": {\n      \"name\": \"left\"",
@@ -262,17 +263,17 @@ class TestExportReadBack : public QObject {
     row("metavision", "left/intrinsics.json", "\"camera_matrix\"", "\"K\"", "camera_matrix");
     row("metavision", "right/intrinsics.json", "\"dt\": \"d\"", "\"dt\": \"f\"", "must have dt d");
     row("ekalibr", "ekalibr_param.yaml", "focal_length_note", "note", "data.focal_length_note");
-    row("ekalibr", "ekalibr_param.yaml", "key: /right/events", "key: /left/events", "is there twice");
+    row("ekalibr", "ekalibr_param.yaml", "key: /right/events", "key: /left/events", "occurs twice");
     row("ekalibr", "intrinsics-left.yaml", "pinhole_brown_t2", "pinhole_brown", "Intrinsics.polymorphic_id");
     row("ros", "left.yaml", "cols: 5", "cols: 4", "distortion_coefficients");
     row("ros", "left.yaml", "image_width: 346", "image_width: 347", "the resolution is 347 x 260");
     row("ros", "right.yaml", "camera_name: right", "camera_name: rigth", "no file has the camera right");
-    row("ros", "static_transforms.sh", "--qx ", "--rx ", "'--rx' is no option");
+    row("ros", "static_transforms.sh", "--qx ", "--rx ", "'--rx' is not an option");
     row("ros", "static_transforms.launch", "static_transform_2", "static_transform_1",
-        "a name that is there twice");
-    row("ros", "static_transforms.launch", " left_imu left_optical_frame", " left_imu", "has no nine args");
-    row("ros", "static_transforms.launch.py", "'--qw', ", "", "is no option of it");
-    row("ros", "rig.urdf", "</robot>", "", "is no XML");
+        "a name that occurs twice");
+    row("ros", "static_transforms.launch", " left_imu left_optical_frame", " left_imu", "have nine args");
+    row("ros", "static_transforms.launch.py", "'--qw', ", "", "is not an option of");
+    row("ros", "rig.urdf", "</robot>", "", "is not XML");
     row("ros", "rig.urdf", "link=\"left_imu\"", "link=\"imu\"", "there is no link imu");
     row("dsec", "cam_to_cam.yaml", "R_rect3:", "R_3:", "extrinsics.R_rect3");
     row("dsec", "cam_to_cam.yaml", "T_32:", "T_31:", "extrinsics.T_32");
@@ -285,13 +286,13 @@ class TestExportReadBack : public QObject {
     row("m3ed", "calibration.h5", "SNOD", "SNOT", "/prophesee/left/calib");
     row("evimo2", "left/params.txt", "res_x: 260", "res_x: 346", "the resolution is 346 x 346");
     row("evimo2", "left/params.txt", "radtan", "none", "dist_model must be radtan or equidistant");
-    row("evimo2", "right/extrinsics.txt", "0.0021", "-0.0021", "right: the time offset is off by 4.2 ms");
+    row("evimo2", "right/extrinsics.txt", "0.0021", "-0.0021", "right: the time offset differs by 4.2 ms");
     row("evimo2", "right/extrinsics.txt", "\n0.0\n", "\n", "must have lines of 6, 7, 1 and 1 numbers");
     row("tum-vie", "camera-calibrationA.json", "kb4", "ds", "value0.intrinsics[0].intrinsics.xi");
     row("tum-vie", "camera-calibrationA.json", "[\"left\", \"right\", \"left\", \"right\"]",
-        "[\"right\", \"right\", \"left\", \"right\"]", "right: the pose is off");
-    row("numpy", "calibration.npz", "<f8", "<f4", "its check sum is another");
-    row("numpy", "calibration.npz", "PK\x05\x06", "PK\x05\x05", "is no .npz file, or is cut off");
+        "[\"right\", \"right\", \"left\", \"right\"]", "right: the pose differs");
+    row("numpy", "calibration.npz", "<f8", "<f4", "its checksum is wrong");
+    row("numpy", "calibration.npz", "PK\x05\x06", "PK\x05\x05", "is not an .npz file, or is cut off");
   }
   void damageOfNewerTargets_isFoundAndNamed_data() {
     QTest::addColumn<QString>("target");
@@ -304,7 +305,7 @@ class TestExportReadBack : public QObject {
       QTest::addRow("%s/%s: %s", target, file, said)
           << target << file << QByteArray(before) << QByteArray(after) << said;
     };
-    row("kimera", "LeftCameraParams.yaml", "rate_hz: 20", "rate_hz: 20.0", "rate_hz: is no whole number");
+    row("kimera", "LeftCameraParams.yaml", "rate_hz: 20", "rate_hz: 20.0", "rate_hz: is not a whole number");
     row("kimera", "LeftCameraParams.yaml", "T_BS:", "T_SB:", "T_BS");
     row("kimera", "RightCameraParams.yaml", "camera_model: pinhole", "", "camera_model");
     row("kimera", "RightCameraParams.yaml", "resolution: [346", "resolution: [345",
@@ -312,47 +313,47 @@ class TestExportReadBack : public QObject {
     row("kimera", "ImuParams.yaml", "data: [1.0", "data: [0.9", "T_BS.data");
     row("kimera", "ImuParams.yaml", "n_gravity: [0.0, ", "n_gravity: [", "n_gravity: has 2 numbers");
     row("kimera", "ImuParams.yaml", "imu_time_shift: 0.007301", "imu_time_shift: -0.007301",
-        "left: the time offset is off by 14.6 ms");
+        "left: the time offset differs by 14.6 ms");
     row("kimera", "ImuParams.yaml", "gyroscope_random_walk: 2", "gyroscope_random_walk: 3", "gyroscope");
     row("kimera", "PipelineParams.yaml", "frontend_type: 1", "frontend: 1", "frontend_type");
     row("dm-vio", "camera.txt", "RadTan ", "", "is not supported");
-    row("dm-vio", "camera.txt", "RadTan ", "EquiDistant ", "left: the lens is off");
+    row("dm-vio", "camera.txt", "RadTan ", "EquiDistant ", "left: the lens differs");
     row("dm-vio", "camera.txt", "346 260", "346 261", "the resolution is 346 x 261");
-    row("dm-vio", "camera.txt", "\n336 256", "\n335 256", "no three levels of a pyramid");
+    row("dm-vio", "camera.txt", "\n336 256", "\n335 256", "fewer than three pyramid levels");
     row("dm-vio", "camera.txt", " 0.0\n336", "\n336", "camera.txt (line 3): must have 5 numbers");
     row("dm-vio", "camchain.yaml", "cam0:", "cam1:", "cam0");
     row("dm-vio", "camchain.yaml", "- [0.0, 0.0, 0.0, 1.0]", "", "has 3 rows");
     row("dm-vio", "noise.yaml", "gyroscope_noise_density: 0.00015", "gyroscope_noise_density: 0.00016",
         "gyroscope");
-    row("rtabmap", "left.yaml", "camera_name: left", "camera_name: lefty", "has another camera_name");
+    row("rtabmap", "left.yaml", "camera_name: left", "camera_name: lefty", "differs from its camera_name");
     row("rtabmap", "right.yaml", "cols: 5", "cols: 4", "distortion_coefficients");
     row("rtabmap", "right.yaml", "local_transform:", "transform:", "local_transform");
     row("rtabmap", "imu_local_transform.txt", "far_imu: ", "far_imu: 1 ", "12 numbers");
     row("rtabmap", "stereo/stereo_left.yaml", "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [2",
-        "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [3", "another lens than any camera's own file");
+        "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [3", "a lens that no camera's own file has");
     row("rtabmap", "stereo/stereo_pose.yaml", "essential_matrix", "essential", "essential_matrix");
     row("rtabmap", "stereo/stereo_pose.yaml", "translation_matrix:\n   rows: 3\n   cols: 1\n   data: [-0.1",
         "translation_matrix:\n   rows: 3\n   cols: 1\n   data: [-0.2",
-        "is not what the cameras' R and P rectify");
+        "is inconsistent with the cameras' R and P");
     row("opencv", "left.yaml", "fisheye_model: 0", "fisheye_model: 1", "fisheye_model");
     row("opencv", "left.yaml", "dt: d", "dt: f", "camera_matrix: must have dt d");
     row("matlab", "evical_rig.m", "rig.stereo.TranslationOfCamera2 = [",
-        "rig.stereo.TranslationOfCamera2 = [0, ", "has no 3 columns");
-    row("opencv", "right.yaml", "image_width: 346", "image_width: 346.0", "image_width: is no whole number");
+        "rig.stereo.TranslationOfCamera2 = [0, ", "does not have 3 columns");
+    row("opencv", "right.yaml", "image_width: 346", "image_width: 346.0",
+        "image_width: is not a whole number");
     row("opencv", "far_imu.yaml", "time_offset_s: 0.000731", "time_offset_s: 0.000732",
-        "far_imu: the time offset is off by 0.001 ms");
+        "far_imu: the time offset differs by 0.001 ms");
     row("opencv", "intrinsics.yml", "M2:", "K2:", "M2");
     row("opencv", "extrinsics.yml", "T: !!opencv-matrix\n   rows: 3", "T: !!opencv-matrix\n   rows: 1", "T");
     row("matlab", "evical_rig.m", "PrincipalPoint = [172.25", "PrincipalPoint = [171.25",
-        "left: the lens is off by up to 1 px");
-    row("matlab", "evical_rig.m", "rig.cameras(2).Name", "rig.cameras(3).Name",
-        "names a camera that is not there");
-    row("matlab", "evical_rig.m", "'RadialTangential'", "'Brown'", "is no model of it");
+        "left: the lens differs by up to 1 px");
+    row("matlab", "evical_rig.m", "rig.cameras(2).Name", "rig.cameras(3).Name", "names a missing camera");
+    row("matlab", "evical_rig.m", "'RadialTangential'", "'Brown'", "is not a known model");
     row("matlab", "evical_rig.m", "rig.stereo.RotationOfCamera2 = [0", "rig.stereo.RotationOfCamera2 = [1",
-        "holds no rotation");
+        "is not a rotation");
   }
   void damageOfNewerTargets_isFoundAndNamed() { damage_isFoundAndNamed(); }
-  // Layouts of data sets put cameras to places of their own.
+  // Layouts of data sets store cameras in separate places.
   void eventsAndFrames_readBack_data() {
     QTest::addColumn<QString>("target");
     for (const char* const target : {"dsec", "m3ed", "evimo2", "tum-vie", "numpy"})
@@ -394,7 +395,7 @@ class TestExportReadBack : public QObject {
     QVERIFY2(text.startsWith(target + ": does not read back: ") && text.contains(said), qPrintable(text));
   }
 
-  // Whatever file is away or cut short, it is said; never is something read past.
+  // A missing or truncated file is reported, and nothing is read past its end.
   void missingAndCutFiles_areFound_data() { anotherResult_isFound_data(); }
   void missingAndCutFiles_areFound() {
     QFETCH(QString, target);
@@ -418,7 +419,7 @@ class TestExportReadBack : public QObject {
     QVERIFY(checkExport(result, row, folder.path().toStdString()).same);
   }
 
-  // A byte changed anywhere: said or harmless, but nothing but CalibrationError is thrown, and no memory is touched.
+  // Any changed byte is reported or harmless: only CalibrationError is thrown, and memory stays valid.
   void spoiltFiles_endNothing_data() { anotherResult_isFound_data(); }
   void spoiltFiles_endNothing() {
     QFETCH(QString, target);
@@ -434,7 +435,7 @@ class TestExportReadBack : public QObject {
     for (int i = 0; i < kTimes; ++i) {
       const FileContent& file = files.at(static_cast<std::size_t>(std::rand()) % files.size());
       FileContent spoilt = file;
-      // Beyond the comments at the top.
+      // After the comments at the top.
       const std::size_t at =
           file.content.size() / 4 + static_cast<std::size_t>(std::rand()) % (3 * file.content.size() / 4);
       spoilt.content[at] = "\0x-9.:[]{}\"\n #"[std::rand() % 14];

@@ -1,4 +1,4 @@
-// What exporters refuse, and what they say of results that do not hold all that a program asks for.
+// Refusals of exporters, and their notes on results without some of the values that a program requires.
 #include "core/base/error.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/own_result.h"
@@ -27,7 +27,7 @@ class TestExportRefusals : public QObject {
     QVERIFY(notes.contains("rate"));
   }
 
-  // Within three sigmas a drift is chance, and nothing is said.
+  // Within three sigmas a drift is attributed to chance, and no note is written.
   void driftingClock_isSaid_data() {
     QTest::addColumn<QString>("target");
     for (const ExportTarget& target : exportTargets()) QTest::newRow(target.name) << target.name;
@@ -54,7 +54,7 @@ class TestExportRefusals : public QObject {
       QVERIFY(each.find("drifts") == std::string::npos);
   }
 
-  // Of lenses that see beyond what a program knows no number of pixels is said.
+  // For lenses that see beyond a program's range, no error in pixels is stated.
   void lensThatSeesTooFar_isRefusedInWords() {
     NamedResult result = rig(fisheye());
     for (CameraState& camera : test::ownResult(result).state.cameras) {
@@ -71,8 +71,8 @@ class TestExportRefusals : public QObject {
   }
 
   void equidistantLens_isNoInputOfEkalibr() {
-    QVERIFY(hasNote(exportTo(rig(fisheye()), "ekalibr"), "takes none as input"));
-    QVERIFY(!hasNote(exportTo(rig({}), "ekalibr"), "takes none as input"));
+    QVERIFY(hasNote(exportTo(rig(fisheye()), "ekalibr"), "does not accept them as input"));
+    QVERIFY(!hasNote(exportTo(rig({}), "ekalibr"), "does not accept them as input"));
   }
 
   void rollingShutter_isSaid() {
@@ -83,8 +83,8 @@ class TestExportRefusals : public QObject {
     own.uncertainty.cameras[0].line_delay_std_us = 0.1;
     const ExportedFiles exported = exportTo(result, "kalibr");
     const QString note = QString::fromStdString(exported.notes.back());
-    QVERIFY2(note.contains("left: rows are exposed one after the other, 29.5 us apart"), qPrintable(note));
-    QVERIFY(exported.files.front().content.find("29.5 us apart") != std::string::npos);
+    QVERIFY2(note.contains("left: rolling shutter, 29.5 us from row to row"), qPrintable(note));
+    QVERIFY(exported.files.front().content.find("29.5 us from row to row") != std::string::npos);
     const std::string svo = exportTo(result, "svo").files.front().content;
     QVERIFY(svo.find("line-delay-nanoseconds: 29500") != std::string::npos);
   }
@@ -116,7 +116,7 @@ class TestExportRefusals : public QObject {
     kind.inertial = false;
     try {
       exportTo(rig(kind), target.toStdString());
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(error.problem().find("has no IMU") != std::string::npos, error.what());
@@ -138,7 +138,7 @@ class TestExportRefusals : public QObject {
             exported.refused[0].find("has no IMU") != std::string::npos);
   }
 
-  // A request fails where nothing comes of it; what is written beside a result only says so.
+  // An explicit request fails if it writes no file; files written next to a result only cause a note.
   void whereNobodyTakesIt_eachRefusalNamesItsTarget() {
     NamedResult broken = rig({});
     test::ownResult(broken).state.cameras[0].time_offset_s = std::numeric_limits<double>::quiet_NaN();

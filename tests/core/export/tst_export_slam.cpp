@@ -1,4 +1,4 @@
-// Files for Kimera-VIO, DM-VIO (DSO) and RTAB-Map, taken key by key as their parsers do.
+// Files for Kimera-VIO, DM-VIO (DSO) and RTAB-Map, read key by key like in their parsers.
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
 #include "tests/core/export/exported_rig.h"
@@ -21,8 +21,9 @@ using namespace evical::test;
 
 constexpr double kExportSlamSame_px = 1e-9;
 
-// MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h at decef91: a key that is not there ends the program, and so
-// does a nested one of what is no map; values go by OpenCV's >>, which leaves what is of another kind as it was.
+// MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h at decef91: a missing key ends the program, and
+// so does a nested key of a non-map; values are read with OpenCV's >>, which leaves the target unchanged for
+// another type.
 class KimeraFile {
  public:
   explicit KimeraFile(const std::string& text)
@@ -34,7 +35,7 @@ class KimeraFile {
   }
   template <class Value>
   Value nested(const char* key, const char* below) const {
-    if (!file_[key].isMap()) throw std::runtime_error(std::string(key) + " is no map");
+    if (!file_[key].isMap()) throw std::runtime_error(std::string(key) + " is not a map");
     return read<Value>(file_[key][below], below);
   }
   bool isInt(const char* key) const { return file_[key].isInt(); }
@@ -118,7 +119,8 @@ DsoCamera dsoCamera(const std::string& text) {
   return camera;
 }
 
-// How far the outer pixels of the rectified image are inside the camera's, in px: the least. Below 0: outside.
+// Smallest distance of the outer pixels of the rectified image from the border of the camera's image, in px.
+// Below 0: outside.
 double leastMargin_px(const DsoCamera& camera) {
   double least_px = 1e9;
   for (int y = 0; y < camera.out_height_px; ++y)
@@ -224,7 +226,7 @@ class TestExportSlam : public QObject {
     QCOMPARE(gravity.size(), 3U);
     QVERIFY(gravity[0] == 0.0 && gravity[1] == 0.0);
     QVERIFY(std::abs(gravity[2] + result.result->state.gravity_in_world_m_s2.norm()) < 1e-12);
-    // DataProviderModule.cpp at 980ff72 asks the IMU at the frame's stamp + shift.
+    // DataProviderModule.cpp at 980ff72 uses the IMU at the frame's stamp + shift.
     const double shift_s = imu.get<double>("imu_time_shift");
     const KimeraFile left = kimeraFile(exported, "LeftCameraParams.yaml"),
                      right = kimeraFile(exported, "RightCameraParams.yaml");
@@ -234,10 +236,10 @@ class TestExportSlam : public QObject {
             kExportSlamSame_px);
     QVERIFY(left.isInt("rate_hz"));
     QVERIFY(hasNote(exported, "others differ by up to 9.401 ms"));
-    QVERIFY(hasNote(exported, "no place for scales and misalignment"));
+    QVERIFY(hasNote(exported, "does not support scales and misalignment"));
   }
 
-  // Its StereoCamera ends where the baseline, right of left, is below 0.
+  // Its StereoCamera ends if the baseline, with the right camera on the right, is below 0.
   void kimera_findsTheLeftCamera() {
     const NamedResult result = rig({});
     NamedResult swapped = result;
@@ -256,7 +258,7 @@ class TestExportSlam : public QObject {
         state.cameras[0].reference_from_camera * Eigen::Vector3d(0.0, 0.1, 0.0);
     const ExportedFiles exported = exportTo(result, "kimera");
     QVERIFY_THROWS_EXCEPTION(std::runtime_error, contentOf(exported, "kimera/RightCameraParams.yaml"));
-    QVERIFY(hasNote(exported, "left and right do not sit side by side"));
+    QVERIFY(hasNote(exported, "left and right are not side by side"));
     // Pipeline-definitions.cpp at 6b8ec96 reads the right camera's file where the front end is 1, StereoImu.
     QCOMPARE(kimeraFile(exported, "PipelineParams.yaml").get<int>("frontend_type"), 0);
     const KimeraFile of_a_pair = kimeraFile(exportTo(rig({}), "kimera"), "PipelineParams.yaml");
@@ -278,10 +280,10 @@ class TestExportSlam : public QObject {
     // IMUCalibration::loadFromFile, src/IMU/IMUSettings.cpp at 432b7af: a list of lists below cam0.
     const YAML::Node chain = yamlOf(exported, "dm-vio/camchain.yaml")["cam0"]["T_cam_imu"];
     QVERIFY(chain.IsSequence() && chain.size() == 4 && chain[0].IsSequence());
-    const double offset_s = result.result->state.cameras[0].time_offset_s;  // said in a comment and a note
+    const double offset_s = result.result->state.cameras[0].time_offset_s;  // stated in a comment and a note
     QVERIFY(hasNote(exported, "0.007301 s (left)"));
     QVERIFY(worstDifference_px(result, 0, {rowsMatrix(chain), offset_s, camera.lens}) < kExportSlamSame_px);
-    // SettingsUtil::tryReadFromYaml at fcc306b takes them at the top.
+    // SettingsUtil::tryReadFromYaml at fcc306b reads them at the top level.
     const YAML::Node noise = yamlOf(exported, "dm-vio/noise.yaml");
     QCOMPARE(noise["accelerometer_noise_density"].as<double>(), 1.75e-3);
     QCOMPARE(noise["gyroscope_noise_density"].as<double>(), 1.5e-4);
@@ -295,7 +297,7 @@ class TestExportSlam : public QObject {
     QVERIFY2(margin_px > 0.0 && margin_px < 3.0, qPrintable(QString::number(margin_px)));
   }
 
-  // DSO's "crop" would take rays far beyond the range, that the polynomial brings back into the image.
+  // DSO's "crop" would use rays far beyond the valid range, which the polynomial maps back into the image.
   void dmVio_ofALensThatFolds_staysInItsRange() {
     RigKind kind;
     kind.cameras = 1;
@@ -358,7 +360,7 @@ class TestExportSlam : public QObject {
         in_right = (right_from_left * in_left.homogeneous()).head<3>();
     QVERIFY(std::abs(in_right.dot(pair.matrixAt("essential_matrix", 3, 3) * in_left)) < 1e-12);
     QVERIFY(pair.matrixAt("fundamental_matrix", 3, 3).norm() > 0.0);
-    // baseline() is -P(0,3) / P(0,0) of the right one; rectified, a point lies in one row.
+    // baseline() is -P(0,3) / P(0,0) of the right camera; rectified, a point is in one row.
     const double baseline_m = pair.matrixAt("translation_matrix", 3, 1).norm();
     QVERIFY(std::abs(-right.projection(0, 3) / right.projection(0, 0) - baseline_m) < 1e-12);
     const Eigen::Vector3d level = left.rectification * in_left;
@@ -380,7 +382,7 @@ class TestExportSlam : public QObject {
     QVERIFY((by_far - by_reference).norm() < 1e-12);
   }
 
-  // A file of the pair must not take the place of a camera's.
+  // A file of the pair must not overwrite a camera's.
   void rtabmap_aCameraMayBeCalledAsTheProgramsPair() {
     NamedResult result = rig({});
     result.cameras[0].name = "stereo_left";

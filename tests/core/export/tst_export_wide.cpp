@@ -1,4 +1,4 @@
-// Cameras of the wide models for other programs: as they are where a program has the model, else refitted.
+// Cameras of the wide models for other programs: unchanged if a program has the model, else refitted.
 #include "core/base/yaml_node.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
@@ -35,7 +35,8 @@ NamedResult wideRig(CameraModel model) {
   return result;
 }
 
-// By angles, where ours go by vectors: theta off the axis is phi from the second sphere's centre.
+// By angles, while our code uses vectors: theta from the optical axis is phi as seen from the second sphere's
+// centre.
 Lens angleLens(const std::vector<double>& k, double xi, double alpha, double beta) {
   return [=](const Eigen::Vector3d& point) {
     const double theta = std::atan2(std::sqrt(beta) * point.head<2>().norm(), point.z());
@@ -142,7 +143,7 @@ class TestExportWide : public QObject {
     QVERIFY((lens(point) - project(wideCamera(CameraModel::OmniRadtan), point).value()).norm() < 1e-6);
   }
 
-  // OpenVINS knows pinholes only: equidistant comes near enough, and how near is said.
+  // OpenVINS supports pinholes only: equidistant is close enough, and the fit error is reported.
   void openVins_getsAnEquidistantOne() {
     NamedResult result = wideRig(CameraModel::DoubleSphere);
     CameraIntrinsics within_85_deg = wideCamera(CameraModel::DoubleSphere);
@@ -158,11 +159,11 @@ class TestExportWide : public QObject {
          fisheyeLens(numbers(camera["intrinsics"]), numbers(camera["distortion_coeffs"]))});
     QVERIFY2(worst_px < 2.0, qPrintable(QString::number(worst_px)));
     QVERIFY(std::any_of(exported.notes.begin(), exported.notes.end(), [](const std::string& note) {
-      return note.find("OpenVINS has no place for the model double_sphere: refitted") != note.npos;
+      return note.find("OpenVINS does not support the model double_sphere: refitted") != note.npos;
     }));
   }
 
-  // A file for one camera alone: Kalibr has the model, ROS has not.
+  // A file for one camera alone: Kalibr has the model, ROS does not.
   void rosAndMetavision_getNoDoubleSphere() {
     const NamedResult result = wideRig(CameraModel::DoubleSphere);
     const YAML::Node info = yamlOf(exportTo(result, "ros"), "ros/left.yaml");

@@ -62,7 +62,7 @@ class TestIntrinsicsReport : public QObject {
     }
   }
 
-  // ROS knows pinholes only: its file holds an equidistant lens, and says how near that comes.
+  // ROS supports pinholes only: its file has an equidistant lens and states the fit error.
   void wideModels_readBackButFromRos_data() {
     QTest::addColumn<int>("model");
     QTest::addColumn<QString>("distortion");
@@ -88,7 +88,7 @@ class TestIntrinsicsReport : public QObject {
             camera);
     const std::string info = cameraInfoYaml("left", camera);
     const QString first_line = QString::fromStdString(info).section('\n', 0, 0);
-    QVERIFY2(first_line.startsWith("# ROS has no place for the model "), info.c_str());
+    QVERIFY2(first_line.startsWith("# ROS does not support the model "), info.c_str());
     const CameraIntrinsics fitted = readIntrinsics(YamlNode::parse(info, "camera_info.yaml"));
     QCOMPARE(fitted.model, CameraModel::PinholeEquidistant);
     QVERIFY(projectionDifference(camera, fitted).rms_px < 0.5);

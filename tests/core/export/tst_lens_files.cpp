@@ -15,7 +15,7 @@ using namespace evical::test;
 
 namespace {
 
-// As an import takes the file, whichever reader knows it; nothing where none does.
+// Imports the file with the reader that recognises it; empty if none does.
 std::vector<CameraIntrinsics> lensesIn(const std::filesystem::path& path) {
   std::vector<CameraIntrinsics> lenses;
   if (const auto file = readLensFile(path)) {
@@ -40,7 +40,7 @@ bool isSame(const CameraIntrinsics& a, const CameraIntrinsics& b) {
   return same;
 }
 
-// How many of the result's cameras come back out of the target's files.
+// Number of the result's cameras that the target's files contain.
 int camerasBack(const NamedResult& result, const std::filesystem::path& folder) {
   std::vector<CameraIntrinsics> all;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -122,7 +122,7 @@ const Sample kSamples[] = {
      "distortion_coefficients: !!opencv-matrix\n   rows: 4\n   cols: 1\n   dt: d\n   data: [ 0.01, 0.02, "
      "0.03, 0.05 ]\n",
      CameraModel::PinholeEquidistant, 335.35, 0.05},
-    // As DV 1.x names it; its values by its own source's keys.
+    // The name is that of DV 1.x; the values are by the keys of its source.
     {"calibration_camera_DAVIS346.xml",
      "<?xml version=\"1.0\"?>\n<opencv_storage>\n<DAVIS346_00000499>\n<camera_matrix "
      "type_id=\"opencv-matrix\">\n"
@@ -143,7 +143,7 @@ const Sample kSamples[] = {
      "<image_width>346</image_width>\n<image_height>260</image_height>\n"
      "<use_fisheye_model>1</use_fisheye_model>\n<comment></comment>\n</opencv_storage>\n",
      CameraModel::PinholeEquidistant, 261.5, 0.04},
-    // As DV's newer module writes it: the flag is always 0.
+    // Written like by DV's newer module: the flag is always 0.
     {"calibration_imu_DAVIS346.xml",
      "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=\"opencv-matrix\">\n"
      "<rows>3</rows><cols>3</cols><dt>d</dt>\n<data>261.5 0. 172.5 0. 262.5 131.5 0. 0. "
@@ -214,7 +214,7 @@ class TestLensFiles : public QObject {
     QTest::addColumn<int>("cameras");
     for (const ExportTarget& target : exportTargets()) {
       const std::string name = target.name;
-      // HDF5, NumPy's archives and programs: no files of intrinsics.
+      // HDF5, NumPy archives and programs are not files of intrinsics.
       if (name == "m3ed" || name == "numpy" || name == "matlab" || name == "evimo2") continue;
       const bool one = name == "dm-vio";
       const bool pinhole = name == "dsec" || name == "metavision";
@@ -308,7 +308,7 @@ class TestLensFiles : public QObject {
         refusal("vins.yaml",
                 "%YAML:1.0\n---\nimu: 1\nbody_T_cam0: !!opencv-matrix\n   rows: 1\n   cols: 1\n   dt: d\n"
                 "   data: [ 1. ]\n");
-    QVERIFY2(config.contains("holds no complete camera"), qPrintable(config));
+    QVERIFY2(config.contains("has no complete camera"), qPrintable(config));
   }
 };
 

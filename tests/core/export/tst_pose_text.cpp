@@ -1,4 +1,4 @@
-// Poses as text: what other programs would read out of it is the result, to the last digit.
+// Poses as text: other programs read the result from it, to the last digit.
 #include "core/export/pose_text.h"
 
 #include "core/export/rig.h"
@@ -82,13 +82,13 @@ class TestPoseText : public QObject {
     QVERIFY(poses_[0].reference_from_sensor.translation_m == left.reference_from_camera.translation_m);
     QCOMPARE(poses_[0].time_offset_s, left.time_offset_s);
     QCOMPARE(directionWords(poses_[0]),
-             std::string("takes points of left to left imu: p_left imu = R p_left + t"));
+             std::string("transforms points of left to left imu: p_left imu = R p_left + t"));
   }
 
   void everyForm_saysDirectionAndTime() {
     for (const PoseForm& each : poseForms()) {
       const std::string text = each.write(poses_[0]);
-      QVERIFY2(text.find("takes points of ") != std::string::npos, each.name);
+      QVERIFY2(text.find("transforms points of ") != std::string::npos, each.name);
       QVERIFY2(text.find("t_left imu = t_left + 0.007301 s") != std::string::npos, each.name);
     }
   }

@@ -1,4 +1,4 @@
-// A blinking light: noticed by its rhythm, cut into half periods, told from what only flickers a little.
+// A blinking light: detected by its rhythm, split into half periods, distinguished from weak flicker.
 #include "core/frames/blink.h"
 #include "core/frames/half_periods.h"
 #include "tests/support/test_program.h"
@@ -28,7 +28,7 @@ std::vector<float> bursts(double rate_hz, double duration_s, double noise) {
   return balance;
 }
 
-// Pixels left of `columns` brighten and darken in turn, the others fire now and then.
+// Pixels left of `columns` brighten and darken alternately, the others fire occasionally.
 std::vector<Event> blinkingScene(int columns, double rate_hz, double duration_s, double background_hz) {
   std::mt19937 random(2);
   std::vector<Event> events;
@@ -77,7 +77,7 @@ void TestBlink::rhythm_isFoundInNoise() {
   QFETCH(const double, rate_hz);
   const std::optional<Blink> blink = findBlink(bursts(rate_hz, 1.0, 0.1), BlinkOptions{});
   QVERIFY(blink);
-  // A bin is 1 ms, and of a narrow peak the parabola tells the top to some tenths of it.
+  // A bin is 1 ms; the parabola locates the top of a narrow peak to some tenths of a bin.
   QVERIFY2(std::abs(blink->period_s - 1.0 / rate_hz) < 4e-4, QByteArray::number(1.0 / blink->period_s));
   QVERIFY(blink->peak > BlinkOptions{}.least_peak);
 }
@@ -98,7 +98,7 @@ void TestBlink::noiseAndSlowChanges_haveNoRhythm() {
 void TestBlink::share_isThatOfTheEventsInBlinkingPixels() {
   const std::vector<Event> events = blinkingScene(10, 30.0, 1.0, 36000.0);  // half of the events
   const double share = shareOfBlinkingPixels(events, kSize, 1.0 / 30.0);
-  // A quarter of the others fall on pixels that blink.
+  // A quarter of the others are on blinking pixels.
   QVERIFY2(std::abs(share - 0.625) < 0.03, QByteArray::number(share));
   QCOMPARE(shareOfBlinkingPixels({}, kSize, 1.0 / 30.0), 0.0);
   QVERIFY(shareOfBlinkingPixels(blinkingScene(0, 30.0, 1.0, 36000.0), kSize, 1.0 / 30.0) < 0.01);
@@ -156,7 +156,7 @@ void TestBlink::halfPeriods_beginWithTheirBursts() {
     const bool brightens = bin / (HalfPeriods::kBinsPerPeriod / 2) % 2 == 0;
     if (!halves.add(within < length ? (brightens ? 100.0 : -100.0) : 1.0)) continue;
     ++turns;
-    // The bin that the new half period begins with must not lie behind the burst's beginning.
+    // The bin at which the new half period begins must not be later than the burst's beginning.
     const int begin = bin + 1 - HalfPeriods::kTurn_bins;
     const int nearest = (begin + 4) / 8 * 8;
     QVERIFY2(begin <= nearest && nearest - begin <= 2, QByteArray::number(begin - nearest));

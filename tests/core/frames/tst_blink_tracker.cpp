@@ -1,4 +1,5 @@
-// Flashing boards of every kind, as events of pixels that differ: their views against the truth.
+// Flashing boards of every kind, with events of pixels of different thresholds: their views against the
+// truth.
 #include "core/base/error.h"
 #include "core/frames/blink_tracker.h"
 #include "core/frames/saddle_measurement.h"
@@ -45,7 +46,7 @@ PrintedBoard checkerboardForBlinkTracker() {
   return boardOfBlinkTracker(BoardType::Checkerboard, 6, 9, 0.06, 0.0, 0.0);
 }
 
-// Pixels fire at steps of log intensity whose size is their own, in bursts as the light turns.
+// Pixels fire at steps of log intensity with individual thresholds, in bursts when the light switches.
 class Flashes {
  public:
   Flashes(const PrintedBoard& printed, Flashing flashing) : printed_(printed), flashing_(flashing) {
@@ -54,7 +55,7 @@ class Flashes {
     for (int k = 0; k < pixels; ++k) steps_.push_back(0.3 * (1.0 + 0.1 * normal(random_)));
   }
 
-  // So many half periods seen from this pose.
+  // Simulates this many half periods, seen from this pose.
   void show(const RigidTransform& camera_from_board, int half_periods, std::vector<Event>& events) {
     Exposure exposure;
     exposure.noise = 0.0;
@@ -94,7 +95,8 @@ struct BlinkTrackerErrors {
   double sigma_px() const { return std::sqrt(stated / found); }
 };
 
-// Points of a view are told by their places: what looks the same turned may be counted from any end.
+// Points of a view are matched by position: on a board with rotational symmetry, they may be numbered from
+// either end.
 void compareForBlinkTracker(const BoardView& view, const Board& board, const RigidTransform& pose,
                             BlinkTrackerErrors& errors) {
   for (const CircleObservation& point : view.circles) {
@@ -172,7 +174,7 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias() {
   QVERIFY(errors.wrong == 0);
   QVERIFY2(errors.found >= 0.85 * 3 * printed.board.pointCount(), QByteArray::number(errors.found));
   const Eigen::Vector2d bias = errors.sum / errors.found;
-  qInfo("%d points, %.3f px RMS, %.3f said, bias %.3f %.3f px", errors.found, errors.rms_px(),
+  qInfo("%d points, %.3f px RMS, %.3f stated, bias %.3f %.3f px", errors.found, errors.rms_px(),
         errors.sigma_px(), bias.x(), bias.y());
   // Half a pixel of the enlarged picture, three times as large, would be 0.17 px in x and y.
   QVERIFY2(bias.norm() < 0.06, QByteArray::number(bias.norm()));
@@ -191,7 +193,7 @@ void TestBlinkTracker::boardThatStandsStill_isOneView() {
   QVERIFY(std::abs(seen.views.front().time_s - 0.375) < 0.1);
 }
 
-// 8 px/s: a slot of two half periods sees 0.8 px of it, and only one of them may be used.
+// 8 px/s: during a slot of two half periods it moves by 0.8 px, and only one of them may be used.
 void TestBlinkTracker::boardThatMoves_isSeenWhereItIsAtTheTime() {
   const Board board = checkerboardForBlinkTracker().board;
   constexpr double kSpeed_m_s = 0.03, kDistance_m = 0.75;
@@ -207,7 +209,7 @@ void TestBlinkTracker::boardThatMoves_isSeenWhereItIsAtTheTime() {
     BlinkTrackerErrors errors;
     compareForBlinkTracker(view, board, poseAt(view.time_s), errors);
     QVERIFY(errors.found > 40);
-    // Flashes are a few ms long and lie at a half period's beginning: it is seen up to half of one earlier.
+    // Flashes take a few ms at the beginning of a half period: the view's time is up to half of one earlier.
     QVERIFY2(std::abs(errors.sum.x() / errors.found) < 8.0 * 0.5 / kRate_hz,
              QByteArray::number(errors.sum.x()));
   }
@@ -238,7 +240,7 @@ void TestBlinkTracker::partOfACheckerboard_isEnough() {
   QVERIFY2(errors.found >= 0.9 * checkerboardForBlinkTracker().board.pointCount(),
            QByteArray::number(errors.found));
   QCOMPARE(errors.wrong, 0);
-  // Neighbours are neighbours on the board as well, in squares of its size.
+  // Neighbours in the image are neighbours on the board, in squares of its size.
   const auto& points = seen.views.front().circles;
   for (std::size_t k = 1; k < points.size(); ++k) {
     const double on_board_m = (said.point_m(points[k].circle) - said.point_m(points[k - 1].circle)).norm();
@@ -271,10 +273,10 @@ void TestBlinkTracker::sceneThatDoesNotBlink_isRefused() {
                       static_cast<std::uint16_t>(random() % 180), random() % 2 == 0});
   try {
     track(checkerboardForBlinkTracker().board, events);
-    QFAIL("taken");
+    QFAIL("accepted");
   } catch (const CalibrationError& error) {
     QVERIFY(error.kind() == ErrorKind::CalibrationFailed);
-    QVERIFY2(QString(error.what()).contains("nothing blinks"), error.what());
+    QVERIFY2(QString(error.what()).contains("no blinking"), error.what());
     QVERIFY2(QString(error.what()).contains("evical board --blink"), error.what());
   }
 }
@@ -291,7 +293,7 @@ void TestBlinkTracker::saddle_isAtTheCornerWhateverTheTones() {
   Exposure exposure;
   exposure.noise = 0.0;
   GrayImage image = renderBoard(printed, aCameraForBlinkTracker(), pose, exposure);
-  for (std::uint8_t& pixel : image.pixels)  // as the logarithm bends them
+  for (std::uint8_t& pixel : image.pixels)  // nonlinear, due to the logarithm
     pixel = static_cast<std::uint8_t>(std::lround(255.0 * std::log(pixel / 30.0) / std::log(230.0 / 30.0)));
   for (int k = 0; k < printed.board.pointCount(); ++k) {
     const Eigen::Vector2d truth = *truePoint(printed.board, k, aCameraForBlinkTracker(), pose);

@@ -1,5 +1,5 @@
-// Every kind of board in rendered pictures with a known truth: all points found, in their order, with errors that
-// their covariances tell.
+// Every kind of board in rendered images with a known truth: all points are found, in their order, with
+// errors that agree with their covariances.
 #include "core/base/error.h"
 #include "core/frames/board_finder.h"
 #include "core/frames/ideal_views.h"
@@ -69,7 +69,7 @@ struct BoardFinderErrors {
   double ratio() const { return std::sqrt(normalised / (2.0 * found)); }
 };
 
-// A circle's place and covariance by what the lens makes of circles, a corner's as it was measured.
+// A circle's position and covariance after the distortion of its image; a corner's as measured.
 std::optional<CircleObservation> undistorted(const FoundPoint& point, const CameraIntrinsics& camera) {
   const std::vector<ViewFromFrame> views = viewsFromFrames({{0.0, 0.0, {point}}}, 2);
   return inIdealPixels(views.front().view.circles.front(), camera);
@@ -135,8 +135,8 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated_data() {
   QTest::newRow("ChArUco, legacy") << legacyCharuco();
 }
 
-// Under perspective, a lens that bends edges by 30 px, blur and noise. What is added to covariances for print and
-// optics, which these pictures have not, is left out.
+// Perspective, a lens that bends edges by 30 px, blur and noise. The parts of covariances for print and
+// optics are omitted, since these images have no such errors.
 void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
   QFETCH(const PrintedBoard, printed);
   const Board& board = printed.board;
@@ -158,7 +158,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
     compareForBoardFinder(points, board, camera, pose, errors);
     possible += pointsInView(board, camera, pose);
   }
-  qInfo("%d of %d, %d wrong, %.3f px RMS a coordinate for %.3f stated, ratio %.2f, %.1f ms a frame",
+  qInfo("%d of %d, %d wrong, %.3f px RMS a coordinate for %.3f stated, ratio %.2f, %.1f ms per frame",
         errors.found, possible, errors.wrong, errors.rms_px(), errors.sigma_px(), errors.ratio(),
         1e3 * seconds / 4);
   QCOMPARE(errors.wrong, 0);
@@ -195,8 +195,8 @@ void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs_data() {
   QTest::newRow("asymmetric circles") << asymmetricCircles() << false;
 }
 
-// The board's left half, or so, is out of the picture. Of circles that are cut off on all sides several places on
-// the board would do.
+// About the left half of the board is outside the image. If circles are cut off on all sides, several
+// placements on the board are possible.
 void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs() {
   QFETCH(const PrintedBoard, printed);
   QFETCH(const bool, says);
@@ -223,7 +223,7 @@ void TestBoardFinder::pictureWithoutBoard_showsNothing_data() {
   QTest::newRow("ChArUco") << charuco();
 }
 
-// Another board, nothing but noise, one grey, and hardly a picture.
+// Another board, only noise, uniform grey, and an image of a few pixels.
 void TestBoardFinder::pictureWithoutBoard_showsNothing() {
   QFETCH(const PrintedBoard, printed);
   BoardFinder finder(printed.board, FrameOptions{});
@@ -247,12 +247,12 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   const PrintedBoard grid = kalibrGrid();
   QTest::newRow("too few tags")
       << grid << boardOfBoardFinder(BoardType::AprilGrid, 5, 6, 0.1144, 0.0, 0.088) << TagBorder::Automatic
-      << "a tag of number 35 was seen, and a board of 5 x 6 tags has 0 to 29: rows and columns";
+      << "tag 35 was detected, but a board of 5 x 6 tags has tags 0 to 29: check rows and columns";
   QTest::newRow("rows for columns")
       << grid << boardOfBoardFinder(BoardType::AprilGrid, 4, 9, 0.1144, 0.0, 0.088) << TagBorder::Automatic
-      << "the tags that were seen do not lie as on a board of 4 x 9 tags: rows and columns";
+      << "the detected tags do not fit a board of 4 x 9 tags: check rows and columns";
   QTest::newRow("border") << grid << grid.board << TagBorder::One
-                          << "the border of 2 bits fits, not that of 1";
+                          << "a tag border of 2 bits fits better than one of 1";
   QTest::newRow("right") << grid << grid.board << TagBorder::Two << "";
 }
 
@@ -269,7 +269,7 @@ void TestBoardFinder::wrongNumbers_areDoubted() {
   QCOMPARE(QString::fromStdString(finder.doubt()), doubt);
 }
 
-// A board as OpenCV itself draws it.
+// A board as drawn by OpenCV.
 void TestBoardFinder::drawingOfOpenCv_isFound() {
   for (const int rows : {5, 6}) {
     cv::Mat picture;

@@ -1,4 +1,4 @@
-// The board followed through pictures of a moving camera.
+// The board tracked through images of a moving camera.
 #include "core/frames/frame_tracker.h"
 #include "core/frames/views_from_frames.h"
 #include "tests/support/rendered_board.h"
@@ -78,12 +78,12 @@ void TestFrameTracker::movingBoard_isFollowed() {
     if (k > 1) seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   }
   const BoardObservations seen = tracker.finish();
-  qInfo("%.2f ms a followed frame", 1e3 * seconds / (kFrames - 2));
+  qInfo("%.2f ms per tracked frame", 1e3 * seconds / (kFrames - 2));
   QCOMPARE(seen.camera, std::string("left"));
   QCOMPARE(seen.views.size(), std::size_t{kFrames});
   QCOMPARE(seen.windows.size(), std::size_t{kFrames});
   for (std::size_t k = 0; k < seen.views.size(); ++k) {
-    // From one view no motion is known, and the board moves further than the gate.
+    // One view does not determine motion, and the board moves further than the gate.
     if (k != 1) QCOMPARE(seen.windows[k].tracked, k > 1);
     QVERIFY(static_cast<int>(seen.views[k].circles.size()) > 0.9 * board.pointCount());
     QCOMPARE(seen.views[k].kind == ViewKind::Complete, seen.windows[k].outcome == WindowOutcome::Complete);

@@ -1,4 +1,4 @@
-// Frames of all formats become brightness, and what is damaged is refused.
+// Frames of all formats are converted to brightness, and damaged ones are refused.
 #include "core/base/error.h"
 #include "core/format/picture_header.h"
 #include "core/frames/gray_image.h"
@@ -182,13 +182,13 @@ void TestGrayImage::encodedOfSixteenBits_isScaled() {
   }
 }
 
-// The sensor's pixels are where they are, whatever a JPEG says about how to hold it.
+// The pixels keep the sensor's orientation: the orientation flag of a JPEG is ignored.
 void TestGrayImage::turnForShow_isIgnored() {
   Bytes bytes = encoded(".jpg", ramp(40, 30));
   const Bytes exif = {0xFF, 0xE1, 0, 34, 'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8,
                       0,    1,    1, 18, 0,   3,   0,   0,   0, 1, 0,   6,   0, 0,  0, 0, 0, 0};
   bytes.insert(bytes.begin() + 2, exif.begin(), exif.end());
-  QCOMPARE(cv::imdecode(bytes, cv::IMREAD_GRAYSCALE).cols, 30);  // it does say so
+  QCOMPARE(cv::imdecode(bytes, cv::IMREAD_GRAYSCALE).cols, 30);  // the flag is set, as OpenCV shows
   QCOMPARE(decodeFrame(encodedFrame(bytes), "").size_px, (Resolution{40, 30}));
 }
 
@@ -220,13 +220,14 @@ void TestGrayImage::absurdSize_isRefused_data() {
 
 void TestGrayImage::absurdSize_isRefused() {
   QFETCH(const Frame, frame);
-  QVERIFY(QString::fromStdString(refusalOf(frame)).contains("which no picture has"));
+  QVERIFY(QString::fromStdString(refusalOf(frame)).contains("which is implausible"));
 }
 
 void TestGrayImage::otherSizeThanAnnounced_isRefused() {
   Frame frame = encodedFrame(encoded(".png", ramp(40, 30)));
   frame.size_px = {30, 40};
-  QVERIFY(QString::fromStdString(refusalOf(frame)).contains("40 x 30 pixels, and 30 x 40 were announced"));
+  QVERIFY(
+      QString::fromStdString(refusalOf(frame)).contains("40 x 30 pixels instead of the specified 30 x 40"));
 }
 
 void TestGrayImage::rawFrameWithTooFewBytes_isRefused_data() {
@@ -245,7 +246,7 @@ void TestGrayImage::rawFrameWithTooFewBytes_isRefused() {
   QVERIFY(QString::fromStdString(refusalOf(frame)).contains("truncated"));
 }
 
-// Whatever single bytes become: a picture of its size or a refusal, never anything else.
+// Any changed byte results in an image of the right size or a refusal, never anything else.
 void TestGrayImage::spoiltBytes_areReadOrRefused() {
   std::mt19937 random(5);
   for (const char* extension : {".png", ".jpg", ".pgm", ".tiff", ".bmp"}) {

@@ -1,4 +1,4 @@
-// A wide lens bends the board's lines, and gradients around a corner would say that it lies beside its place.
+// A wide lens bends the board's lines, so that gradients around a corner alone would give a biased position.
 #include "core/frames/board_finder.h"
 #include "core/frames/corner_measurement.h"
 #include "core/frames/line_curvature.h"
@@ -47,7 +47,7 @@ FoundPoints trueCorners(const Board& board, const RigidTransform& pose) {
   return points;
 }
 
-// As three places very near to each other tell it.
+// Curvature from three positions very close to each other.
 double curvatureOf(const RigidTransform& pose, const Eigen::Vector2d& at_m, const Eigen::Vector2d& along_m) {
   const auto place = [&](double part) {
     const Eigen::Vector2d on_board_m = at_m + part * along_m;
@@ -86,7 +86,7 @@ void TestLineCurvature::curvature_isThatOfTheLens() {
     }
   }
   const double rms_1_px = std::sqrt(squares / (2.0 * static_cast<double>(points.size())));
-  qInfo("curvatures %.5f 1/px RMS, known to %.1f %%", rms_1_px, 100.0 * std::sqrt(errors / squares));
+  qInfo("curvatures %.5f 1/px RMS, errors of %.1f %%", rms_1_px, 100.0 * std::sqrt(errors / squares));
   QVERIFY(rms_1_px > 1e-3);
   QVERIFY(errors < 0.15 * 0.15 * squares);
 }
@@ -106,7 +106,7 @@ void TestLineCurvature::fewPoints_tellNothing() {
   QVERIFY(!BentLines(points, board).through(3));
 }
 
-// Of pictures without noise, with windows so large that bending counts.
+// In images without noise, with windows so large that curvature matters.
 void TestLineCurvature::bentCorner_isMeasuredWhereItIs() {
   Board board = tagGrid();
   board.type = BoardType::Checkerboard;
@@ -143,9 +143,11 @@ void TestLineCurvature::bentCorner_isMeasuredWhereItIs() {
   }
   QVERIFY2(count > 80, qPrintable(QString::number(count)));
   const auto rms = [&](double sum) { return std::sqrt(sum / count); };
-  qInfo("%d corners: %.4f px RMS as gradients say, %.4f px less what bending does, which is %.4f px", count,
-        rms(alone), rms(unbent), rms(by_bending));
-  qInfo("errors go with it as 1 to %.2f", common / by_bending);
+  qInfo(
+      "%d corners: %.4f px RMS from gradients, %.4f px after subtracting the effect of bending, which is "
+      "%.4f px",
+      count, rms(alone), rms(unbent), rms(by_bending));
+  qInfo("errors are proportional to it, with a factor of %.2f", common / by_bending);
   QVERIFY(unbent < 0.6 * alone);
   QVERIFY(std::abs(common / by_bending - 1.0) < 0.3);
   QVERIFY(difference < 0.1 * by_bending);  // the finder does the same

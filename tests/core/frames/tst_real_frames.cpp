@@ -1,5 +1,5 @@
-// Real pictures of checkerboards, where they are there: frames of a camera (Debian's opencv-doc), and events of a
-// blinking screen, accumulated (EVICAL_DATA). Their lenses are known from others' estimates.
+// Real images of checkerboards, if available: frames of a camera (Debian's opencv-doc), and accumulated
+// events of a blinking screen (EVICAL_DATA). Their lenses are known from other estimates.
 #include "core/frames/frame_tracker.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "tests/support/test_program.h"

@@ -1,5 +1,5 @@
-// Bursts as moving circles fire them, made from geometry alone: when a circle's edge is exactly in the middle
-// of a pixel, plus noise.
+// Bursts of moving circles, from geometry alone: the times when a circle's edge is exactly at a pixel's
+// centre, plus noise.
 #pragma once
 
 #include "core/frontend/board_motion.h"
@@ -36,7 +36,7 @@ struct SyntheticCircle {
   double radius_px = 0.0;
 };
 
-// Bursts within half_window_s of time 0. `noise_px` is that of an edge's place, along its normal.
+// Bursts within half_window_s of time 0. `noise_px` is that of an edge's position, along its normal.
 inline void addBursts(const SyntheticCircle& circle, double half_window_s, CircleShade shade, double noise_px,
                       std::mt19937& random, std::vector<EdgeCrossing>& bursts) {
   std::normal_distribution<double> normal;
@@ -134,7 +134,8 @@ struct MovingBoard {
   }
 };
 
-// All bursts of the board's circles within half_window_s of time 0, from the true motion: no flow model.
+// All bursts of the board's circles within half_window_s of time 0, from the true motion, without a flow
+// model.
 inline std::vector<EdgeCrossing> burstsOf(const MovingBoard& moving, double half_window_s, double noise_px,
                                           std::mt19937& random) {
   constexpr int kSteps = 60;

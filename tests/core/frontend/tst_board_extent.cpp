@@ -11,7 +11,7 @@ using namespace evical::test;
 
 constexpr double kBoardExtentHalfWindow_s = 0.02;
 
-// What a session claims of the board that is there: as many rows and columns, from this row and column on.
+// The session's extent of the existing board: that many rows and columns, from this row and column on.
 struct Claim {
   int rows, cols, first_row = 0, first_col = 0;
 };

@@ -145,7 +145,7 @@ void TestBoardMotion::prediction_movesTheBoard() {
   for (int i = 0; i < board.pointCount(); ++i) {
     const Eigen::Vector2d before = apply(motion.ideal_from_board, board.point_m(i));
     const Eigen::Vector2d after = apply(next.ideal_from_board, board.point_m(i));
-    // Of second order in the travel of half a pixel over 80 px.
+    // The error is of second order in a movement of half a pixel over 80 px.
     QVERIFY((after - before - motion.travel(before, 0.01)).norm() < 0.01);
     QVERIFY((next.velocityAt(after) - motion.velocityAt(after) - 0.01 * motion.accelerationAt(after)).norm() <
             1e-6);
@@ -169,7 +169,7 @@ void TestBoardMotion::crossingWeight_leavesOutGrazingEdges() {
   QCOMPARE(crossingWeight(0.9 * options.least_polarity_cosine, 8.0, 8.0, options), 0.0);
   QCOMPARE(crossingWeight(-1.0, 8.0, 8.0, options), 0.0);
   QCOMPARE(crossingWeight(1.0, 0.9 * options.least_event_part * 8.0, 8.0, options), 0.0);
-  QCOMPARE(crossingWeight(1.0, 1.0, 0.0, options), 1.0);  // typical number not known yet
+  QCOMPARE(crossingWeight(1.0, 1.0, 0.0, options), 1.0);  // typical value not known yet
 }
 
 void TestBoardMotion::fit_withoutNoise_recoversMotion_data() {

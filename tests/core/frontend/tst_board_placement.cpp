@@ -18,7 +18,7 @@ Board asymmetric(int rows, int cols) {
   return {BoardType::AsymmetricCircles, rows, cols, 0.03, 0.012, CircleShade::Dark, 0.0, {}};
 }
 
-// A board seen askew, circle by circle; true_index tells who is who (-1: an outlier).
+// A board seen obliquely, circle by circle; true_index is each circle's identity (-1: an outlier).
 struct BoardImage {
   Board board;
   std::vector<MovingCircle> circles;
@@ -81,7 +81,7 @@ void shuffle(BoardImage& image, std::mt19937& random) {
   image = mixed;
 }
 
-// Keeps the circles for which `keep` holds.
+// Keeps the circles for which `keep` is true.
 template <class Keep>
 void reduce(BoardImage& image, Keep&& keep) {
   BoardImage kept{image.board, {}, {}, image.homography};
@@ -197,7 +197,7 @@ void TestBoardPlacement::scatteredGaps_areNormal() {
     shuffle(image, random);
     const std::vector<BoardPlacement> placements = place(image, nullptr, pinhole());
     placed += std::any_of(placements.begin(), placements.end(), [&](const BoardPlacement& p) {
-      return p.circles.size() >= 18 && wrongIn(p, image) <= 1;  // an outlier may sit on a gap
+      return p.circles.size() >= 18 && wrongIn(p, image) <= 1;  // an outlier may be at a gap
     });
   }
   QVERIFY2(placed >= kTries * 9 / 10, qPrintable(QString::number(placed)));
@@ -229,8 +229,8 @@ void TestBoardPlacement::cutOffBoard_isAmongThePlacements() {
   QVERIFY2(placed >= kTries * 95 / 100, qPrintable(QString::number(placed)));
 }
 
-// The pattern of an odd number of rows is its own mirror image, so a mirrored picture is one of the board,
-// too: what must not happen is a homography that turns the board inside out.
+// The pattern of an odd number of rows is its own mirror image, so a mirrored image also shows the board. A
+// homography that mirrors the board must not result.
 void TestBoardPlacement::homography_neverMirrors() {
   for (int seed = 0; seed < 16; ++seed) {
     std::mt19937 random(static_cast<unsigned>(400 + seed));
@@ -254,7 +254,7 @@ void TestBoardPlacement::smallPatch_isAmbiguous() {
   std::mt19937 random(500);
   BoardImage image = imageOf(asymmetric(11, 4), 0.1, random);
   reduce(image, [](int index) { return index / 4 >= 3 && index / 4 < 8 && index % 4 < 3; });
-  std::map<int, int> starts;  // board circle that the first circle is taken for
+  std::map<int, int> starts;  // board circle assigned to the first circle
   for (const BoardPlacement& placement : place(image)) {
     if (placement.circles.size() != image.circles.size()) continue;
     for (const auto& [circle, index] : placement.circles) {
@@ -287,7 +287,7 @@ void TestBoardPlacement::turnsOntoItself_areNoRivals() {
   QCOMPARE(turns(BoardType::SymmetricCircles, 6, 8), std::size_t{1});
   QCOMPARE(turns(BoardType::SymmetricCircles, 7, 7), std::size_t{1});
   QCOMPARE(turns(BoardType::AsymmetricCircles, 10, 4), std::size_t{1});
-  // A shift by a row or a column leaves 40 or 42 of 48 circles on circles.
+  // A shift by a row or a column maps 40 or 42 of 48 circles to circles.
   board.type = BoardType::SymmetricCircles;
   board.rows = 6;
   board.cols = 8;
@@ -318,7 +318,7 @@ void TestBoardPlacement::velocityField_followsCircles() {
   for (const MovingCircle& circle : image.circles) {
     const double error_px_s =
         (placements.front().motion.velocityAt(circle.centre_px) - circle.velocity_px_s).norm();
-    // The joint fit starts from it and needs no better; perspective terms are held back.
+    // The joint fit starts from it and needs no better one; perspective terms are damped.
     QVERIFY2(error_px_s < 0.1 * circle.velocity_px_s.norm() + 2.0, qPrintable(QString::number(error_px_s)));
   }
 }

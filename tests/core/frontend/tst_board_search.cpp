@@ -79,7 +79,7 @@ void TestBoardSearch::ended_isTheStageThatFailed() {
   if (what == "circles") options.grid.least_circles = 500;
   if (what == "lattice") options.grid.longest_step_radii = 2.1;
   if (what == "placement") {
-    // A camera for which what it sees is no square lattice.
+    // A camera whose image has no square lattice.
     CameraIntrinsics camera;
     camera.resolution_px = kDavis_px;
     camera.focal_length_px = {260.0, 520.0};
@@ -108,7 +108,7 @@ void TestBoardSearch::otherSource_isTriedWhereTheFirstFails() {
   QCOMPARE(searchBoard(history(), 0, MovingBoard().scene(), options).size(), std::size_t{1});
 }
 
-// With hardly anything that moves, edges count as the slowest there are.
+// If hardly anything moves, edges count as the slowest possible ones.
 void TestBoardSearch::windows_areNoLongerThanTheReach() {
   FrontEndOptions options;
   options.detection.try_both = false;

@@ -14,7 +14,7 @@ namespace {
 
 using namespace evical;
 
-// A DAVIS346 that looks at the usual board, with clutter behind it.
+// A DAVIS346 in front of the standard board, with clutter behind it.
 Scenario davis346ForBoardTracker() {
   Scenario scenario;
   scenario.seed = 11;
@@ -139,7 +139,8 @@ void TestBoardTracker::noEvents_giveNothing() {
   QVERIFY(observations.views.empty() && observations.windows.empty());
 }
 
-// Near, so that its long side fills the image's: laid a quarter turn wrongly, it ends above and below the image.
+// Near, so that its long side fills the image: misidentified by a quarter turn, it would extend beyond the
+// image above and below.
 Scenario landscape(std::uint64_t seed) {
   Scenario scenario = davis346ForBoardTracker();
   scenario.seed = seed;
@@ -152,7 +153,7 @@ Scenario landscape(std::uint64_t seed) {
   return scenario;
 }
 
-// Circles with another number than the truth's, and all.
+// Circles with another index than the truth's, and all circles.
 struct Numbering {
   int wrong = 0, all = 0;
   std::size_t views = 0;
@@ -173,7 +174,7 @@ Numbering numberingOf(const std::vector<BoardView>& views, const Scenario& scena
   return numbering;
 }
 
-// Of a recording of so many seconds, in the first of which a third of the image shows nothing.
+// Numbering in a recording of this duration, in which a third of the image is silent for the first 0.3 s.
 constexpr double kUncovered_s = 0.3;
 Numbering numbering(std::uint64_t seed, double duration_s, const FrontEndOptions& options = {}) {
   Scenario scenario = landscape(seed);
@@ -214,15 +215,15 @@ void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews() {
   QVERIFY2(n.wrong == 0, qPrintable(toText(n)));
 }
 
-// Which says, too, that the recordings above are laid wrongly at first.
+// This also shows that the recordings above are misidentified at first.
 void TestBoardTracker::boardThatWindowsContradict_isNone() {
   FrontEndOptions options;
-  options.grid.contradicting_looks = 1000;  // so that it is not laid anew
+  options.grid.contradicting_looks = 1000;  // so that it is not identified again
   const Numbering n = numbering(3, 0.55, options);
   QVERIFY2(n.views == 0, qPrintable(toText(n)));
 }
 
-// Window by window a day is six million.
+// At one step per window, a day takes six million.
 void TestBoardTracker::emptyTime_costsNothing() {
   constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
   const Detected usual = detect(CandidateSource::NormalFlow);
@@ -252,7 +253,7 @@ void TestBoardTracker::askedToStop_itLooksAtNoMoreWindows() {
   BoardTracker tracker(same.scenario.board, {346, 260}, same.scenario.cameras[0].intrinsics,
                        FrontEndOptions{}, same.scenario.start_ns);
   tracker.stopWith(source.get_token());
-  // Bursts of slow edges are waited for, longer than these events last: so they come twice.
+  // Bursts of slow edges are delayed for longer than these events last, so the events are repeated.
   std::vector<Event> later = events();
   for (Event& event : later) event.time_ns += 2'000'000'000;
   tracker.add(events());

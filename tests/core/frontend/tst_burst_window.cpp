@@ -120,7 +120,7 @@ void TestBurstWindow::history_dropsOld() {
   QVERIFY(history.empty());
 }
 
-// A slice for each 5 ms would be six thousand million a year.
+// A slice per 5 ms would be six thousand million per year.
 void TestBurstWindow::history_needsNoRoomForEmptyTime() {
   constexpr std::int64_t kYear_ns = 365LL * 86'400 * 1'000'000'000;
   BurstHistory history;

@@ -49,7 +49,7 @@ class TestCircleLattice : public QObject {
   void largerLattice_wins();
 };
 
-// A step along i and one along j lead where the image has them, and i x j turns as x to y does.
+// Steps along i and j follow the image's lattice, and i x j has the orientation of x to y.
 void TestCircleLattice::square_isOrderedByItsSteps() {
   const std::vector<MovingCircle> circles = square(3, 4);
   const CircleLattice lattice = findCircleLattice(circles, GridOptions{});
@@ -110,7 +110,7 @@ void TestCircleLattice::neighbours_areWithinTheOptionsSteps() {
   QVERIFY(findCircleLattice(circles, options).empty());
 }
 
-// Steps that shrink by a tenth from one to the next end at half of their first length.
+// Steps that each shrink by a tenth end at half of their first length.
 void TestCircleLattice::steps_followAPerspective() {
   std::vector<MovingCircle> circles;
   double x_px = 40.0, step_px = 40.0;

@@ -65,7 +65,7 @@ void TestCircleMeasurement::errors_matchCovariance() {
     }
   }
   QVERIFY(count > 400);
-  // Two degrees of freedom a circle. Noise that is Gaussian and white: what the covariance assumes.
+  // Two degrees of freedom per circle. The noise is Gaussian and white, as the covariance assumes.
   const double normalised = chi2 / (2.0 * count);
   QVERIFY2(normalised > 0.7 && normalised < 1.4, qPrintable(QString::number(normalised)));
 }

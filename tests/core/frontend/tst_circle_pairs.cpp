@@ -94,7 +94,7 @@ void TestCirclePairs::circles_areFound() {
     QVERIFY(hit->direction.dot(circle.velocity_px_s) > 0.95 * speed_px_s);
     QVERIFY2(std::abs(hit->speed_px_s / speed_px_s - 1.0) < 0.3,
              qPrintable(QString::number(hit->speed_px_s)));
-    // The next stage takes it from there.
+    // The next stage continues from there.
     const auto fit = fitMovingCircle(synthetic.window, *hit, speed_px_s, MovingCircleOptions{});
     QVERIFY(fit && (fit->centre_px - circle.centre_px).norm() < 0.2);
   }
@@ -141,7 +141,7 @@ void TestCirclePairs::nearest_winsMutually() {
 
 void TestCirclePairs::clearKinds_comeFirst() {
   using enum ClusterKind;
-  // The other arc is nearer, to the side, but kinds that are clear go first.
+  // The other arc is nearer, to the side, but unambiguous kinds have priority.
   const std::vector<ArcPair> pairs =
       pair({cluster(true, Run, {110.0, 50.0}), cluster(false, Chase, {90.0, 50.0}),
             cluster(false, Other, {101.0, 60.0 - 14.9}, 20.0)});

@@ -96,7 +96,7 @@ void TestEdgeBursts::singleEvents_areDropped() {
 }
 
 void TestEdgeBursts::longBurst_keepsMedianAndCount() {
-  // More events than a pixel keeps times of: thinning leaves 8 to 16, so the median is right to a part in 8.
+  // More events than a pixel stores times of: thinning keeps 8 to 16, so the median is accurate to 1/8.
   for (const int count : {16, 17, 33, 100, 700}) {
     std::vector<std::int64_t> times_ns;
     for (int k = 0; k < count; ++k) times_ns.push_back(k * kMs / 10);

@@ -57,7 +57,7 @@ class TestEdgeSlopes : public QObject {
     QFETCH(double, angle_rad);
     QFETCH(double, speed_px_s);
     const std::vector<EdgeSlope> slopes = slopesOf(edge(angle_rad, speed_px_s));
-    // All pixels but a border of two.
+    // All pixels except a border of two.
     QCOMPARE(slopes.size(), std::size_t{36 * 26});
     const Eigen::Vector2d expected = Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)) / speed_px_s;
     for (const EdgeSlope& slope : slopes) {
@@ -66,7 +66,7 @@ class TestEdgeSlopes : public QObject {
     }
   }
 
-  // The second edge is another one, though its bursts are of the same pixels.
+  // The second edge is a different one, though its bursts are of the same pixels.
   void twoEdges_doNotMix() {
     std::vector<EdgeCrossing> bursts = edge(0.3, 200.0);
     const std::vector<EdgeCrossing> second = edge(0.3 + 1.5, 200.0, true, 0.26);

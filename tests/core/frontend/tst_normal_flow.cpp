@@ -114,7 +114,7 @@ void TestNormalFlow::outlier_isDropped() {
   for (const NormalFlow& flow : field) {
     if (flow.x_px == 100 && flow.y_px == 100)
       QVERIFY((flow.velocity_px_s.cast<double>() - 100.0 * normal).norm() < 0.1);
-    QVERIFY(flow.x_px != 101 || flow.y_px != 101);  // nor has the outlier itself a flow
+    QVERIFY(flow.x_px != 101 || flow.y_px != 101);  // the outlier itself has no flow either
   }
   QVERIFY(std::any_of(field.begin(), field.end(),
                       [](const NormalFlow& flow) { return flow.x_px == 100 && flow.y_px == 100; }));
@@ -127,7 +127,7 @@ void TestNormalFlow::lonelyPixels_giveNothing() {
   for (int x = 10; x < 40; ++x) line.push_back(burstAt(x, 10, 0.001 * x, true));
   NormalFlowOptions options;
   options.least_plane_inliers = 0.3;
-  QVERIFY(flowOf(line, options).empty());  // a line of pixels holds no plane
+  QVERIFY(flowOf(line, options).empty());  // a line of pixels does not determine a plane
 }
 
 void TestNormalFlow::speedLimit_isKept() {

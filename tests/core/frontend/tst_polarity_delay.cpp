@@ -1,4 +1,5 @@
-// How much later pixels tell of brightening edges than of darkening ones, from how circles seem to grow with their speed.
+// Delay of brightening edges relative to darkening ones, estimated from the apparent growth of circles with
+// speed.
 #include "core/frontend/polarity_delay.h"
 #include "tests/support/test_program.h"
 
@@ -11,7 +12,7 @@ using namespace evical;
 
 constexpr double kOffset_px = -0.56, kNoise_px = 0.005;
 
-// Windows of a hand's speeds, of pixels of which brightening ones are so much later.
+// Windows with speeds of a hand-held camera, with pixels whose brightening edges are delayed by this.
 PolarityDelayFit windows(double later_s, double sign, int count, double least_px_s, double most_px_s,
                          unsigned seed = 1) {
   std::mt19937 random(seed);

@@ -42,7 +42,7 @@ void TestRingVote::circle_isFoundAtItsPlace() {
   const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, FrontEndOptions{});
   QVERIFY(!candidates.empty());
   const CircleCandidate& best = candidates.front();
-  // What the moving-circle fit's first gate forgives.
+  // The tolerance of the first gate of the moving-circle fit.
   const double tolerance_px = std::max(1.5, 0.1 * radius_px);
   QVERIFY2((best.centre_px - circle.centre_px).norm() < tolerance_px,
            qPrintable(QString("at %1, %2").arg(best.centre_px.x()).arg(best.centre_px.y())));

@@ -127,7 +127,7 @@ void TestStageDrawing::search_isDrawnWhateverItsOutcome() {
   search.circles.push_back({{100.0, 100.0}, {50.0, 0.0}, 8.0, 0.1, 40, 16});
   search.lattice.push_back({0, 0, 0});
   search.motion = MovingBoard().motionAt(0.0);
-  search.motion->ideal_from_board(2, 2) = 1e-9;  // whatever a failed search may leave behind
+  search.motion->ideal_from_board(2, 2) = 1e-9;  // any value that a failed search may leave behind
   QVERIFY(!drawSearch(synthetic.window, search, scene()).rgb.empty());
   const NormalFlowStages arcs = findArcs(synthetic.window, FrontEndOptions{});
   QVERIFY(!drawSearch(synthetic.window, search, scene(), &arcs).rgb.empty());

@@ -1,5 +1,5 @@
-// Where the image turns back, edges leave pixels that they have not crossed. Circles must not be seen elsewhere for
-// that: behind where the image speeds up, and ahead where it slows down, looks like a motion of another amplitude.
+// At turning points of the motion, edges leave pixels without crossing them. This must not shift circles: a
+// lag while the image accelerates and a lead while it decelerates look like a motion of another amplitude.
 #include "core/frontend/board_tracker.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace evical;
 
-// Some ten pixels to and fro, several times a second.
+// Motion of some ten pixels back and forth, several times a second.
 Scenario smallMotion() {
   Scenario scenario;
   scenario.seed = 5;
@@ -49,7 +49,7 @@ void TestTurningPoints::slowCentres_areAsFarBehindBeforeATurnAsAfterIt() {
   simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
   const BoardObservations observations = tracker.finish();
   constexpr double kSlowest_px_s = 20.0, kFastest_px_s = 50.0, kStep_s = 1e-3;
-  std::array<double, 2> behind_px = {0.0, 0.0};  // where the image slows down, and where it speeds up
+  std::array<double, 2> behind_px = {0.0, 0.0};  // while the image decelerates, and while it accelerates
   std::array<int, 2> counts = {0, 0};
   for (const BoardView& view : observations.views) {
     for (const CircleObservation& circle : view.circles) {
@@ -68,7 +68,7 @@ void TestTurningPoints::slowCentres_areAsFarBehindBeforeATurnAsAfterIt() {
   }
   QVERIFY2(counts[0] > 200 && counts[1] > 200, qPrintable(QString("%1, %2").arg(counts[0]).arg(counts[1])));
   const double slowing_px = behind_px[0] / counts[0], speeding_px = behind_px[1] / counts[1];
-  // 0.08 px apart where every burst counts by its own median; a mean's own error is 0.002 px.
+  // A difference of 0.08 px if every burst counted by its own median; the error of a mean is 0.002 px.
   QVERIFY2(std::abs(slowing_px - speeding_px) < 0.025,
            qPrintable(QString("%1 px, %2 px").arg(slowing_px).arg(speeding_px)));
 }

@@ -1,4 +1,4 @@
-// What trackWindow says of a window is what the tracker did for it.
+// The trace of trackWindow must agree with the tracker's result for that window.
 #include "core/frontend/window_trace.h"
 
 #include "core/frontend/board_search.h"
@@ -31,7 +31,7 @@ Scenario davis346ForWindowTrace() {
   return scenario;
 }
 
-// Keeps what the tracker found, and every motion from which it may have gone on.
+// Keeps the tracker's result, and every motion from which it may have continued.
 class Recorder : public FrontEndObserver {
  public:
   void windowTracked(const BurstWindow& window, const WindowTrace& trace) override {
@@ -42,7 +42,7 @@ class Recorder : public FrontEndObserver {
   void windowSearched(const BoardSearch& search, std::int64_t) override {
     if (search.motion) motions[search.motion->time_ns] = *search.motion;
   }
-  // Those of the search first: a window is tracked from it at its own time.
+  // Motions of the search first: a window is tracked from it at its own time.
   BoardMotion startOf(const WindowTrace& trace) const {
     if (trace.predicted_from_ns == trace.prediction.time_ns) return trace.prediction;
     return motions.at(trace.predicted_from_ns);
@@ -53,7 +53,7 @@ class Recorder : public FrontEndObserver {
   std::map<std::int64_t, BoardMotion> motions;
 };
 
-// A board in a window of its own, and the history that the window is taken from.
+// A board in a separate window, and the history from which the window is extracted.
 struct TrackedBoard {
   MovingBoard moving;
   BoardScene scene = moving.scene();
@@ -149,7 +149,7 @@ void TestWindowTrace::trace_saysWhatTheTrackerDid() {
     }
     if (did.held()) by_time[did.report.time_s] = &did;
   }
-  // And the tracker hands on what it was told.
+  // The tracker passes on its input.
   QVERIFY(observations.views.size() > 25);
   for (const BoardView& view : observations.views) {
     const WindowTrace& did = *by_time.at(view.time_s);
@@ -197,7 +197,7 @@ void TestWindowTrace::details_areKeptWhenAskedFor() {
   }
 }
 
-// Bursts that the fit leaves out are no inliers: off the edge, grazing it, or at another time.
+// Bursts that the fit rejects are not inliers: away from the edge, grazing it, or at another time.
 void TestWindowTrace::inliers_areThoseOfTheFit() {
   TrackedBoard board(allCircles);
   const WindowTrace trace = board.track(TraceDetail::Everything);
@@ -219,7 +219,7 @@ void TestWindowTrace::viewToTrackFrom_isTheLastBefore() {
     const BoardView* const view = viewToTrackFrom(observations, time_s, options);
     return view ? view->time_s : -1.0;
   };
-  QCOMPARE(from(1.0), -1.0);  // itself is not before
+  QCOMPARE(from(1.0), -1.0);  // not before itself
   QCOMPARE(from(1.05), 1.0);
   QCOMPARE(from(1.3), 1.1);
   QCOMPARE(from(1.5), 1.3);

@@ -1,4 +1,4 @@
-// Directions that are turned, and mirrored ones.
+// Rotated directions, and mirrored ones.
 #include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "tests/support/test_program.h"
@@ -20,7 +20,7 @@ class TestBestRotation : public QObject {
     const BestRotation best = bestRotation(products(turn));
     QVERIFY((best.matrix - turn).norm() < 1e-12);
     QVERIFY(best.strengths[0] >= best.strengths[1] && best.strengths[1] >= best.strengths[2]);
-    // Most of what was turned lies along it.
+    // Most of the rotated directions are along it.
     QVERIFY(std::abs(best.main_axis.dot(turn * Eigen::Vector3d::UnitX())) > 0.9);
   }
 

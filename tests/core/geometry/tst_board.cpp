@@ -20,7 +20,7 @@ Board board(BoardType type, int rows, int cols) {
   return made;
 }
 
-// Whether the centres, turned by 180 degrees about the middle of all, are the same centres.
+// True if the centres, rotated by 180 degrees about their mean, are the same centres.
 bool turnedIsTheSame(const Board& board) {
   const std::vector<Eigen::Vector2d> centres = boardPoints_m(board);
   Eigen::Vector2d low = centres[0], high = centres[0];
@@ -98,7 +98,7 @@ class TestBoard : public QObject {
     QCOMPARE(b.hasHalfTurnAmbiguity(), turnedIsTheSame(b));
   }
 
-  // Four a tag, tags from the bottom left, as Kalibr counts them; x to the right, y down from the top left tag's
+  // Four per tag, tags from the bottom left in Kalibr's order; x to the right, y down from the top left tag's
   // corner.
   void aprilGrid_isCountedAsKalibrDoes() {
     Board b = board(BoardType::AprilGrid, 2, 3);
@@ -125,7 +125,7 @@ class TestBoard : public QObject {
     QCOMPARE(charuco.pointCount(), 24);
     QVERIFY((charuco.point_m(7) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-12);
     Board squares = board(BoardType::Checkerboard, 6, 9);
-    QVERIFY_EXCEPTION_THROWN(validate(squares), CalibrationError);  // it has no circles, but a radius
+    QVERIFY_EXCEPTION_THROWN(validate(squares), CalibrationError);  // a radius without circles
     squares.radius_m = 0.0;
     validate(squares);
     QVERIFY(!squares.hasHalfTurnAmbiguity() && squares.pointCount() == 54);
@@ -147,9 +147,9 @@ class TestBoard : public QObject {
     QTest::newRow("too many rows") << 101 << 4 << 0.05 << 0.02 << "board";
     QTest::newRow("too many columns") << 11 << 101 << 0.05 << 0.02 << "board";
     QTest::newRow("no spacing") << 11 << 4 << 0.0 << 0.02 << "board.spacing_m";
-    QTest::newRow("spacing is no number") << 11 << 4 << kNan << 0.02 << "board.spacing_m";
+    QTest::newRow("spacing is not a number") << 11 << 4 << kNan << 0.02 << "board.spacing_m";
     QTest::newRow("no radius") << 11 << 4 << 0.05 << 0.0 << "board.radius_m";
-    QTest::newRow("radius is no number") << 11 << 4 << 0.05 << kNan << "board.radius_m";
+    QTest::newRow("radius is not a number") << 11 << 4 << 0.05 << kNan << "board.radius_m";
     QTest::newRow("touching") << 11 << 4 << 0.05 << 0.0354 << "board.radius_m";
   }
   void whatMakesNoBoard_isRefused() {

@@ -37,7 +37,7 @@ struct NamedCamera {
 
 std::vector<NamedCamera> cameras() {
   CameraIntrinsics omni = camera(CameraModel::OmniRadtan, {1.3, -0.2, 0.05, 0.001, -0.0005});
-  omni.focal_length_px *= 2.0;  // else it sees more than 85 degrees
+  omni.focal_length_px *= 2.0;  // otherwise it sees more than 85 degrees
   return {{"no distortion", camera(CameraModel::PinholeRadtan, {})},
           {"barrel", camera(CameraModel::PinholeRadtan, {-0.36, 0.16, 0.001, -0.0005, 0.0})},
           {"with k3", camera(CameraModel::PinholeRadtan, {-0.4, 0.25, -0.001, 0.002, -0.08})},
@@ -53,7 +53,7 @@ std::vector<NamedCamera> cameras() {
           {"omni, xi < 1", camera(CameraModel::OmniRadtan, {0.8, -0.15, 0.03, -0.001, 0.002})}};
 }
 
-// Those that see beyond 90 degrees, so far as their pixels say.
+// Models that see beyond 90 degrees, as far as their pixels reach.
 std::vector<NamedCamera> wideCameras() {
   CameraIntrinsics sphere = camera(CameraModel::DoubleSphere, {-0.17, 0.59, 0.0, 0.0, 0.0});
   CameraIntrinsics forward = camera(CameraModel::DoubleSphere, {0.3, 0.7, 0.0, 0.0, 0.0});
@@ -66,7 +66,7 @@ std::vector<NamedCamera> wideCameras() {
   return {{"double sphere", sphere}, {"double sphere, xi > 0", forward}, {"eucm", eucm}, {"omni", omni}};
 }
 
-// At this angle off the axis, which way round.
+// A ray at this angle from the optical axis, in this direction.
 Vector3d direction(double angle_deg, double round_rad) {
   const double angle = angle_deg * pi / 180.0;
   return {std::sin(angle) * std::cos(round_rad), std::sin(angle) * std::sin(round_rad), std::cos(angle)};
@@ -91,7 +91,7 @@ CameraIntrinsics withChange(const CameraIntrinsics& camera, const Eigen::VectorX
   return other;
 }
 
-// Pixels all over the image, its corners and its centre of distortion among them.
+// Pixels all over the image, including its corners and its centre of distortion.
 std::vector<Vector2d> pixels(const CameraIntrinsics& camera) {
   std::vector<Vector2d> all = {camera.principal_point_px};
   const int right = camera.resolution_px.width_px - 1, bottom = camera.resolution_px.height_px - 1;
@@ -202,8 +202,8 @@ class TestCameraModel : public QObject {
   }
 
   void pointBeyondTheDistortionsFold_isNotSeen() {
-    // r (1 - 0.5 r^2) grows up to r = sqrt(2/3) = 0.8165, where it is 0.5443; farther
-    // points would come in again.
+    // r (1 - 0.5 r^2) increases up to r = sqrt(2/3) = 0.8165, where it is 0.5443; points farther away would
+    // be imaged nearer to the centre again.
     const CameraIntrinsics c = camera(CameraModel::PinholeRadtan, {-0.5, 0.0, 0.0, 0.0, 0.0});
     QVERIFY(project(c, {0.816, 0.0, 1.0}));
     QVERIFY(!project(c, {0.817, 0.0, 1.0}));
@@ -248,7 +248,7 @@ class TestCameraModel : public QObject {
     }
   }
 
-  // So that what is so large in ideal pixels is as large on the sensor, in the middle.
+  // In the image centre, a size in ideal pixels is the same size on the sensor.
   void idealPixels_haveTheSensorsScaleOnTheAxis_data() { cameraRows(); }
   void idealPixels_haveTheSensorsScaleOnTheAxis() {
     QFETCH(int, index);
@@ -259,7 +259,7 @@ class TestCameraModel : public QObject {
     QVERIFY((2.0 * jacobian.leftCols<2>().diagonal() - idealFocalLength_px(c)).norm() < 1e-9);
   }
 
-  // Every pixel of a wide image has one ray, which may lie behind the camera, and is where that ray is seen.
+  // Every pixel of a wide image has one ray, which may point behind the camera and projects to that pixel.
   void rayAtAnyAngle_isSeenAtItsPixel_data() { wideRows(); }
   void rayAtAnyAngle_isSeenAtItsPixel() {
     QFETCH(int, index);
@@ -301,8 +301,9 @@ class TestCameraModel : public QObject {
     }
   }
 
-  // Up to where the model ends the image moves outwards with the angle; there it is at its edge, and beyond there is
-  // nothing. The angles, of a unit circle seen through one more (docs/maths.md, 3.1), are found by halving.
+  // Up to the model's limit the image radius increases with the angle; at the limit it reaches its maximum,
+  // and beyond it there is no image. The angles for a unit circle seen through a further one are found by
+  // bisection (docs/maths.md, 3.1).
   void imageRadius_growsUpToTheModelsEnd_data() { addRows(cameras()); }
   void imageRadius_growsUpToTheModelsEnd() {
     QFETCH(int, index);
@@ -355,9 +356,9 @@ class TestCameraModel : public QObject {
     }
   }
 
-  // One lens, calibrated three times: the data set TUM VI's left camera (512 x 512) with Kalibr as a pinhole with
-  // equidistant distortion, and as EUCM and double sphere by Basalt's authors. They agree up to 80 degrees off axis to less
-  // than a pixel of 266 from the middle.
+  // One lens, calibrated three times: the left camera of the data set TUM VI (512 x 512), as a pinhole with
+  // equidistant distortion by Kalibr, and as EUCM and double sphere by Basalt's authors. Up to 80 degrees
+  // from the optical axis, at 266 px from the centre, they agree to less than a pixel.
   void publishedCamerasOfOneLens_agree() {
     const auto lens = [](CameraModel model, Vector2d f, Vector2d c, const std::array<double, 5>& d) {
       return CameraIntrinsics{model, {512, 512}, f, c, d};

@@ -60,7 +60,7 @@ class TestCircleConic : public QObject {
       const Eigen::Vector2d point_px = *project(camera(), pose * Eigen::Vector3d(0.05, 0.02, 0.0));
       largest_shift_px = std::max(largest_shift_px, (point_px - *centre_px).norm());
     }
-    QVERIFY2(largest_shift_px > 0.1, "the poses don't tell the conic's centre from the projected point");
+    QVERIFY2(largest_shift_px > 0.1, "the poses do not separate the conic's centre from the projected point");
   }
 
   void jacobian_matchesNumericDifferences() {

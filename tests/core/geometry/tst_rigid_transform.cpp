@@ -11,7 +11,7 @@ using namespace evical;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// A quarter turn about z: b's x is a's y, b's y is a's -x.
+// A quarter turn about z: b's x axis is a's y axis, b's y axis is a's -x axis.
 const RigidTransform kQuarter{quaternionExp({0.0, 0.0, pi / 2.0}), {1.0, 2.0, 3.0}};
 const RigidTransform kAny{quaternionExp({0.4, -1.1, 0.7}), {-0.3, 0.2, 0.9}};
 

@@ -26,7 +26,7 @@ Matrix3d exponentialSeries(const Vector3d& v) {
   return sum;
 }
 
-// Angles on both sides of every threshold below which a function takes its series.
+// Angles on both sides of every threshold below which a function uses its series.
 void angleRows() {
   QTest::addColumn<double>("angle_rad");
   for (const double angle : {0.0, 1e-12, 1e-8, 0.99e-7, 1.01e-7, 0.99e-4, 1.01e-4, 0.99e-3, 1.01e-3, 0.0099,
@@ -72,7 +72,7 @@ class TestSo3 : public QObject {
     QFETCH(double, angle_rad);
     const Vector3d v = angle_rad * kAxis;
     QVERIFY((quaternionLog(quaternionExp(v)) - v).norm() < 1e-15 * (1.0 + 4.0 * angle_rad));
-    // A matrix tells small angles by differences from one, and angles near a half turn by their cosine.
+    // A matrix determines small angles by differences from one, and angles near a half turn by their cosine.
     QVERIFY((so3Log(so3Exp(v)) - v).norm() < 1e-13);
   }
 
@@ -105,7 +105,7 @@ class TestSo3 : public QObject {
   }
 
   void rightJacobian_ofAQuarterTurn_isKnown() {
-    // Across the axis: sin(x)/x along, (1 - cos x)/x sideways; the axis itself stays.
+    // Perpendicular to the axis: sin(x)/x along, (1 - cos x)/x sideways; the axis itself is unchanged.
     const double x = pi / 2.0;
     Matrix3d by_hand;
     by_hand << std::sin(x) / x, 1.0 / x, 0.0, -1.0 / x, std::sin(x) / x, 0.0, 0.0, 0.0, 1.0;

@@ -92,7 +92,7 @@ class TestSo3Spline : public QObject {
       const auto velocity = [&](const Eigen::VectorXd& dt) -> Eigen::VectorXd {
         return evaluate(spline, time_s + dt[0]).angular_velocity_rad_s;
       };
-      // At knots only two derivatives are continuous, so there differences are of second order in the step.
+      // At knots only two derivatives are continuous, so differences there are of second order in the step.
       QVERIFY((test::numericJacobian(rotation, 1, 1e-5) - sample.angular_velocity_rad_s).norm() < 1e-6);
       QVERIFY((test::numericJacobian(velocity, 1, 1e-6) - sample.angular_acceleration_rad_s2).norm() < 2e-2);
     }

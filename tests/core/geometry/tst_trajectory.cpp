@@ -82,7 +82,7 @@ class TestTrajectory : public QObject {
 
   void rates_areTheDerivativesOfThePose_data() {
     QTest::addColumn<double>("time_s");
-    // Differences reach 2 ms to either side, so within a segment: rates bend at knots.
+    // Differences reach 2 ms to either side, so they are taken within a segment: rates have kinks at knots.
     for (const double time_s : {2.003, 2.05, 2.437, 2.997}) QTest::addRow("%g s", time_s) << time_s;
   }
   void rates_areTheDerivativesOfThePose() {

@@ -106,7 +106,8 @@ Scenario makeScenario(const SimulationOptions& options) {
   return scenario;
 }
 
-// The same pattern one row on: half a column aside and one spacing down; circles beyond the board are lost.
+// The same pattern shifted by one row: half a column sideways and one spacing down; circles beyond the board
+// are lost.
 void shiftByRow(BoardView& view, const Board& board) {
   std::vector<CircleObservation> shifted;
   for (CircleObservation circle : view.circles) {
@@ -130,7 +131,7 @@ std::optional<BoardView> observe(const SinusoidMotion& motion, const Scenario& s
     if (!truth.inside) continue;
     CircleObservation circle;
     circle.circle = truth.circle;
-    // Each circle has a time of its own; 5 ms of a smooth path are straight to a hundredth of a pixel.
+    // Each circle has a separate time; 5 ms of a smooth path are straight to a hundredth of a pixel.
     circle.time_s = time_s + jitter(random);
     circle.velocity_px_s = truth.velocity_px_s;
     circle.centre_px = truth.centre_px + truth.velocity_px_s * (circle.time_s - time_s) +

@@ -21,7 +21,7 @@ SimulatedInput twoImus(double offset_s) {
   return simulateInput(options);
 }
 
-// Good enough that the batch converges.
+// Accurate enough that the batch converges.
 void verifyRoughlyForFurtherImus(const ImuState& found, const RigidTransform& reference_from_imu,
                                  double time_offset_s) {
   QVERIFY(kDegPerRad *
@@ -55,7 +55,7 @@ class TestFurtherImus : public QObject {
     QVERIFY((found.accelerometer_bias_m_s2 - truth.accelerometer_bias_m_s2).norm() < 0.1);
   }
 
-  // The reference need not be the first of the list.
+  // The reference need not be the first in the list.
   void referenceBehindTheOther_isUsed() {
     SimulatedInput simulated = twoImus(0.03);
     std::swap(simulated.input.imus[0], simulated.input.imus[1]);

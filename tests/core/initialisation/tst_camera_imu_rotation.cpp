@@ -59,7 +59,7 @@ class TestCameraImuRotation : public QObject {
     const auto hand_eye = handEyeOf(simulated, simulation.time_offset_s);
     QVERIFY(hand_eye.has_value());
     QVERIFY(hand_eye->axis_ratio < InitialisationOptions().least_axis_ratio);
-    // The simulated camera turns about its own y axis.
+    // The simulated camera rotates about its own y axis.
     const Eigen::Vector3d axis =
         simulated.truth.cameras[0].imu_from_camera.rotation * Eigen::Vector3d::UnitX();
     QVERIFY(std::abs(axis.dot(hand_eye->main_axis_in_imu)) > 0.999 ||

@@ -24,7 +24,7 @@ SimulatedInput twoCameras() {
   return simulated;
 }
 
-// They see the board in turns of `turn_s`, with `gap_s` between.
+// They see the board alternately for `turn_s`, with `gap_s` between.
 SimulatedInput camerasInTurns(double turn_s, double gap_s) {
   SimulatedInput simulated = twoCameras();
   for (std::size_t k = 0; k < 2; ++k) {
@@ -41,7 +41,7 @@ struct Errors {
   double rotation_deg = 0.0, translation_m = 0.0, time_offset_s = 0.0;
 };
 
-// Of camera `k` against the reference.
+// Error of camera `k` relative to the reference.
 Errors errorsOfCamerasAlone(const CameraState& camera, const SimulatedInput& simulated, std::size_t reference,
                             std::size_t k) {
   const SimulatedCamera &from = simulated.truth.cameras[k], &to = simulated.truth.cameras[reference];
@@ -51,7 +51,7 @@ Errors errorsOfCamerasAlone(const CameraState& camera, const SimulatedInput& sim
           std::abs(camera.time_offset_s - (from.time_offset_s - to.time_offset_s))};
 }
 
-// Good enough that the batch converges.
+// Accurate enough that the batch converges.
 void verifyRoughlyForCamerasAlone(const Initialisation& found, const SimulatedInput& simulated,
                                   std::size_t reference, std::size_t k, std::size_t state) {
   const Errors errors = errorsOfCamerasAlone(found.state.cameras[state], simulated, reference, k);
@@ -60,7 +60,7 @@ void verifyRoughlyForCamerasAlone(const Initialisation& found, const SimulatedIn
   QVERIFY(errors.time_offset_s < 2e-3);
 }
 
-// The batch ends nearer to the truth, and its sigmas say how near.
+// The batch ends nearer to the truth, with sigmas that match its errors.
 void verifyBatch(const SimulatedInput& simulated, const Initialisation& found) {
   const BatchSolution solution = optimiseBatch(simulated.input, found.state, {}, {});
   const UncertaintyEstimate estimate = estimateUncertainty(simulated.input, solution, {}, {});
@@ -68,8 +68,8 @@ void verifyBatch(const SimulatedInput& simulated, const Initialisation& found) {
   const CameraUncertainty& sigma = estimate.report.cameras[1];
   const double rotation_std_deg = kDegPerRad * sigma.rotation_std_rad.norm(),
                translation_std_m = sigma.translation_std_m.norm();
-  qInfo("in the end off by %.3f deg (%.3f), %.2f mm (%.2f), %.2f ms (%.2f)", errors.rotation_deg,
-        rotation_std_deg, errors.translation_m * 1e3, translation_std_m * 1e3, errors.time_offset_s * 1e3,
+  qInfo("final errors %.3f deg (%.3f), %.2f mm (%.2f), %.2f ms (%.2f)", errors.rotation_deg, rotation_std_deg,
+        errors.translation_m * 1e3, translation_std_m * 1e3, errors.time_offset_s * 1e3,
         sigma.time_offset_std_s * 1e3);
   constexpr double kSigmas = 3.0;
   QVERIFY(errors.rotation_deg < kSigmas * rotation_std_deg);
@@ -105,7 +105,7 @@ class TestCamerasAlone : public QObject {
     const SimulatedInput simulated = camerasInTurns(1.0, 0.02);
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
     const Errors errors = errorsOfCamerasAlone(found.state.cameras[1], simulated, 0, 1);
-    qInfo("off by %.3f deg, %.1f mm, %.1f ms", errors.rotation_deg, errors.translation_m * 1e3,
+    qInfo("errors %.3f deg, %.1f mm, %.1f ms", errors.rotation_deg, errors.translation_m * 1e3,
           errors.time_offset_s * 1e3);
     QVERIFY(errors.rotation_deg < 2.0);
     QVERIFY(errors.translation_m < 0.03);
@@ -122,7 +122,7 @@ class TestCamerasAlone : public QObject {
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
     QCOMPARE(found.state.cameras[1].time_offset_s, offset_s);
     const Errors errors = errorsOfCamerasAlone(found.state.cameras[1], simulated, 0, 1);
-    qInfo("off by %.3f deg, %.1f mm", errors.rotation_deg, errors.translation_m * 1e3);
+    qInfo("errors %.3f deg, %.1f mm", errors.rotation_deg, errors.translation_m * 1e3);
     QVERIFY(errors.rotation_deg < 1.0);
     QVERIFY(errors.translation_m < 0.02);
   }

@@ -34,7 +34,7 @@ class TestCameraPoses : public QObject {
   Q_OBJECT
 
  private slots:
-  // Circles of different times, ellipses' centres instead of circles' centres: all accounted for.
+  // Circles of different times, centres of ellipses instead of circles: both are taken into account.
   void estimate_withoutNoise_isExact() {
     SimulationOptions options;
     options.duration_s = 4.0;
@@ -55,7 +55,7 @@ class TestCameraPoses : public QObject {
     const SimulatedInput simulated = simulateInput(options);
     const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
     const PoseErrors errors = errorsOfCameraPoses(found.poses, simulated);
-    QVERIFY(errors.rotation_rad < 0.006);  // 0.15 px over an image of 150 px, tilt three times worse
+    QVERIFY(errors.rotation_rad < 0.006);  // 0.15 px over an image of 150 px, three times worse for tilt
     QVERIFY(errors.translation_m < 0.004);
   }
 

@@ -104,8 +104,8 @@ class TestGravityAlignment : public QObject {
     QVERIFY((found.cameras_in_imu_m[0] - lever).norm() < 5e-3);
   }
 
-  // A board that is given 10 % too small makes all distances 10 % too short. Scales and axes of the
-  // accelerometer that are off by percents must not pass for that.
+  // A board size given 10 % too small makes all distances 10 % too short. Errors of some percent in scales
+  // and axes of the accelerometer must not be mistaken for that.
   void align_tellsTheBoardsScale_data() {
     QTest::addColumn<double>("scale");
     QTest::addColumn<bool>("skewed");
@@ -134,7 +134,7 @@ class TestGravityAlignment : public QObject {
     QVERIFY2(found.board_scale_std > 1e-4 && found.board_scale_std < 0.01, qPrintable(text));
   }
 
-  // Hardly any motion: the lever is unknown and must stay small.
+  // Hardly any motion: the lever arm is unknown, and its estimate must stay small.
   void align_onWeakMotion_doesNotExplode() {
     SimulationOptions simulation;
     simulation.duration_s = 6.0;
@@ -145,7 +145,7 @@ class TestGravityAlignment : public QObject {
     QVERIFY(found.board_scale_std > 0.02);
   }
 
-  // Rotation about one axis says nothing about the camera's angle about it; accelerations do.
+  // Rotation about one axis does not determine the camera's angle about it; accelerations do.
   void findTurn_undoesTurn_data() {
     QTest::addColumn<double>("turn_rad");
     QTest::newRow("none") << 0.0;

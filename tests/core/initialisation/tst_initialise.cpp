@@ -51,7 +51,7 @@ class TestInitialise : public QObject {
   Q_OBJECT
 
  private slots:
-  // As if the samples had come from a gyroscope that is not turned.
+  // Transforms the samples into those of an aligned gyroscope.
   void knownGyroscopeRotation_isTurnedBack() {
     SimulationOptions simulation = shortRecording();
     simulation.second_imu = true;
@@ -102,10 +102,10 @@ class TestInitialise : public QObject {
     SimulatedInput simulated = simulateInput(shortRecording());
     simulated.input.cameras[0].prior.time_offset = KnownNumber{0.6};
     const Initialisation initial = initialise(simulated.input, {}, RunContext{});
-    QVERIFY(mentions(initial.warnings, "time offset of 0.6000 s that is given"));
+    QVERIFY(mentions(initial.warnings, "given time offset of 0.6000 s"));
   }
 
-  // Good enough that the batch converges.
+  // Accurate enough that the batch converges.
   void initialise_recoversTruth_data() {
     QTest::addColumn<Change>("change");
     QTest::addColumn<double>("search_s");
@@ -183,8 +183,8 @@ class TestInitialise : public QObject {
     QTest::addColumn<QString>("says");
     QTest::newRow("right") << 1.0 << QString();
     QTest::newRow("10 % too small") << 1.0 / 1.1
-                                    << "seems (9|10|11) % larger than spacing_m says \\(0.04545 m\\)";
-    QTest::newRow("10 % too large") << 1.0 / 0.9 << "seems (9|10|11) % smaller than spacing_m says";
+                                    << "seems (9|10|11) % larger than specified by spacing_m \\(0.04545 m\\)";
+    QTest::newRow("10 % too large") << 1.0 / 0.9 << "seems (9|10|11) % smaller than specified by spacing_m";
   }
   void initialise_withWrongSpacing_saysSo() {
     QFETCH(double, given);
@@ -264,11 +264,12 @@ class TestInitialise : public QObject {
         },
         "rotation rates do not agree");
     row(
-        "no samples", [](auto& input) { input.imus[0].samples.clear(); }, "has 0 samples only");
+        "no samples", [](auto& input) { input.imus[0].samples.clear(); }, "has only 0 usable samples");
     row(
         "ambiguous board", [](auto& input) { input.board.rows = 10; }, "half a turn");
     row(
-        "few views", [](auto& input) { input.cameras[0].observations.views.resize(6); }, "was seen in 6 of");
+        "few views", [](auto& input) { input.cameras[0].observations.views.resize(6); },
+        "was detected in 6 of");
     row(
         "wrong focal length and board",
         [](auto& input) {
@@ -278,7 +279,7 @@ class TestInitialise : public QObject {
         },
         "circles fit the board in");
     row(
-        "IMU stands still",
+        "IMU at rest",
         [](auto& input) {
           for (ImuSample& sample : input.imus[0].samples) sample.angular_rate_rad_s = {0.02, 0.0, 0.0};
         },

@@ -26,7 +26,7 @@ ImuData imuIn(Motion motion, double rate_hz = 1000.0) {
   simulation.duration_s = 10.0;
   simulation.motion = motion;
   simulation.imu_rate_hz = rate_hz;
-  simulation.window_s = 0.5;  // hardly anything looks at the board
+  simulation.window_s = 0.5;  // few views of the board
   return simulateInput(simulation).input.imus.front();
 }
 
@@ -36,7 +36,7 @@ KnotSpacing spacingOf(const ImuData& imu, const ViewPrecision& views = {}) {
   return knotSpacing(imu, start_ns, {rotation.begin_s(), rotation.end_s()}, rotation, views);
 }
 
-// At rest, with the noise that is given times a factor.
+// At rest, with the given noise times a factor.
 ImuData imuAtRest(double noise = 1.0, double rate_hz = 1000.0) {
   constexpr double kDuration_s = 20.0;
   ImuData imu;
@@ -55,7 +55,7 @@ ImuData imuAtRest(double noise = 1.0, double rate_hz = 1000.0) {
   return imu;
 }
 
-// As a sensor's own filter does.
+// Low-pass filter like that of a sensor.
 void smooth(Samples& samples) {
   constexpr std::size_t kTaps = 5;
   const Samples raw = samples;
@@ -69,7 +69,7 @@ void smooth(Samples& samples) {
   }
 }
 
-// Of the batch from where initialisation leaves it.
+// Error of the batch that starts from the initialisation.
 NoiseScales scalesAfterBatch(const CalibrationInput& input, double knot_spacing_s) {
   InitialisationOptions options;
   options.knot_spacing_s = knot_spacing_s;
@@ -104,11 +104,11 @@ class TestKnotSpacing : public QObject {
     QFETCH(int, motion);
     QFETCH(double, least_ms);
     QFETCH(double, most_ms);
-    const ViewPrecision views{2e-5, 1.5e-5};  // 0.03 px, and forty circles a view
+    const ViewPrecision views{2e-5, 1.5e-5};  // 0.03 px, and forty circles per view
     const KnotSpacing found = spacingOf(imuIn(static_cast<Motion>(motion)), views);
     const double spacing_ms = 1e3 * found.spacing_s();
     QVERIFY2(spacing_ms >= least_ms && spacing_ms <= most_ms, qPrintable(describeForKnotSpacing(found)));
-    // Accelerations are splines of a lower degree, which follow less.
+    // Accelerations are splines of a lower degree, which follow less closely.
     QVERIFY2(found.rates.spacing_s >= found.accelerations.spacing_s,
              qPrintable(describeForKnotSpacing(found)));
     for (const KnotDemand& demand : {found.rates, found.accelerations})
@@ -139,13 +139,13 @@ class TestKnotSpacing : public QObject {
     QFETCH(ImuData, imu);
     QVERIFY2(spacingOf(imu).spacing_s() == kWidestKnots_s,
              qPrintable(describeForKnotSpacing(spacingOf(imu))));
-    // Nor where views are so good that noise hides what they would see.
+    // Nor if views are so accurate that the noise hides their information.
     const ViewPrecision views{1e-6, 1e-6};
     QVERIFY2(spacingOf(imu, views).spacing_s() > kUsualKnot_s,
              qPrintable(describeForKnotSpacing(spacingOf(imu, views))));
   }
 
-  // What views tell is less than what a poor IMU's noise would hide.
+  // Views add less than a poor IMU's noise would hide.
   void views_askForCloserKnots() {
     ImuData imu = imuIn(Motion::Fast);
     std::mt19937_64 random(4);
@@ -204,7 +204,7 @@ class TestKnotSpacing : public QObject {
     QVERIFY2(found.spacing_s() <= 4.0 / rate_hz + 3e-3, qPrintable(describeForKnotSpacing(found)));
   }
 
-  // A density with a wide margin is a habit, and no motion's measure.
+  // A noise density with a wide margin is common practice, and not a measure of the motion.
   void densitiesTenTimesTooLarge_changeLittle() {
     ImuData imu = imuIn(Motion::Shaky);
     const double right_s = spacingOf(imu).spacing_s();
@@ -222,11 +222,12 @@ class TestKnotSpacing : public QObject {
     const double fixed = scalesAfterBatch(input, 0.02).accelerometers[0];
     QVERIFY2(fixed > 4.0, qPrintable(QString::number(fixed)));
     const double followed = scalesAfterBatch(input, 0.0).accelerometers[0];
-    // Knots with 2.5 samples each take 40 % of the noise's variance along.
+    // With 2.5 samples per knot interval, splines absorb 40 % of the noise's variance.
     QVERIFY2(followed > 0.7 && followed < 1.3, qPrintable(QString::number(followed)));
   }
 
-  // There nothing holds close knots but views: the rest of the recording tells the same as without the gap.
+  // In the gap only views constrain closely spaced knots: the rest of the recording gives the same result as
+  // without the gap.
   void shakyHandsWithAGap_areSolved() {
     SimulationOptions simulation;
     simulation.duration_s = 6.0;

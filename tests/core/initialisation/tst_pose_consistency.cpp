@@ -13,8 +13,8 @@ using namespace evical::test;
 
 namespace {
 
-// The pose of a plane that looks nearly the same from far away: tilted the other way
-// against the line of sight.
+// The second pose of a plane that looks nearly the same from far away: tilted the other way relative to the
+// line of sight.
 RigidTransform mirrored(const RigidTransform& world_from_camera) {
   const Eigen::Vector3d sight = (world_from_camera.rotation * Eigen::Vector3d::UnitZ()).normalized();
   const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
@@ -38,7 +38,7 @@ Prepared prepare() {
   options.time_offset_s = 0.3;
   p.simulated = simulateInput(options);
   p.poses = estimateCameraPoses(p.simulated.input.cameras[0], p.simulated.input.board, {}).poses;
-  // A degree off, as a first hand-eye may be.
+  // An error of one degree, as in a first hand-eye estimate.
   p.hand_eye.reference_from_sensor =
       p.simulated.truth.cameras[0].imu_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
   p.hand_eye.time_offset_s = 0.301;
@@ -50,7 +50,7 @@ GyroRotation gyroOf(const SimulatedInput& simulated) {
                       simulated.truth.imus[0].gyroscope_bias_rad_s);
 }
 
-// Of those within the gyroscope's samples: of others nobody can tell.
+// Poses within the gyroscope's samples; others cannot be checked.
 double worstError_rad(const std::vector<CameraPose>& poses, const SimulatedInput& simulated) {
   const SinusoidMotion motion(simulated.truth);
   double worst = 0.0;
@@ -78,7 +78,7 @@ class TestPoseConsistency : public QObject {
     QVERIFY(result.usual_rad < 0.01);
   }
 
-  // A third of the views chose the plane's other pose: the gyroscope puts them right.
+  // A third of the views has the plane's other pose: the gyroscope corrects them.
   void keep_swapsMirroredPoses() {
     Prepared p = prepare();
     int wrong = 0;

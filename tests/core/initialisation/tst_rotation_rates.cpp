@@ -16,7 +16,7 @@ class TestRotationRates : public QObject {
   void initTestCase() { simulated_ = test::simulatePass(6.0); }
 
   void rotationRates_agreeOnlyWithTheTimeOffset() {
-    // The simulated clocks differ by 7.3 ms: with the true offset what is left is the noise of single views.
+    // The simulated clocks differ by 7.3 ms: with the true offset, only the noise of single views remains.
     const CameraState camera{{}, simulated_.truth.cameras[0].time_offset_s, 0.0};
     ImuState imu;
     imu.gyroscope_bias_rad_s = simulated_.truth.imus[0].gyroscope_bias_rad_s;

@@ -30,7 +30,7 @@ Scenario scenarioOf(const char* name, std::uint64_t seed = 0) {
   return scenario;
 }
 
-// What a front end without intrinsics would see: the sensor's own pixels, edges ahead by `lead_px`.
+// Measurements of a front end without intrinsics: the sensor's own pixels, edges ahead by `lead_px`.
 BoardObservations sensorObservations(const Scenario& scenario, double lead_px = 0.0,
                                      double noise_px = kNoise_px) {
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
@@ -72,7 +72,7 @@ std::string failure(const std::function<void()>& run) {
   return {};
 }
 
-// The views that `keep` wants.
+// The views that `keep` accepts.
 BoardObservations onlyViews(BoardObservations observations,
                             const std::function<bool(const BoardView&)>& keep) {
   std::erase_if(observations.views, [&](const BoardView& view) { return !keep(view); });
@@ -111,7 +111,7 @@ class TestIntrinsics : public QObject {
       Eigen::VectorXd shared(10);
       shared << 262.0, 263.0, 171.0, 131.0, Eigen::Map<const Eigen::VectorXd>(distortion.data(), 5), 0.2;
       const auto residualAt = [&](const Eigen::VectorXd& delta) -> Eigen::VectorXd {
-        // Coefficients of the distortion are small numbers, lengths in pixels large ones.
+        // Distortion coefficients are small numbers, lengths in pixels are large ones.
         Eigen::VectorXd moved = shared + delta.head(10);
         std::array<double, kPoseBlock> start{}, at{};
         writePose(pose, start.data());
@@ -184,8 +184,8 @@ class TestIntrinsics : public QObject {
     QVERIFY2(rms > 0.7 && rms < 1.4, qPrintable(QString::number(rms)));
   }
 
-  // The scenario's board is 0.7 m away, give or take 0.14 m and what it is beside the axis, and tilted by up to 32 deg
-  // to each side.
+  // The scenario's board is 0.7 m away, plus or minus 0.14 m and its offset from the optical axis, and tilted
+  // by up to 32 deg to each side.
   void story_tellsOfModelsAndViews() {
     const Scenario scenario = scenarioOf("intrinsics_davis346");
     IntrinsicsStory story;
@@ -302,7 +302,7 @@ class TestIntrinsics : public QObject {
     QVERIFY(result.status == CalibrationStatus::Doubtful);
     QVERIFY2(result.reason.find("no views reach the left side of the image") != std::string::npos,
              result.reason.c_str());
-    // Where nothing was seen, less is known than with views there.
+    // Image regions without observations have a larger uncertainty than those with views.
     const IntrinsicsResult whole = estimateForIntrinsics(truth, sensorObservations(truth));
     QVERIFY(whole.advice.empty());
     const auto left = static_cast<std::size_t>(whole.image.columns * (whole.image.rows / 2));
@@ -335,7 +335,7 @@ class TestIntrinsics : public QObject {
     moved = camera;
     moved.focal_length_px *= 1.01;
     const ProjectionDifference difference = projectionDifference(camera, moved);
-    // 1 % of each pixel's distance from the middle.
+    // 1 % of each pixel's distance from the centre.
     QVERIFY(difference.rms_px > 1.1 && difference.rms_px < 1.4);
     QVERIFY(difference.max_px > 1.9 && difference.max_px < 2.3);
   }

@@ -56,7 +56,7 @@ IntrinsicsVector errorsOf(const IntrinsicsResult& result, const CameraIntrinsics
   return found - expected;
 }
 
-// Of which the pixel of least angle is asked.
+// Angles at which the pixel is computed, with the smallest one.
 double furthestCorner_deg(const test::WideViews& wide, unsigned seed) {
   double least_z = 1.0;
   for (const BoardView& view : test::observeWide(wide, seed).views)
@@ -100,14 +100,14 @@ class TestWideLenses : public QObject {
         estimateForWideLenses(wide, 1, automatic ? IntrinsicsModel::Automatic : named(lens));
     QCOMPARE(result.intrinsics.model, lens);
     QVERIFY2(result.status == CalibrationStatus::Ok, result.reason.c_str());
-    // Corners beyond 85 degrees, which have no ideal pixels, are used as all others are.
+    // Corners beyond 85 degrees, which have no ideal pixels, are used like all others.
     QVERIFY2(result.circles_rejected < result.circles_used / 100, qPrintable(text(result.circles_rejected)));
     const IntrinsicsVector error = errorsOf(result, wide.camera), sigmas = result.standardDeviations();
     for (int i = 0; i < 9; ++i)
       QVERIFY2(std::abs(error[i]) <= 4.0 * sigmas[i] + 1e-12,
                qPrintable(QString("%1: %2 +- %3").arg(i).arg(error[i]).arg(sigmas[i])));
     const double difference_px = projectionDifference(wide.camera, result.intrinsics).rms_px;
-    qInfo("off by %.4f px RMS (sigma %.4f), furthest point %.1f deg off axis, %d points, normalised RMS %.3f",
+    qInfo("error %.4f px RMS (sigma %.4f), furthest point %.1f deg off axis, %d points, normalised RMS %.3f",
           difference_px, result.image.rms_px, furthest_deg, result.circles_used, result.normalised_rms);
     QVERIFY2(difference_px < 0.1, qPrintable(text(difference_px)));
     QVERIFY(difference_px < 3.0 * result.image.rms_px);
@@ -137,7 +137,7 @@ class TestWideLenses : public QObject {
     QVERIFY2(rms > 0.6 && rms < 1.3, qPrintable(text(rms)));
   }
 
-  // A pinhole's views have no use for a double sphere.
+  // Views of a pinhole camera do not need a double sphere.
   void automatic_staysWithAPinhole() {
     test::WideViews wide = wideViews(CameraModel::PinholeRadtan, 0.0);
     wide.camera = {
@@ -148,7 +148,7 @@ class TestWideLenses : public QObject {
     QVERIFY(projectionDifference(wide.camera, result.intrinsics).rms_px < 0.1);
   }
 
-  // Behind the camera's image plane and beside it, too.
+  // Also for points behind the image plane and to the side.
   void boardPose_isFoundAtAnyAngle() {
     const test::WideViews wide = wideViews(CameraModel::DoubleSphere, 0.0);
     const IntrinsicsOptions options;
@@ -169,7 +169,7 @@ class TestWideLenses : public QObject {
     QVERIFY2(beside > 50, qPrintable(text(beside)));
   }
 
-  // One wide lens in the numbers of the other models; how near they come is what an export says.
+  // One wide lens, expressed in the other models; an export states the fit error.
   void fitLens_comesNear_data() {
     QTest::addColumn<int>("from");
     QTest::addColumn<int>("to");
@@ -193,17 +193,17 @@ class TestWideLenses : public QObject {
     const LensFit fit = fitLens(camera, model, coefficientCount(model));
     QCOMPARE(fit.camera.model, model);
     QCOMPARE(fit.whole_image, model != CameraModel::PinholeEquidistant);
-    qInfo("off by %.3g px RMS, %.3g px at most", fit.rms_px, fit.worst_px);
+    qInfo("error %.3g px RMS, %.3g px at most", fit.rms_px, fit.worst_px);
     QVERIFY2(fit.worst_px <= at_most_px, qPrintable(text(fit.worst_px)));
   }
 
-  // f and xi may both move far while what they make of the image stays.
+  // f and xi may both change much with little effect on the image.
   void focalLengthSigma_isThatOfTheScaleOnTheAxis() {
     CameraIntrinsics camera = test::wideCamera(CameraModel::DoubleSphere);
     IntrinsicsMatrix covariance = IntrinsicsMatrix::Zero();
     const double f = camera.focal_length_px.x(), xi = camera.distortion[0];
     camera.focal_length_px.y() = f;
-    // d ln f = d ln (1 + xi): the scale stays.
+    // d ln f = d ln (1 + xi): the scale is unchanged.
     IntrinsicsVector along = IntrinsicsVector::Zero();
     along << f, f, 0.0, 0.0, 1.0 + xi, 0.0, 0.0, 0.0, 0.0;
     covariance = 1e-2 * along * along.transpose();

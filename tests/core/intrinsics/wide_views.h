@@ -1,4 +1,4 @@
-// Board views of wide lenses, corners and circles, wherever in the image.
+// Board views of wide lenses, corners and circles, anywhere in the image.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -37,8 +37,8 @@ inline CameraIntrinsics wideCamera(CameraModel model) {
   return camera;
 }
 
-// Of the sensor's own pixels, where nothing is known of the lens. Circles so long as all of them is in front, for their
-// ellipses' centres are what the front end would measure in the ideal pixels of the true lens.
+// In the sensor's own pixels, for an unknown lens. Circles only if all of a circle is in front of the camera,
+// since the front end would measure ellipse centres in the ideal pixels of the true lens.
 inline BoardObservations observeWide(const WideViews& wide, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -59,7 +59,7 @@ inline BoardObservations observeWide(const WideViews& wide, unsigned seed) {
     const double off_rad = wide.furthest_deg * M_PI / 180.0 * std::sqrt(0.5 + 0.5 * uniform(generator));
     const double round_rad = M_PI * uniform(generator);
     const Eigen::Vector3d axis(-std::sin(round_rad), std::cos(round_rad), 0.0);
-    // Seen from the front, then tilted and turned, then moved about to where it is in the image.
+    // Seen from the front, then tilted and rotated, then moved to its position in the image.
     const Eigen::Quaterniond off = quaternionExp(off_rad * axis);
     const Eigen::Quaterniond tilt =
         quaternionExp({0.6 * uniform(generator), 0.6 * uniform(generator), M_PI * uniform(generator)});

@@ -1,4 +1,4 @@
-// Simulated drives (config/scenarios/maintain) as the estimators take them.
+// Simulated drives (config/scenarios/maintain) in the form of the estimators' inputs.
 #pragma once
 
 #include "core/maintenance/maintenance_options.h"
@@ -17,7 +17,7 @@ DriveScenario driveScenario(const std::string& name, std::uint64_t seed = 1);
 WindowMeans meansOf(const DriveScenario& scenario, std::size_t imu = 0);
 StopCalibration stopsOf(const DriveScenario& scenario, const MaintenanceOptions& options = {});
 
-// Of the second IMU against the first, about what the calibration had said of them.
+// Errors of the second IMU relative to the first, about the values of the calibration.
 std::vector<PairWindow> pairWindows(const DriveScenario& scenario);
 PairModel pairModel(const DriveScenario& scenario);
 PairTrack trackOf(const DriveScenario& scenario, double alarm_probability = 0.005);

@@ -1,4 +1,4 @@
-// How two IMUs' clocks lie to each other, from the norms of their rates.
+// Time offset between two IMUs' clocks, from the norms of their rates.
 #include "core/maintenance/clock_agreement.h"
 #include "core/maintenance/maintenance_options.h"
 #include "tests/support/test_program.h"
@@ -9,7 +9,7 @@ using namespace evical;
 
 namespace {
 
-// A shake whose norm says when it is, at 200 Hz.
+// A shake whose norm determines its time, at 200 Hz.
 AngularSpeedSeries shaken(double from_s, double to_s, double later_s) {
   AngularSpeedSeries norms;
   const auto first = static_cast<int>(std::lround(from_s / 0.005)),
@@ -37,7 +37,7 @@ class TestClockAgreement : public QObject {
     }
   }
 
-  // Lags at which too little overlaps have no correlation, and bend no parabola.
+  // Lags with too little overlap have no correlation, and do not affect the parabola.
   void shortOverlap_movesNothing() {
     for (const double overlap_s : {3.02, 3.1, 3.3}) {
       const ClockAgreement found = crossCorrelateClocks(

@@ -1,4 +1,4 @@
-// Smoothed signals do not depend on where samples lie; slopes are those of the smoothed signal; gaps are seen.
+// Smoothed signals do not depend on sample times; slopes are those of the smoothed signal; gaps are detected.
 #include "core/maintenance/gaussian_smoother.h"
 #include "tests/support/test_program.h"
 
@@ -43,7 +43,7 @@ class TestGaussianSmoother : public QObject {
     const double damped = std::exp(-0.5 * std::pow(kTurn_rad_s * kSigma_s, 2));
     const double value = damped * std::sin(kTurn_rad_s * 1.234),
                  slope = damped * kTurn_rad_s * std::cos(kTurn_rad_s * 1.234);
-    // Five sigmas of the Gaussian leave out 1.5e-5 of a slope.
+    // Truncation of the Gaussian at five sigmas costs 1.5e-5 of a slope.
     QVERIFY(std::abs(point->rate_rad_s.x() - value) < 1e-5);
     QVERIFY(std::abs(point->rate_slope_rad_s2.x() - slope) < 5e-5 * kTurn_rad_s);
     QVERIFY(std::abs(point->force_slope_m_s3.y() - slope) < 5e-5 * kTurn_rad_s);

@@ -1,4 +1,4 @@
-// Sums of noise with and without a memory, as statistics of windows.
+// Sums of noise with and without autocorrelation, as statistics of windows.
 #include "core/maintenance/noise_autocorrelation.h"
 #include "tests/support/test_program.h"
 
@@ -13,7 +13,7 @@ using namespace evical;
 class TestNoiseColour : public QObject {
   Q_OBJECT
 
-  // Of windows whose noise keeps this part of the one before, each of unit variance.
+  // Windows of noise of unit variance that keeps this part of the window before.
   static NoiseAutocorrelation colourOf(double kept, std::size_t windows) {
     std::mt19937 generator(11);
     std::normal_distribution<double> normal;
@@ -49,8 +49,8 @@ class TestNoiseColour : public QObject {
       QVERIFY2(colour.of(n) < 1.15, qPrintable(QString::number(colour.of(n))));
   }
 
-  // Of a memory of the first order, sums are (1 + p) / (1 - p) as wide in the end; where it is longer than a window, as
-  // here, up to a quarter of that is missed.
+  // With first-order autocorrelation p, the variance of sums is (1 + p) / (1 - p) times as large in the
+  // limit; if it lasts longer than a window, as here, up to a quarter of that is missed.
   void memory_isFound() {
     const NoiseAutocorrelation colour = colourOf(0.5, 4000);
     QVERIFY2(colour.settled > 2.2 && colour.settled < 3.4, qPrintable(QString::number(colour.settled)));

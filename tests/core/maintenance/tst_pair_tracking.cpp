@@ -1,5 +1,5 @@
-// Two IMUs over time: what they say of each other with sigmas that hold, steps with their time and their name, and no
-// alarm where nothing happens.
+// Two IMUs over time: relative quantities with correct sigmas, steps with their time and quantity, and no
+// alarm without a change.
 #include "tests/core/maintenance/drive_data.h"
 #include "tests/support/test_program.h"
 
@@ -20,7 +20,7 @@ class TestPairTracking : public QObject {
       const PairTrack track = trackOf(driveScenario("none", static_cast<std::uint64_t>(seed)));
       squares += (track.start.array().square() / track.start_covariance.diagonal().array()).matrix();
     }
-    const double ratio = std::sqrt(squares.head<7>().mean() / kSeeds);  // biases walk beside
+    const double ratio = std::sqrt(squares.head<7>().mean() / kSeeds);  // biases walk in addition
     QVERIFY2(ratio > 0.7 && ratio < 1.4, qPrintable(QString::number(ratio)));
   }
 
@@ -85,8 +85,8 @@ class TestPairTracking : public QObject {
       QVERIFY(trackOf(driveScenario("none", seed), 0.01).steps.empty());
   }
 
-  // Of mounts that shake or bend for a tenth of a second or for several: no alarm above the stated rate, and sigmas that
-  // hold.
+  // Mounts that vibrate or bend for a tenth of a second or for several: no alarm above the stated rate, and
+  // correct sigmas.
   void shaking_isNoChange_data() {
     QTest::addColumn<double>("rate_rad_s");
     QTest::addColumn<double>("force_m_s2");

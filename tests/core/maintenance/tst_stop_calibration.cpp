@@ -1,4 +1,4 @@
-// Stops: found, and what they say of an accelerometer, with sigmas that hold over seeds.
+// Stops: their detection, and the accelerometer calibration from them, with correct sigmas over seeds.
 #include "core/recording/recording_reader.h"
 #include "core/synthetic/drive_motion.h"
 #include "core/synthetic/drive_simulator.h"
@@ -26,7 +26,7 @@ class TestStopCalibration : public QObject {
     const DriveScenario scenario = driveScenario("drive_stops");
     const DriveMotionModel motion(scenario);
     const StopCalibration found = stopsOf(scenario);
-    QCOMPARE(found.stops.size(), std::size_t{13});  // the last one after the last way
+    QCOMPARE(found.stops.size(), std::size_t{13});  // the last one after the last motion
     for (const StopMean& stop : found.stops)
       for (double t = stop.from_s; t <= stop.to_s; t += 0.1)
         QVERIFY2(motion.at(t).angular_velocity_in_body_rad_s.norm() < 0.01, qPrintable(QString::number(t)));
@@ -69,14 +69,14 @@ class TestStopCalibration : public QObject {
     DriveScenario scenario = driveScenario("drive_stops");
     scenario.motion.tilt_rad = 0.05;
     const StopCalibration found = stopsOf(scenario);
-    QVERIFY2(!found.weakest.empty(), "nothing is named");
+    QVERIFY2(!found.weakest.empty(), "no direction is named");
     QVERIFY(found.weakest_sigma > 20.0);  // 0.2 m/s^2 or 2 %
     const AccelerometerVector error =
         found.now - accelerometerNumbers(scenario.imuAt(0, scenario.duration_s));
     QVERIFY((error.array().abs() < 4.0 * found.covariance.diagonal().array().sqrt()).all());
   }
 
-  // Nine of ten stops are held in the hand. The authors' answers are in the folder's manifest.
+  // Nine of ten stops are held by hand. The authors' results are in the folder's manifest.
   void stopsHeldByHand_giveTheAuthorsNumbers() {
     const QString data = qEnvironmentVariable("EVICAL_DATA");
     if (data.isEmpty()) QSKIP("EVICAL_DATA is not set");
@@ -110,7 +110,7 @@ class TestStopCalibration : public QObject {
     QVERIFY(std::sqrt(found.covariance.diagonal().segment<3>(3).maxCoeff()) < 0.002);
   }
 
-  // Hands sway, turn and pull: 2 cm/s^2 and 0.4 deg/s, over half a second.
+  // Hands sway, rotate and pull: 2 cm/s^2 and 0.4 deg/s, over half a second.
   void swayingHands_widenSigmas() {
     constexpr int kSeeds = 12;
     double squares = 0.0, stops = 0.0;
@@ -171,7 +171,7 @@ class TestStopCalibration : public QObject {
   }
 
  private:
-  // Five seconds still, five turning evenly about the vertical, and so on.
+  // Alternately five seconds at rest and five seconds of uniform rotation about the vertical.
   static std::vector<ImuSample> simulateStillAndTurning() {
     std::vector<ImuSample> samples;
     for (int k = 0; k < 200 * 60; ++k) {

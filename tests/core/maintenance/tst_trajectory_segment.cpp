@@ -1,5 +1,5 @@
-// An accelerometer against a trajectory: errors and sigmas over seeds, whatever the world's axes; levers; gaps; how poses
-// turn against a gyroscope.
+// An accelerometer against a trajectory: errors and sigmas over seeds, for any orientation of the world's
+// axes; lever arms; gaps; rotation of the poses against a gyroscope.
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/maintenance/trajectory_segment.h"
@@ -21,7 +21,7 @@ Eigen::Vector3d normalVectorForTrajectoryLag(Random& random) {
   return {x, y, z};
 }
 
-// In a world that is turned, of a point beside the IMU.
+// The trajectory in a rotated world, of a point at a lever arm from the IMU.
 std::vector<TimedPose> poses(const DriveScenario& scenario,
                              const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity(),
                              const Eigen::Vector3d& imu_from_point_m = Eigen::Vector3d::Zero()) {

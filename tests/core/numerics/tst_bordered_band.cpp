@@ -82,7 +82,7 @@ class TestBorderedBand : public QObject {
     QVERIFY((twins.bordered.schurComplement() - expected).norm() < 1e-12 * expected.norm());
   }
 
-  // Of a direction of which nothing is known nothing is taken.
+  // A direction without information is not changed.
   void schurComplement_passesOverWhatHasNoInformation() {
     BorderedBand matrix(3, 1, 1);
     matrix.band().add(0, 0, 4.0);

@@ -1,4 +1,4 @@
-// Which part of a state has changed: statistics by chance, steps in one block, what data do not tell.
+// Changed parts of a state: statistics by chance, steps in one block, quantities that data do not determine.
 #include "core/numerics/change_test.h"
 #include "core/numerics/chi_squared.h"
 #include "tests/support/test_program.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<StateBlock, 2> kBlocks = {{{0, 2}, {2, 1}}};
 
-// Rows that tie the three numbers together, with unit noise.
+// Rows that couple the three numbers, with unit noise.
 Eigen::MatrixXd rows(std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
   return Eigen::MatrixXd::NullaryExpr(12, 3, [&] { return normal(generator); });

@@ -44,7 +44,7 @@ class TestNeweyWest : public QObject {
 
   void byLag_ofNothing_isZero() { QCOMPARE(byLag({}, 3), 0.0); }
 
-  // 0 and 1 s count half, 1 and 3 s at the bound nothing: 14 + 2 x 1/2 x 2.
+  // 0 and 1 s have half weight, 1 and 3 s at the bound have none: 14 + 2 x 1/2 x 2.
   void byTime_weightsFallToZeroAtTheBound() { QCOMPARE(byTime({0.0, 1.0, 3.0}, {1.0, 2.0, 3.0}, 2.0), 16.0); }
 
   // (1 + 2)^2 + 3^2.

@@ -33,8 +33,8 @@ class TestSpectrum : public QObject {
     QCOMPARE(spectrum.frequency_hz.size(), std::size_t(256));
     QCOMPARE(spectrum.frequency_hz.back(), 0.5 * kRate_hz);
     const double given = kSigma / std::sqrt(kRate_hz);
-    for (std::size_t k = 2; k + 1 < spectrum.density.size();
-         ++k)  // the mean that is taken away is in the first two
+    // Subtracting the mean affects the first two.
+    for (std::size_t k = 2; k + 1 < spectrum.density.size(); ++k)
       QVERIFY2(std::abs(spectrum.density[k] / given - 1.0) < 0.25,
                qPrintable(QString::number(spectrum.density[k])));
   }
@@ -61,7 +61,7 @@ class TestSpectrum : public QObject {
   }
 
   void autocorrelation_ofSmoothedNoise_fallsAsItsFilterSays() {
-    constexpr double kKept = 0.8;  // of the sample before
+    constexpr double kKept = 0.8;  // share of the previous sample
     std::vector<double> samples = whiteNoise(1.0, 200'000);
     for (std::size_t k = 1; k < samples.size(); ++k) samples[k] += kKept * samples[k - 1];
     const std::vector<double> correlation = autocorrelation(samples, 5);

@@ -1,6 +1,6 @@
-// The batch's measurement models once more, by other formulas and for automatic derivatives:
-// matrices' product rule instead of the recursions of so3_spline.cpp, the dual conic as a 3 x 3
-// matrix instead of its entries.
+// The batch's measurement models again, with other formulas and for automatic derivatives: the product rule
+// for matrices instead of the recursions of so3_spline.cpp, the dual conic as a 3 x 3 matrix instead of its
+// entries.
 #pragma once
 
 #include "core/geometry/camera_model.h"
@@ -33,7 +33,7 @@ Matrix3<T> cross(const Vector3<T>& v) {
   return m;
 }
 
-// A quaternion block x y z w, turned on its right by the three numbers that the twin has in its place.
+// A quaternion block x y z w, multiplied on the right by the rotation of the twin's three parameters.
 template <class T>
 std::array<T, 4> turned(const std::vector<double>& xyzw, const T* delta) {
   const std::array<T, 4> base = {T(xyzw[3]), T(xyzw[0]), T(xyzw[1]), T(xyzw[2])};  // Ceres has w first
@@ -122,7 +122,7 @@ Matrix3<T> mappingAt(const T* upper) {
   return m;
 }
 
-// How far a bias is from its mean, on the straight line between two knots.
+// Deviation of a bias from its mean, linear between two knots.
 template <class T>
 Vector3<T> driftAt(const DriftTimes& drift, double time_s, const T* before, const T* after) {
   const double share = (time_s - drift.start_s) / drift.length_s;
@@ -197,8 +197,9 @@ Eigen::Matrix<T, 2, 1> radtanPoint(const std::array<T, 5>& d, const T& x, const 
           y * radial + d[2] * (r2 + 2.0 * y * y) + 2.0 * d[3] * x * y};
 }
 
-// How far from the middle a point at r = tan(theta) is seen, by angles: from the point xi behind the first sphere's centre at
-// tan(phi) = sin(theta) / (cos(theta) + xi), and from there, on a sphere of its own, sin(phi) / (alpha + (1 - alpha) cos(phi)).
+// Image radius of a point at r = tan(theta), by angles: from the point xi behind the first sphere's centre at
+// tan(phi) = sin(theta) / (cos(theta) + xi), and from there, on the second sphere, sin(phi) / (alpha + (1 -
+// alpha) cos(phi)).
 template <class T>
 T radiusOf(CameraModel model, const T* d, const T& r) {
   const T theta = atan(r), theta2 = theta * theta;
@@ -213,7 +214,7 @@ T radiusOf(CameraModel model, const T* d, const T& r) {
   return sin(phi) / sqrt(d[1]) / (d[0] + (1.0 - d[0]) * cos(phi));
 }
 
-// Where a point at (x/z, y/z) falls on the sensor. `numbers`: fx fy cx cy d0..d4.
+// Sensor position of a point at (x/z, y/z). `numbers`: fx fy cx cy d0..d4.
 template <class T>
 Eigen::Matrix<T, 2, 1> pixelOf(CameraModel model, const T* numbers, const T& x, const T& y) {
   const T* d = numbers + 4;

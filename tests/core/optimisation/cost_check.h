@@ -50,7 +50,7 @@ inline double worstJacobianError(const ceres::CostFunction& cost, const Blocks& 
       }
       return residualsAt(cost, at);
     };
-    // Time offsets are single numbers of which a step moves much.
+    // Time offsets are single numbers with a large effect per step.
     const double own_step = size == 1 ? 0.1 * step : step;
     const Eigen::MatrixXd numeric = numericJacobian(moved, size, own_step);
     worst = std::max(worst, relativeDifference(analytic[i].leftCols(size), numeric));
@@ -59,7 +59,7 @@ inline double worstJacobianError(const ceres::CostFunction& cost, const Blocks& 
   return worst;
 }
 
-// The worst over evaluations in which one block at a time is held constant, as Ceres asks for.
+// The largest over evaluations with one block at a time constant, as Ceres requests them.
 inline double worstErrorWithConstantBlocks(const ceres::CostFunction& cost, const Blocks& blocks) {
   using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<const double*> pointers;

@@ -1,4 +1,4 @@
-// Parameter blocks and measurements to try the batch's cost functions at.
+// Parameter blocks and measurements for tests of the batch's cost functions.
 #pragma once
 
 #include "core/geometry/so3.h"
@@ -71,20 +71,20 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back(States::numbers(quaternionExp(states.vector(0.2))));
   blocks.push_back(States::numbers(states.vector(0.05)));
   blocks.push_back({states.uniform(0.004)});
-  blocks.push_back({0.3});  // not drawn: the Huber kink must not lie within a step of any of these draws
+  blocks.push_back({0.3});  // not random: the Huber kink must not be within a step of any of these draws
   blocks.push_back({30.0});
   blocks.push_back({states.uniform(0.3)});
   blocks.push_back({states.uniform(0.3)});
   for (const double of_board : {1.01, 0.02, 0.3, -0.2, 0.1})
-    blocks.push_back({of_board});  // not drawn either
+    blocks.push_back({of_board});  // not random either
   blocks.push_back({0.05});
-  // Nor is the board's place in the world, which keeps it before the camera.
+  // The board's pose in the world is not random either, which keeps it in front of the camera.
   blocks.push_back(States::numbers(quaternionExp(Eigen::Vector3d(0.05, -0.04, 0.1))));
   blocks.push_back({0.03, -0.02, 0.04});
   return blocks;
 }
 
-// `near_sigma`: about how far the measured centres lie from the predicted ones.
+// `near_sigma`: approximate distance of the measured centres from the predicted ones, in sigmas.
 inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const Blocks& blocks,
                                                   double near_sigma, States& states) {
   std::vector<CircleMeasurement> circles(3);
@@ -109,7 +109,7 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
   return circles;
 }
 
-// The same circles as seen through a lens that is not quite the one in the block of intrinsics.
+// The same circles seen through a lens that differs slightly from the block of intrinsics.
 inline CircleModel freeModel(CameraModel lens) {
   CircleModel model = circleModel();
   model.camera.model = lens;

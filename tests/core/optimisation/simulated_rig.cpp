@@ -133,7 +133,7 @@ void fitTruth(const TrueMotion& motion, const RigOptions& options, CalibrationSt
   truth.imu_in_world_m = fitVectorSpline(times_s, positions, begin_s, end_s, options.knot_spacing_s);
 }
 
-// As automatic exposure does when the light changes.
+// Exposure times like those of automatic exposure when the light changes.
 double longerExposed_s(double time_s) {
   return 3e-3 * std::sin(4.1 * time_s);
 }
@@ -153,7 +153,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
                                          camera_from_world.rotation * true_board.normal(), board.radius_m);
     return projected ? std::optional(projected->centre_px) : std::nullopt;
   };
-  // Which row sees the point when it is that row's turn.
+  // The row that sees the point at its own exposure time.
   const auto rowBelowMiddle = [&](double frame_time_s, int point) {
     constexpr double kMiddleRow = 129.5;
     constexpr int kRounds = 5;
@@ -211,7 +211,7 @@ Vector3d forceAt(const TrueMotion& motion, double time_s, const Vector3d& gravit
          a.cross(lever) + w.cross(w.cross(lever));
 }
 
-// Biases start at the state's and walk from there; the state's become their means.
+// Biases start at the state's values and walk from there; the state's values become their means.
 ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu, const Vector3d& gravity,
                 const RigOptions& options, Random& random) {
   ImuData data;
@@ -248,7 +248,7 @@ ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu
 }
 
 void spreadScale(const RigOptions& options, CalibrationState& truth) {
-  constexpr unsigned kOther = 77;  // seed: what else is drawn stays the same
+  constexpr unsigned kOther = 77;  // a separate seed: other random draws are unchanged
   Random random(options.seed + kOther);
   const PriorOptions priors;
   truth.board = options.board;
@@ -260,7 +260,7 @@ void spreadScale(const RigOptions& options, CalibrationState& truth) {
 }
 
 void addFrames(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) {
-  constexpr unsigned kOther = 555;  // seed: what else is drawn stays the same
+  constexpr unsigned kOther = 555;  // a separate seed: other random draws are unchanged
   Random random(options.seed + kOther);
   CameraState camera = rig.truth.cameras.front();
   camera.time_offset_s += random.uniform(0.0, 5e-3);
@@ -275,9 +275,9 @@ void addFrames(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) 
   rig.truth.cameras.push_back(camera);
 }
 
-// Another camera, turned away from the first, and before it another board, turned as well.
+// A second camera that looks in another direction, and in front of it a second, rotated board.
 void addFurtherBoard(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) {
-  constexpr unsigned kOther = 333;  // seed: what else is drawn stays the same
+  constexpr unsigned kOther = 333;  // a separate seed: other random draws are unchanged
   Random random(options.seed + kOther);
   const RigidTransform first_from_second = {quaternionExp(Vector3d(0.1, 0.6, -0.2) + random.uniform3(0.1)),
                                             Vector3d(0.05, -0.02, 0.03) + random.uniform3(0.02)};

@@ -1,4 +1,4 @@
-// A simulated rig's batch from a disturbed start, with its uncertainty.
+// A simulated rig's batch from a perturbed start, with its uncertainty.
 #pragma once
 
 #include "core/optimisation/batch_optimiser.h"

@@ -1,4 +1,4 @@
-// Accelerometers whose samples are late against the gyroscope's.
+// Accelerometers whose samples are delayed relative to the gyroscope's.
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
@@ -51,7 +51,7 @@ class TestAccelerometerDelay : public QObject {
   Q_OBJECT
 
  private slots:
-  // Of the reference and of an IMU with a lever arm and a clock of its own.
+  // Delays of the reference and of an IMU with a lever arm and a separate clock.
   void noiselessDelays_areFound() {
     test::RigOptions options = lateRig();
     options.centre_sigma_px = 0.0;
@@ -65,7 +65,7 @@ class TestAccelerometerDelay : public QObject {
     QVERIFY(std::abs(run.solution.state.imus[1].time_offset_s - rig.truth.imus[1].time_offset_s) < 1e-5);
   }
 
-  // The RMS over 10 seeds is known to some 22 %.
+  // The RMS over 10 seeds is accurate to some 22 %.
   void delay_andTimeOffset_haveHonestSigmas() {
     constexpr unsigned kSeeds = 10;
     double delays = 0.0, offsets = 0.0;
@@ -85,7 +85,7 @@ class TestAccelerometerDelay : public QObject {
     QVERIFY2(of_offsets > 0.5 && of_offsets < 1.6, qPrintable(QString::number(of_offsets)));
   }
 
-  // As all did while nobody modelled it; the recording says that it is not so.
+  // A delay given as 0 although it is not: the recording contradicts it.
   void delayGivenAs0_spoilsTheTimeOffsetAndIsContradicted() {
     test::SimulatedRig rig = test::simulateRig(lateRig());
     rig.input.imus[0].prior.accelerometer_delay = KnownNumber{0.0};
@@ -100,7 +100,7 @@ class TestAccelerometerDelay : public QObject {
     }));
   }
 
-  // What it costs where there is none.
+  // Loss of accuracy if the delay is zero.
   void promptAccelerometer_costsLittleCertainty() {
     test::SimulatedRig rig = test::simulateRig(lateRig(1, 0.0));
     const AccelerometerDelayRun free = calibrateForAccelerometerDelay(rig);
@@ -142,7 +142,7 @@ class TestAccelerometerDelay : public QObject {
     QVERIFY(std::abs(run.delay_s() - kDelay_s) < 4.0 * run.delaySigma_s());
   }
 
-  // Nothing moves: nothing tells.
+  // Without motion the delay is not observable.
   void withoutMotion_thePriorHolds() {
     test::RigOptions simulation = lateRig();
     simulation.motion = test::Motion::HardlyMoving;

@@ -10,13 +10,13 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-// Relative to the largest entry. What is left is rounding: 1e-16, times 2500 / s^2 of the knots' spacing
-// squared, which accelerations have, times what logarithms of turns of 1e-7 rad lose; and in the
-// accelerometer's derivative by time offset the error of a central difference over 1e-4 knots, of
-// which 4.5e-8 was the most that was seen.
+// Tolerances relative to the largest entry. The remaining difference is rounding: 1e-16, times 2500 / s^2
+// (the inverse squared knot spacing in accelerations), times the loss in logarithms of rotations of 1e-7 rad;
+// in the accelerometer's derivative by time offset it is the error of a central difference over 1e-4 knots,
+// whose largest value was 4.5e-8.
 constexpr double kRounding = 1e-7;
 
-// How the control points follow each other, and which turns sensors have.
+// Sequences of control points, and rotations of the sensors.
 struct Turns {
   double step_rad, sensor_rad;
 };
@@ -90,7 +90,7 @@ class TestAutodiffTwins : public QObject {
       Blocks blocks = rotationsOf(turns, states);
       blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), mappingNumbers(states),
                                    turnOf(turns.sensor_rad, states)});
-      // Knots stay where they are: an offset would move samples off them.
+      // Knots are fixed: an offset would move samples off them.
       if (further) blocks.insert(blocks.end(), {turnOf(turns.sensor_rad, states), {0.0}, {0.0}});
       if (drifts) blocks.insert(blocks.end(), {{0.1, -0.2, 0.05}, {-0.1, 0.1, 0.3}});
       const auto drift = drifts ? std::optional(DriftTimes{0.99, 0.1}) : std::nullopt;
@@ -190,7 +190,7 @@ class TestAutodiffTwins : public QObject {
     }
   }
 
-  // The board lies in front of a camera that is turned by almost pi, so that the IMU looks away from it.
+  // The board is in front of a camera rotated by almost pi, so that the IMU looks away from it.
   void circles_ofACameraTurnedByAlmostPi_areTheirTwins() {
     States states(3);
     const CircleModel model = circleModel();

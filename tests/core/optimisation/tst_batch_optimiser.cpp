@@ -37,12 +37,12 @@ double rotationError_deg(const CameraState& a, const CameraState& b) {
 double translationError_mm(const CameraState& a, const CameraState& b) {
   return 1e3 * (a.reference_from_camera.translation_m - b.reference_from_camera.translation_m).norm();
 }
-// At the time of one of the two: clocks drift.
+// At the time of one of the two, since clocks drift.
 double offsetError_ms(const CameraState& a, const CameraState& b) {
   return 1e3 * std::abs(a.time_offset_s - timeOffsetAt_s(b, a.time_offset_at_s));
 }
 
-// Stops as soon as it has heard of work.
+// Requests a stop at the first progress message.
 class StopOnProgress : public ProgressSink {
  public:
   void stageStarted(const ProgressStage&) override {}
@@ -70,7 +70,7 @@ class TestBatchOptimiser : public QObject {
   Q_OBJECT
 
  private slots:
-  // A recording ends anywhere between two knots: what nothing there is known of must not count as noise.
+  // A recording ends anywhere between two knots: the lack of information there must not count as noise.
   void lastSegment_ofWhichLittleIsMeasured_spoilsNoWeights() {
     test::SimulatedRig rig = test::simulateRig(noisy());
     CalibrationState state = test::disturbed(rig.truth, 1);
@@ -92,10 +92,10 @@ class TestBatchOptimiser : public QObject {
     QVERIFY(translationError_mm(solution.state.cameras[0], rig.truth.cameras[0]) < 5.0);
   }
 
-  // What remains is how far cubic splines with these knots are from sinusoids.
+  // The remaining error is the difference between cubic splines with these knots and sinusoids.
   void batch_onNoiselessData_recoversTruth() {
     const test::SimulatedRig rig = test::simulateRig(noiseless());
-    OptimisationOptions options;  // the scale known: priors on it pull on the mapping, too
+    OptimisationOptions options;  // the scale is known: its priors also affect the mapping
     options.free_board_size = options.free_gravity_norm = false;
     const BatchSolution solution =
         optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
@@ -103,7 +103,7 @@ class TestBatchOptimiser : public QObject {
     QVERIFY(solution.converged);
     QVERIFY(rotationError_deg(camera, true_camera) < 1e-3);
     QVERIFY(translationError_mm(camera, true_camera) < 0.1);
-    QVERIFY2(offsetError_ms(camera, true_camera) < 4e-3,  // the accelerometer's delay takes 0.01 ms
+    QVERIFY2(offsetError_ms(camera, true_camera) < 4e-3,  // the accelerometer's delay costs 0.01 ms
              qPrintable(QString::number(offsetError_ms(camera, true_camera))));
     QVERIFY(std::abs(camera.edge_lead_px - true_camera.edge_lead_px) < 1e-3);
     const ImuState &imu = solution.state.imus[0], &true_imu = rig.truth.imus[0];
@@ -147,7 +147,7 @@ class TestBatchOptimiser : public QObject {
     QCOMPARE(solution.iterations.front().cameras.size(), std::size_t{1});
   }
 
-  // A fiftieth of a sigma: the optimum knows nothing of where the offset started.
+  // A fiftieth of a sigma: the optimum does not depend on the offset's start value.
   void optimum_doesNotDependOnTheStartingOffset() {
     const test::SimulatedRig rig = test::simulateRig(noisy());
     std::vector<CameraState> found;
@@ -187,7 +187,7 @@ class TestBatchOptimiser : public QObject {
              static_cast<int>(rig.input.cameras[0].observations.views.size()) - 1);
   }
 
-  // Wrong statements of noise must not decide between camera and IMU.
+  // Wrong noise densities must not change the balance between camera and IMU.
   void wrongNoise_isFoundAndSaid() {
     test::SimulatedRig rig = test::simulateRig(noisy());
     rig.input.imus[0].noise.gyroscope_density *= 10.0;
@@ -195,7 +195,7 @@ class TestBatchOptimiser : public QObject {
       for (CircleObservation& circle : view.circles) circle.covariance_px2 *= 0.04;
     }
     const BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
-    // Of 5: the floor of the centres' sigma takes the rest.
+    // Of 5: the lower bound of the centres' sigma accounts for the rest.
     QVERIFY(std::abs(solution.scales.circles[0] - 3.5) < 0.4);
     QVERIFY(std::abs(solution.scales.gyroscopes[0] - 0.09) < 0.02);
     QVERIFY(solution.notes.size() >= 2);

@@ -63,7 +63,7 @@ class TestBiasDrift : public QObject {
     QCOMPARE(imu.gyroscopeBiasAt_rad_s(12.0).x(), 1.3);
     QCOMPARE(imu.gyroscopeBiasAt_rad_s(13.5).x(), 0.55);
     QCOMPARE(imu.accelerometerBiasAt_m_s2(13.0).y(), 0.5);
-    // Before and after it stays.
+    // Constant before and after.
     QCOMPARE(imu.gyroscopeBiasAt_rad_s(-5.0).x(), 1.1);
     QCOMPARE(imu.gyroscopeBiasAt_rad_s(99.0).x(), 0.3);
     QVERIFY(std::abs(imu.bias_drift.weight(0) + imu.bias_drift.weight(1) + imu.bias_drift.weight(2) - 1.0) <
@@ -93,7 +93,7 @@ class TestBiasDrift : public QObject {
     imu.bias_drift = {};
     placeBiasKnots(options, {}, trajectory, imu);
     QCOMPARE(imu.bias_drift.knots(), std::size_t{2});
-    // A second of this walk is as much as a second's noise.
+    // A second of this random walk equals a second's noise.
     trajectory.control_points.resize(13);
     options.gyroscope_random_walk = ImuNoise{}.gyroscope_density;
     imu.bias_drift = {};
@@ -101,7 +101,7 @@ class TestBiasDrift : public QObject {
     QCOMPARE(imu.bias_drift.knots(), std::size_t{11});
   }
 
-  // Splines and knots eliminated one after the other, and both at once.
+  // Splines and knots eliminated sequentially, and both at once.
   void projectedInformation_isTheSchurComplement() {
     test::RigOptions options = walkingRig();
     options.duration_s = 0.6;
@@ -141,7 +141,7 @@ class TestBiasDrift : public QObject {
              qPrintable(QString::number(difference.cwiseAbs().maxCoeff())));
   }
 
-  // Order of the report: camera 10 (extrinsics 7), biases 6, and what else there is.
+  // Order of the report: camera 10 (extrinsics 7), biases 6, and the other quantities.
   void walkingBiases_areFollowedWithHonestSigmas() {
     constexpr unsigned kSeeds = 8;
     double extrinsics2 = 0.0, biases2 = 0.0, all2 = 0.0, constant2 = 0.0;
@@ -188,7 +188,7 @@ class TestBiasDrift : public QObject {
       Eigen::Vector3d mean = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < drift.knots(); ++k) {
         mean += drift.weight(k) * drift.gyroscope_rad_s[k];
-        // The walk is taken to be slow here, so that one time is about as certain as the mean over all.
+        // The walk is assumed slow here, so that one time is about as certain as the mean over all.
         QVERIFY((sigma.gyroscope_drift_std_rad_s[k].array() > 0.5 * sigma.gyroscope_bias_std_rad_s.array())
                     .all());
         QVERIFY((sigma.gyroscope_drift_std_rad_s[k].array() < 3e-3).all());

@@ -1,5 +1,5 @@
-// Boards that are not quite what the session says, and gravity that is not 9.81 m/s^2: errors and sigmas against
-// the truth, and what is said of them.
+// Boards that differ slightly from the session, and gravity that is not 9.81 m/s^2: errors and sigmas against
+// the truth, and the resulting messages.
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
@@ -19,7 +19,7 @@ struct BoardSizeRun {
     return solution.state.cameras[0].reference_from_camera.translation_m -
            rig.truth.cameras[0].reference_from_camera.translation_m;
   }
-  // In sigmas, along the axis where it is most of them.
+  // In sigmas, along the axis with the largest value.
   double translationError_sigmas() const {
     return translationError_m()
         .cwiseQuotient(estimate.report.cameras[0].translation_std_m)
@@ -69,14 +69,14 @@ class TestBoardSize : public QObject {
 
     OptimisationOptions held;
     held.free_board_size = false;
-    held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // lens and bow would take part of it
+    held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // otherwise lens and bow would absorb part of it
     held.board_bow = false;
     const BoardSizeRun blind = calibrateForBoardSize(boardOf(1.0, 0.005), held);
     QVERIFY2(blind.translationError_m().norm() > 5.0 * run.translationError_m().norm(),
              qPrintable(QString::number(1e3 * blind.translationError_m().norm())));
   }
 
-  // Within what a ruler leaves open: nothing to complain of, and sigmas that allow for it.
+  // Within a ruler's uncertainty: no complaint, and sigmas that allow for it.
   void boardOffByTwoOfItsSigmas_isWithinTheSigmas() {
     for (const double scale : {0.996, 1.004}) {
       const BoardSizeRun run = calibrateForBoardSize(boardOf(scale, 0.0));
@@ -114,7 +114,7 @@ class TestBoardSize : public QObject {
     QVERIFY(run.translationError_sigmas() < 4.0);
   }
 
-  // The middle of its half metre of columns stands out, or lies back, by a millimetre.
+  // The middle of its columns of half a metre is bowed by a millimetre, forwards or backwards.
   void bentBoard_isFound() {
     OptimisationOptions flat;
     flat.board_bow = false;
@@ -160,12 +160,12 @@ class TestBoardSize : public QObject {
   void boardBentBeyondWhatIsModelled_isDoubted() {
     const std::string doubt = calibrateForBoardSize(bentBoard(8e-3)).estimate.bow_doubt;
     QVERIFY2(
-        doubt.starts_with("the board seems bent: over the 0.5 m of its columns the middle stands out by"),
+        doubt.starts_with("the board seems bent: over the 0.5 m of its columns, the middle protrudes by"),
         doubt.c_str());
     QVERIFY(calibrateForBoardSize(boardOf(1.0, 0.0)).estimate.bow_doubt.empty());
   }
 
-  // Rao's score test, with lenses free, which take part of it, and held.
+  // Rao's score test, with lenses free, which absorb part of it, and fixed.
   void bentBoardThatIsTakenForFlat_isDoubted() {
     for (const CameraIntrinsicsChoice lens : {CameraIntrinsicsChoice::Free, CameraIntrinsicsChoice::Fixed}) {
       OptimisationOptions options;
@@ -174,12 +174,12 @@ class TestBoardSize : public QObject {
       const QString out =
           QString::fromStdString(calibrateForBoardSize(bentBoard(1e-3), options).estimate.bent_board);
       QVERIFY2(
-          out.startsWith("the board seems bent: over the 0.5 m of its columns the middle stands out by 1"),
+          out.startsWith("the board seems bent: over the 0.5 m of its columns, the middle protrudes by 1"),
           qPrintable(out));
-      QVERIFY(out.contains("lay it on glass"));
+      QVERIFY(out.contains("mount it on glass"));
       const QString back =
           QString::fromStdString(calibrateForBoardSize(bentBoard(-1e-3), options).estimate.bent_board);
-      QVERIFY2(back.contains("lies back by "), qPrintable(back));
+      QVERIFY2(back.contains("is recessed by "), qPrintable(back));
       const BoardSizeRun flat = calibrateForBoardSize(bentBoard(0.0), options),
                          stretched = calibrateForBoardSize(boardOf(1.0, 0.005), options);
       QVERIFY2(flat.estimate.bent_board.empty(), flat.estimate.bent_board.c_str());

@@ -1,4 +1,4 @@
-// Blocks and the state that they stand for, and what weights do to the problem that is built of them.
+// Parameter blocks and the state that they represent, and the effect of weights on the problem.
 #include "core/optimisation/calibration_problem.h"
 
 #include "tests/core/optimisation/simulated_rig.h"
@@ -28,7 +28,7 @@ std::ptrdiff_t countOf(const CalibrationProblem& problem, SensorKind kind) {
                        [&](const BlockInfo& info) { return info.kind == kind; });
 }
 
-// Of all blocks of one kind, half the sum of their squares.
+// Half the sum of squares of all residuals of one kind.
 double costOf(CalibrationProblem& problem, SensorKind kind) {
   double sum = 0.0;
   for (const BlockInfo& info : problem.blocks()) {
@@ -68,7 +68,7 @@ class TestCalibrationProblem : public QObject {
     blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping")[2] = 0.25;  // m02
     QCOMPARE(problem.state().cameras[0].time_offset_s, 0.001);
     QCOMPARE(problem.state().imus[0].gyroscope_mapping(0, 2), 0.25);
-    // A state that was handed out stays as it was.
+    // A returned state does not change.
     QVERIFY(before.imus[0].gyroscope_mapping(0, 2) != 0.25);
   }
 
@@ -100,7 +100,7 @@ class TestCalibrationProblem : public QObject {
     QCOMPARE(costOf(problem, SensorKind::Accelerometer), accelerometers);
   }
 
-  // By more than half a knot: most forces lie in another segment than the rates of the same stamp.
+  // By more than half a knot: most specific forces are in another segment than the rates of the same stamp.
   void build_putsForcesWhereTheyWereMeasured() {
     test::RigOptions late = test::shortRecording();
     late.duration_s = 0.4;
@@ -131,7 +131,7 @@ class TestCalibrationProblem : public QObject {
     weights.held_axes[0].gyroscope = {Eigen::Vector3d::UnitZ()};
     problem.build(ParameterStages::Mappings, weights);
     QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_rotation") == nullptr);
-    QCOMPARE(countOf(problem, SensorKind::Prior), priors);  // one for the axis, none for the turn
+    QCOMPARE(countOf(problem, SensorKind::Prior), priors);  // one for the axis, none for the rotation
   }
 
   void build_beforeTheLastStage_holdsMappings() {

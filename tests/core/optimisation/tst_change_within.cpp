@@ -1,4 +1,4 @@
-// What moves, or steps, within a recording.
+// Sensors that move, or clocks that step, within a recording.
 #include "core/base/time.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
@@ -53,16 +53,16 @@ class TestChangeWithin : public QObject {
     }
   }
 
-  // With the part before it as what to calibrate.
+  // The repair is to calibrate the part before the step.
   void clockThatSteps_isToldWithItsMoment() {
     const test::SimulatedRig rig = rigWithSteppingClock();
     const QualityWarning change = estimateOfChangeWithin(rig).change;
-    QVERIFY2(change.text.find("left: its clock and that of imu seem to step by") == 0, change.text.c_str());
+    QVERIFY2(change.text.find("left: its clock seems to step relative to that of") == 0, change.text.c_str());
     QVERIFY2(std::abs(millisecondsIn(change.text) - 2.0) < 0.4, change.text.c_str());
     expectKeptBefore(change);
   }
 
-  // A second IMU that slips: its samples are turned by 0.5 deg from then on.
+  // A second IMU that slips: its samples are rotated by 0.5 deg from then on.
   void sensorThatSlips_isToldByItsName() {
     test::SimulatedRig rig = rigOfChangeWithin(1, true);
     ImuData& imu = rig.input.imus[1];
@@ -73,12 +73,12 @@ class TestChangeWithin : public QObject {
       sample.specific_force_m_s2 = turn * sample.specific_force_m_s2;
     }
     const QualityWarning change = estimateOfChangeWithin(rig).change;
-    QVERIFY2(change.text.find(imu.name + ": it seems to have moved against imu about") == 0,
+    QVERIFY2(change.text.find(imu.name + ": it seems to have moved relative to imu") == 0,
              change.text.c_str());
     expectKeptBefore(change);
   }
 
-  // Where biases are constant by the options; where they may drift there is nothing to tell.
+  // Biases that are constant by the options; if they may drift, there is no change to report.
   void biasesThatStep_areTold() {
     test::SimulatedRig rig = rigOfChangeWithin(1);
     for (ImuSample& sample : rig.input.imus[0].samples)
@@ -86,7 +86,7 @@ class TestChangeWithin : public QObject {
         sample.angular_rate_rad_s += Eigen::Vector3d(5e-3, 0.0, 0.0);
     OptimisationOptions options;
     const QualityWarning change = estimateOfChangeWithin(rig, options).change;
-    QVERIFY2(change.text.find("imu: its biases change within the recording, by 0.00") == 0,
+    QVERIFY2(change.text.find("imu: its biases change within the recording by 0.00") == 0,
              change.text.c_str());
     QVERIFY((change.repair == Repair{"optimisation.model.bias_model", "linear"}));
     options.bias_model = BiasModel::Linear;

@@ -1,4 +1,4 @@
-// Derivatives of the circles' cost against numeric differences, and what its residuals say of known rigs.
+// Derivatives of the circles' cost against numeric differences, and its residuals for known rigs.
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/trajectory.h"
 #include "tests/core/optimisation/residual_states.h"
@@ -65,7 +65,7 @@ class TestCircleCost : public QObject {
     }
   }
 
-  // Where the intrinsics are those seen with, what is free or held must not matter.
+  // If the intrinsics are those of the front end, it must not matter whether they are free or fixed.
   void freeIntrinsics_ofTheCameraSeenWith_giveTheSameResiduals() {
     for (const CameraModel lens : {CameraModel::PinholeRadtan, CameraModel::PinholeEquidistant}) {
       States states(5);

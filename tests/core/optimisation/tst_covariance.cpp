@@ -31,8 +31,8 @@ CovarianceRun calibrateForCovariance(const test::RigOptions& options) {
   return run;
 }
 
-// Root mean square of error / sigma over seeds, per quantity. Few seconds tell little of a clock's drift, so
-// that its prior must be true.
+// Root mean square of error / sigma over seeds, per quantity. A few seconds hardly determine a clock's drift,
+// so its prior must be true.
 Eigen::VectorXd normalisedErrors(test::RigOptions options, unsigned seeds) {
   Eigen::VectorXd sum;
   std::mt19937_64 generator(20260103);
@@ -49,7 +49,7 @@ Eigen::VectorXd normalisedErrors(test::RigOptions options, unsigned seeds) {
   return (sum / seeds).cwiseSqrt();
 }
 
-// The simulator's scenario, without its events: circles as a perfect front end sees them, with noise.
+// The simulator's scenario, without its events: circles of an ideal front end, with noise.
 test::SimulatedRig scenarioRig() {
   Scenario scenario;
   scenario.duration_s = 6.0;
@@ -85,7 +85,7 @@ test::SimulatedRig scenarioRig() {
   }
   rig.truth.world_from_imu_rotation = fitSo3Spline(times_s, rotations, begin_s, end_s, 0.02);
   rig.truth.imu_in_world_m = fitVectorSpline(times_s, positions_m, begin_s, end_s, 0.02);
-  // Stamps are late by the pixels' delay, and so is the offset that they show.
+  // Stamps are late by the pixels' delay, and so is the resulting offset.
   rig.truth.cameras = {{camera.imu_from_camera, camera.time_offset_s - camera.pixel.delay_s(), 0.0}};
   rig.truth.cameras[0].lens.solved = camera.intrinsics;
   rig.truth.imus.resize(1);
@@ -160,7 +160,7 @@ class TestCovariance : public QObject {
     QCOMPARE(report.directions.front(), report.weakest);
   }
 
-  // The claim of docs/maths.md, 10.1. 41 quantities over 20 seeds: their common RMS is known to about 5 %,
+  // The claim of docs/maths.md, 10.1. 41 quantities over 20 seeds: their joint RMS is accurate to about 5 %,
   // each one's to 16 %.
   void sigmas_areHonest() {
     test::RigOptions options = test::shortRecording();
@@ -173,7 +173,7 @@ class TestCovariance : public QObject {
     for (const double each : rms) QVERIFY2(each > 0.5 && each < 1.6, qPrintable(QString::number(each)));
   }
 
-  // Centre errors that last for 0.1 s: what they cost must show in the sigmas.
+  // Centre errors that persist for 0.1 s: their effect must be in the sigmas.
   void sigmas_allowForCorrelatedCentres() {
     test::RigOptions options = test::shortRecording();
     options.window_s = 0.02;

@@ -1,4 +1,4 @@
-// Intrinsics as unknowns of the batch, started at a lens that is not quite the true one.
+// Intrinsics as unknowns of the batch, started at a lens that differs slightly from the true one.
 #include "core/data/intrinsics_result.h"
 #include "core/data/quantity.h"
 #include "core/geometry/intrinsics_numbers.h"
@@ -49,7 +49,7 @@ test::SimulatedRig rigOfFreeIntrinsics(CameraModel model, const test::RigOptions
   return rig;
 }
 
-// Given with errors of the sigmas that are given with it; both focal lengths err together.
+// Given with errors as large as the given sigmas; both focal lengths have the same error.
 test::SimulatedRig rigOfKnownLens(unsigned seed) {
   LensUncertainty uncertainty;
   uncertainty.std << 0.06, 0.06, 0.06, 0.06, 1e-3, 1e-3, 1e-4, 1e-4, 0.0;
@@ -177,7 +177,7 @@ class TestFreeIntrinsics : public QObject {
   void extrinsicSigmas_holdThoseOfTheLens() {
     const CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan);
     test::RigOptions recording = test::shortRecording();
-    recording.duration_s = 6.0;  // of less, residuals' correlation is hardly known, and sigmas scatter
+    recording.duration_s = 6.0;  // with less, the residuals' correlation is poorly known, and sigmas scatter
     test::SimulatedRig rig = test::simulateRig(recording);
     test::seeThrough(truth, truth, rig);
     const UncertaintyReport free =
@@ -223,8 +223,8 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY2(held_px < 0.01, qPrintable(text(held_px)));
   }
 
-  // Of a file that says how well it knows the lens: the result knows it at least as well, better than without, and
-  // errs by its sigmas.
+  // Intrinsics from a file with sigmas: the result is at least as accurate, more accurate than without them,
+  // and its errors agree with its sigmas.
   void statedSigmas_weighInTheBatch() {
     constexpr unsigned kSeeds = 8;
     double sum = 0.0, count = 0.0;
@@ -253,7 +253,7 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY2(rms > 0.7 && rms < 1.3, qPrintable(text(rms)));
   }
 
-  // A lens that was turned since its file was written.
+  // A lens that was rotated since its file was written.
   void statedSigmas_thatContradictTheRecording_areDoubted() {
     test::SimulatedRig rig = rigOfKnownLens(1);
     const BatchSolution right = solveForFreeIntrinsics(rig, 1);
@@ -271,7 +271,7 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY2(doubt.startsWith("left.focal_length"), qPrintable(doubt));
   }
 
-  // Without correlations nothing is claimed that correlated sigmas of that size do not know.
+  // Without correlations, no more is claimed than correlated sigmas of that size allow.
   void sigmasWithoutCorrelations_countDoubled() {
     LensUncertainty uncertainty;
     uncertainty.std.head<2>().setConstant(0.5);
@@ -282,7 +282,7 @@ class TestFreeIntrinsics : public QObject {
     QCOMPARE(uncertainty.covariance()(2, 2), 0.0);
   }
 
-  // Rao's score test: what is held is tested all the same, and named.
+  // Rao's score test: a fixed quantity is tested nevertheless, and named.
   void heldLensThatIsWrong_isDoubted() {
     test::SimulatedRig rig = test::simulateRig(test::shortRecording());
     const CameraIntrinsics given = *rig.input.cameras[0].lens.given;
@@ -298,10 +298,10 @@ class TestFreeIntrinsics : public QObject {
     longer.focal_length_px *= 1.01;
     aside.principal_point_px.x() += 2.0;
     const QString by_length = QString::fromStdString(qualityWarningOf(longer));
-    QVERIFY2(by_length.contains("left: the lens is not as the session says: focal lengths seem -"),
+    QVERIFY2(by_length.contains("left: the lens differs from the session's: focal lengths by -"),
              qPrintable(by_length));
     const QString by_centre = QString::fromStdString(qualityWarningOf(aside));
-    QVERIFY2(by_centre.contains("principal point (-"), qPrintable(by_centre));
+    QVERIFY2(by_centre.contains("principal point by (-"), qPrintable(by_centre));
     QVERIFY(by_centre.contains("optimisation.model.camera_intrinsics: free"));
   }
 
@@ -312,7 +312,7 @@ class TestFreeIntrinsics : public QObject {
     seen.distortion[4] = 0.01;
     test::seeThrough(truth, seen, rig);
     OptimisationOptions options;
-    options.board_bow = false;  // with it this lens of 3 s comes out 0.059 px off
+    options.board_bow = false;  // with it, this lens of 3 s has an error of 0.059 px
     const BatchSolution solution = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(solution.state.cameras[0].lens.solved->distortion[4] != 0.01);
     const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;

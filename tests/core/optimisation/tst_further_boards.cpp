@@ -1,4 +1,4 @@
-// Cameras that see different boards: where these stand against each other is estimated, too.
+// Cameras that see different boards: the boards' relative pose is estimated, too.
 #include "core/data/quantity_difference.h"
 #include "tests/core/optimisation/solved_rig.h"
 #include "tests/support/test_program.h"

@@ -1,4 +1,4 @@
-// A gyroscope that is turned against its accelerometer.
+// A gyroscope that is misaligned with its accelerometer.
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
@@ -53,7 +53,7 @@ class TestGyroscopeRotation : public QObject {
             2e-4);
   }
 
-  // 34 quantities over 10 seeds: their common RMS is known to some 8 %, that of the turns to 13 %.
+  // 34 quantities over 10 seeds: their joint RMS is accurate to some 8 %, that of the rotations to 13 %.
   void sigmas_areHonest() {
     constexpr unsigned kSeeds = 10;
     double all = 0.0, turns = 0.0, count = 0.0;
@@ -87,9 +87,9 @@ class TestGyroscopeRotation : public QObject {
     QCOMPARE(estimate.report.imus[0].gyroscope_rotation_std_rad.norm(), 0.0);
     QCOMPARE(estimate.report.standard_deviations.size(),
              test::reportedErrors(solution.state, rig.truth).size());
-    // But it does not go unnoticed.
+    // The misalignment is still reported.
     const QString reason = QString::fromStdString(estimate.turned_gyroscopes);
-    QVERIFY2(reason.startsWith("imu: the gyroscope seems to be turned by about "), qPrintable(reason));
+    QVERIFY2(reason.startsWith("imu: the gyroscope seems misaligned with "), qPrintable(reason));
     const double turn_deg = reason.section("about ", 1, 1).section(' ', 0, 0).toDouble();
     QVERIFY2(std::abs(turn_deg - 0.8) < 0.1, qPrintable(reason));
   }
@@ -107,7 +107,7 @@ class TestGyroscopeRotation : public QObject {
     }
   }
 
-  // About one axis only: a turn about it cannot be told, and none is made up.
+  // Motion about one axis only: a misalignment about it is not observable, and none is claimed.
   void oneAxisRotation_leavesTheTurnAlone() {
     test::RigOptions options = turnedRig();
     options.motion = test::Motion::OneAxisRotation;

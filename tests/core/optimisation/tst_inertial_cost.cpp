@@ -1,4 +1,4 @@
-// Derivatives of the IMUs' costs against numeric differences, and what their residuals say of known motions.
+// Derivatives of the IMUs' costs against numeric differences, and their residuals for known motions.
 #include "core/optimisation/inertial_cost.h"
 #include "tests/core/optimisation/residual_states.h"
 #include "tests/support/test_program.h"
@@ -119,7 +119,8 @@ class TestInertialCost : public QObject {
     }
   }
 
-  // Turning about a fixed axis at a constant rate, an IMU off the axis feels the centripetal acceleration.
+  // Rotating about a fixed axis at a constant rate, an IMU away from the axis measures the centripetal
+  // acceleration.
   void accelerometer_onALeverArm_feelsCentripetalAcceleration() {
     const double rate_rad_s = 3.0, lever_m = 0.1;
     Blocks blocks;
@@ -140,7 +141,7 @@ class TestInertialCost : public QObject {
     QVERIFY(residualsAt(cost, blocks).norm() < 1e-9);
   }
 
-  // What an accelerometer with a delay measures at t, one without measures that much before.
+  // An accelerometer with a delay measures at t what one without a delay measures that much earlier.
   void accelerometer_thatIsLate_measuresWhatWas() {
     constexpr double kDelay_s = 0.003;
     States states(8);

@@ -1,4 +1,4 @@
-// What is held, weighed and estimated, and which axes of an IMU never moved.
+// Fixed, weighted and estimated quantities, and the axes of an IMU that never moved.
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/unexcited_axes.h"
 #include "core/optimisation/weights.h"
@@ -112,7 +112,7 @@ class TestKnownValues : public QObject {
     const test::SimulatedRig rig = test::simulateRig(options);
     const UnexcitedAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
     QCOMPARE(still.gyroscope.size(), std::size_t{2});
-    // The axis that moved, by the samples themselves.
+    // The axis that moved, according to the samples themselves.
     Vector3d axis = Vector3d::Zero();
     for (const ImuSample& sample : rig.input.imus[0].samples) {
       const Vector3d rate = sample.angular_rate_rad_s - rig.truth.imus[0].gyroscope_bias_rad_s;

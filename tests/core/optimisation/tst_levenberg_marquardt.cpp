@@ -1,4 +1,4 @@
-// The batch's own solver against Ceres' on the same problems.
+// The batch's own solver compared with Ceres on the same problems.
 #include "core/optimisation/levenberg_marquardt.h"
 
 #include "core/base/error.h"
@@ -34,7 +34,7 @@ Case caseOf(Kind kind) {
   rig_options.second_imu = kind == Kind::TwoImus;
   rig_options.frames_too = kind == Kind::TwoCameras || kind == Kind::CamerasAlone;
   Case test{test::simulateRig(rig_options), {}, {}};
-  // So near that no measurement leaves its segment of the splines.
+  // A start near enough that no measurement leaves its spline segment.
   test.start = test.rig.truth;
   test.start.cameras.back().time_offset_s += 2e-4;
   test.start.cameras.back().reference_from_camera.translation_m.x() += 5e-3;
@@ -80,7 +80,7 @@ Solved byCeres(CalibrationProblem& problem, const SolverLimits& limits) {
   Recorder recorder(solved.costs);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // without threads of its own
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // without additional threads
   options.max_num_iterations = limits.most_iterations;
   options.function_tolerance = limits.function_tolerance;
   options.gradient_tolerance = options.parameter_tolerance = 1e-12;
@@ -133,12 +133,12 @@ class TestLevenbergMarquardt : public QObject {
     QTest::newRow("two IMUs") << static_cast<int>(Kind::TwoImus);
     QTest::newRow("linear biases") << static_cast<int>(Kind::LinearBiases);
     QTest::newRow("free lens") << static_cast<int>(Kind::FreeLens);
-    QTest::newRow("turned gyroscope and gravity's norm") << static_cast<int>(Kind::Rotation);
+    QTest::newRow("misaligned gyroscope and gravity's norm") << static_cast<int>(Kind::Rotation);
     QTest::newRow("two cameras") << static_cast<int>(Kind::TwoCameras);
     QTest::newRow("cameras alone") << static_cast<int>(Kind::CamerasAlone);
     QTest::newRow("priors") << static_cast<int>(Kind::Priors);
   }
-  // And so is the way there: where it ends does not depend on whose solver it was.
+  // The path is the same, too: the end does not depend on the solver.
   void optimum_isThatOfCeres() {
     QFETCH(int, kind);
     const Case test = caseOf(static_cast<Kind>(kind));
@@ -154,12 +154,13 @@ class TestLevenbergMarquardt : public QObject {
     QVERIFY(a.costs.size() > 2);
     for (std::size_t i = 0; i < a.costs.size(); ++i)
       QVERIFY2(std::abs(a.costs[i] / b.costs[i] - 1.0) < 1e-9, qPrintable(QString::number(i)));
-    // Rounding, where two IMUs hardly tell their delays apart; else 1e-8.
+    // Rounding, if the delays of two IMUs are hardly separable; else 1e-8.
     const double sigmas = differenceInSigmas(ours, ceres);
     QVERIFY2(sigmas < 1e-6, qPrintable(QString("%1 sigmas apart").arg(sigmas)));
   }
 
-  // Where the optimum lies beyond a bound, what is bounded ends there, and all else where it is best for that.
+  // If the optimum is beyond a bound, the bounded parameter ends at the bound, and all others at the optimum
+  // for it.
   void bound_isKept() {
     const Case test = caseOf(Kind::FreeLens);
     constexpr int kFirstDistortion = 4;

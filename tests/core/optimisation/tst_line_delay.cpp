@@ -1,4 +1,4 @@
-// Rows that are exposed one after the other.
+// Rolling shutter: rows that are exposed one after the other.
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
@@ -61,7 +61,7 @@ class TestLineDelay : public QObject {
              QByteArray::number(std::sqrt(extrinsics)));
   }
 
-  // Stamps at the begin of exposures that vary: half of what is longer passes before the middle.
+  // Stamps at the beginning of varying exposures: half of the additional exposure passes before the middle.
   void exposuresShare_isFound_withAnHonestSigma() {
     constexpr unsigned kSeeds = 12;
     constexpr double kShare = 0.5;
@@ -98,7 +98,7 @@ class TestLineDelay : public QObject {
     rig.input.cameras[0].shutter = Shutter::Global;
     const UncertaintyEstimate estimate =
         estimateUncertainty(rig.input, solveForLineDelay(rig, 1), heldLens(), RunContext{});
-    QVERIFY2(estimate.rolling_shutters.find("its shutter rolls") != std::string::npos,
+    QVERIFY2(estimate.rolling_shutters.find("the shutter is rolling") != std::string::npos,
              estimate.rolling_shutters.c_str());
     QCOMPARE(estimate.report.cameras[0].line_delay_std_us, 0.0);
   }

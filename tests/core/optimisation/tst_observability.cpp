@@ -1,4 +1,4 @@
-// What covariances given by hand mean in words: which need is not met, along which direction.
+// Interpretation of given covariances: the requirement that is not met, and its direction.
 #include "core/optimisation/uncertainty/observability.h"
 
 #include "core/geometry/so3.h"
@@ -38,7 +38,7 @@ struct Rig {
     covariance.covariance = Eigen::MatrixXd::Zero(7, 7);
     setSigmas(0.5, 0.5, 0.5);
   }
-  // In needs.
+  // In units of the requirements.
   void setSigmas(double rotation, double translation, double time_offset) {
     const double units[] = {kRadPerDeg * 0.1 * rotation, 3e-3 * translation, 0.1e-3 * time_offset};
     for (Eigen::Index i = 0; i < 7; ++i) {
@@ -46,7 +46,8 @@ struct Rig {
       covariance.covariance(i, i) = sigma * sigma;
     }
   }
-  // The uncertainty of the part at `column` is this many needs along a direction in the reference's frame.
+  // The uncertainty of the part at `column` is this multiple of the requirement along a direction in the
+  // reference's frame.
   void stretch(Eigen::Index column, const Vector3d& direction, double sigma) {
     covariance.covariance.block<3, 3>(column, column) += sigma * sigma * direction * direction.transpose();
   }
@@ -65,7 +66,8 @@ class TestObservability : public QObject {
     const Observability seen = rig.judge();
     QCOMPARE(seen.status, CalibrationStatus::Ok);
     QVERIFY(seen.reason.empty());
-    // One over the squared sigmas in needs, the weakest first: 3 of 1/0.5^2, 3 of 1/0.25^2, 1 of 1/0.1^2.
+    // Inverse squared sigmas in units of the requirements, the weakest first: 3 of 1/0.5^2, 3 of 1/0.25^2, 1
+    // of 1/0.1^2.
     QCOMPARE(seen.eigenvalues.size(), std::size_t{7});
     const double expected[] = {4.0, 4.0, 4.0, 16.0, 16.0, 16.0, 100.0};
     for (std::size_t i = 0; i < 7; ++i) QVERIFY(std::abs(seen.eigenvalues[i] - expected[i]) < 1e-6);
@@ -105,7 +107,7 @@ class TestObservability : public QObject {
              weakest.c_str());
   }
 
-  // What is no number compares with nothing, and must not pass for certain.
+  // NaN compares false with every number, and must not count as certain.
   void judge_onSigmasThatAreNoNumbers_isDoubtful() {
     for (const double variance : {std::numeric_limits<double>::quiet_NaN(), -1.0, 0.0}) {
       Rig rig;
@@ -136,7 +138,7 @@ class TestObservability : public QObject {
     QVERIFY2(weakest.find("translation along the camera's y axis") != std::string::npos, weakest.c_str());
   }
 
-  // What a wrong measure of the board does is no fault of the motion: it has a need of its own.
+  // The effect of a wrong board size is not due to the motion: it has a separate requirement.
   void judge_onWhatTheBoardLeavesOpen_asksForABetterMeasure() {
     Rig rig;
     rig.options.needed_translation_mm = 1.0;
@@ -157,8 +159,7 @@ class TestObservability : public QObject {
     QCOMPARE(near.status, CalibrationStatus::Ok);
     QVERIFY(near.eigenvalues.front() > 1.0);
     QCOMPARE(far.status, CalibrationStatus::Doubtful);
-    QVERIFY2(far.reason.starts_with("the board's measure leaves the translation of left open by 4 mm"),
-             far.reason.c_str());
+    QVERIFY2(far.reason.starts_with("the translation of left has a sigma of 4 mm with"), far.reason.c_str());
     QVERIFY(far.reason.find("Record again") == std::string::npos);
   }
 

@@ -1,4 +1,4 @@
-// What priors, held axes and smoothness say of known states, and their derivatives.
+// Residuals and derivatives of priors, fixed axes and smoothness at known states.
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/prior_cost.h"
 #include "core/optimisation/smoothness_cost.h"
@@ -20,7 +20,7 @@ class TestPriorCost : public QObject {
     QCOMPARE(residualsAt(step, {{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}).norm(), 0.0);
     QVERIFY(std::abs(residualsAt(step, {{1.0, 2.0, 3.0}, {1.0, 2.2, 3.0}})[1] - 2.0) < 1e-12);
     QVERIFY(worstJacobianError(step, {{1.0, 2.0, 3.0}, {1.1, 2.2, 3.1}}) < 1e-9);
-    // Outer knots stand for half as much time.
+    // Outer knots represent half as much time.
     const BiasMeanCost mean(drift, 0.1);
     const Blocks balanced = {{2.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {-1.0, 0.0, 0.0}};
     QVERIFY(residualsAt(mean, balanced).norm() < 1e-12);

@@ -1,4 +1,4 @@
-// What is given and what is weighed: errors and reported sigmas against the truth.
+// Given and weighted values: errors and reported sigmas against the truth.
 #include "core/geometry/so3.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
@@ -29,7 +29,7 @@ struct PriorsRun {
 PriorsRun calibrateForPriors(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
   PriorsRun run;
   CalibrationState start = test::disturbed(rig.truth, 1);
-  for (std::size_t i = 0; i < start.imus.size(); ++i)  // as initialisation does
+  for (std::size_t i = 0; i < start.imus.size(); ++i)  // like initialisation
     if (const auto& known = rig.input.imus[i].prior.gyroscope_rotation)
       start.imus[i].gyroscope_from_accelerometer = known->value;
   run.solution = optimiseBatch(rig.input, start, options, RunContext{});
@@ -43,7 +43,7 @@ bool says(const std::vector<std::string>& texts, const std::string& words) {
                      [&](const std::string& text) { return text.find(words) != std::string::npos; });
 }
 
-// Of the camera's translation, along a direction in the reference.
+// Error of the camera's translation along a direction in the reference frame.
 double translationSigma_m(const UncertaintyReport& report, const Vector3d& direction) {
   const Eigen::Index first =
       columnOf({QuantityOwner::Camera, 0, QuantityId::Translation}, report.columns).value();
@@ -86,7 +86,7 @@ class TestPriors : public QObject {
       QVERIFY(std::abs(error_m[axis]) < 4.0 * run.estimate.report.cameras[0].translation_std_m[axis]);
   }
 
-  // Held at 0 while it is not, the result must not pretend.
+  // If the offset is fixed at 0 although it is not 0, the result must not be ok.
   void timeOffsetsThatAreNotFree_stayAt0AndAreDoubted() {
     test::RigOptions simulation = shortPriorRecording();
     simulation.seed = 3;
@@ -124,7 +124,7 @@ class TestPriors : public QObject {
     }
   }
 
-  // The recording wins over such a prior; but one of the two is wrong.
+  // The recording outweighs such a prior; but one of the two is wrong.
   void weighedPriorThatIsFarOff_isDoubted() {
     test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const double truth_s = rig.truth.cameras[0].time_offset_s;
@@ -139,14 +139,14 @@ class TestPriors : public QObject {
     options.free_imu_intrinsics = false;
     const PriorsRun run = calibrateForPriors(test::simulateRig(shortPriorRecording()), options);
     QVERIFY(says(run.check.notes, "imu.gyroscope_mapping"));
-    QVERIFY(run.check.doubt.empty());  // it is nobody's need
+    QVERIFY(run.check.doubt.empty());  // it is not required
   }
 
   void gravitysNorm_isFoundWhereItIsFree() {
     test::RigOptions simulation = shortPriorRecording();
     simulation.gravity_m_s2 = 9.79;
     test::SimulatedRig rig = test::simulateRig(simulation);
-    // Scale and gravity say nearly the same of a resting accelerometer.
+    // Scale and gravity have nearly the same effect on a resting accelerometer.
     rig.input.imus[0].prior.accelerometer_mapping = KnownMapping{rig.truth.imus[0].accelerometer_mapping};
     OptimisationOptions options;
     options.free_gravity_norm = true;
@@ -164,7 +164,7 @@ class TestPriors : public QObject {
     QVERIFY(!estimate.report.weakest.empty());
   }
 
-  // Where nothing tells it apart from the accelerometer's scale and bias, the norm is the prior's.
+  // If the norm is not separable from the accelerometer's scale and bias, it is the prior's.
   void gravitysNorm_withoutMotion_hasThePriorsSigma() {
     test::RigOptions simulation = shortPriorRecording();
     simulation.motion = test::Motion::HardlyMoving;
@@ -221,7 +221,7 @@ class TestPriors : public QObject {
     QVERIFY(says(run.check.notes, "given as"));
   }
 
-  // Tight enough that the solution stays with it: the recording alone says otherwise all the same.
+  // The prior is so tight that the solution stays with it, although the recording alone contradicts it.
   void weightedPriorThatIsWrong_isSaid() {
     test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     rig.input.cameras[0].prior.translation =
@@ -275,8 +275,8 @@ class TestPriors : public QObject {
       QVERIFY(std::abs(error_m[axis]) < 4.0 * run.estimate.report.imus[1].translation_std_m[axis]);
   }
 
-  // A turn that is known must not be lost: neither where it is given, nor where it is weighed, and whatever
-  // the option for unknown turns says.
+  // A known misalignment must be used, given or weighted, and for any value of the option for unknown
+  // misalignments.
   void knownGyroscopeRotation_isHeldOrWeighed_data() {
     QTest::addColumn<bool>("option");
     QTest::newRow("not looked for") << false;

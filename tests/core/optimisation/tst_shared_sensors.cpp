@@ -77,7 +77,7 @@ class TestSharedSensors : public QObject {
       test::SimulatedRig rig = rigOfSharedSensors(seed);
       const test::SolvedRig solved = solve(rig, seed);
       CalibrationState state = solved.solution.state;
-      state.cameras.pop_back();  // whose quantities come in between
+      state.cameras.pop_back();  // whose quantities are in between
       rig.truth.cameras.pop_back();
       squares += test::reportedErrors(state, rig.truth)
                      .head(kExtrinsics)

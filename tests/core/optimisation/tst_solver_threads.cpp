@@ -1,4 +1,4 @@
-// optimisation.threads holds for the libraries below the solver, too.
+// optimisation.threads also limits the libraries below the solver.
 #include "core/optimisation/batch_optimiser.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
@@ -11,7 +11,7 @@ namespace {
 
 using namespace evical;
 
-// Threads of OpenMP stay when their work is done.
+// OpenMP keeps its threads after their work.
 qsizetype threadsHere() {
   return QDir("/proc/self/task").entryList(QDir::Dirs | QDir::NoDotAndDotDot).size();
 }
@@ -22,7 +22,7 @@ class TestSolverThreads : public QObject {
   void oneThread_staysOne() {
     auto* const set = reinterpret_cast<void (*)(int)>(::dlsym(RTLD_DEFAULT, "omp_set_num_threads"));
     auto* const get = reinterpret_cast<int (*)()>(::dlsym(RTLD_DEFAULT, "omp_get_max_threads"));
-    if (set == nullptr || get == nullptr) QSKIP("CHOLMOD comes without OpenMP here");
+    if (set == nullptr || get == nullptr) QSKIP("CHOLMOD is built without OpenMP");
     set(4);  // as on a machine with four processors
     test::RigOptions rig_options;
     rig_options.duration_s = 8.0;
@@ -34,7 +34,7 @@ class TestSolverThreads : public QObject {
     const qsizetype before = threadsHere();
     optimiseBatch(rig.input, test::disturbed(rig.truth, 5), options, RunContext{});
     QCOMPARE(threadsHere(), before);
-    QCOMPARE(get(), 4);  // who else uses OpenMP here keeps its threads
+    QCOMPARE(get(), 4);  // other users of OpenMP keep their threads
   }
 };
 

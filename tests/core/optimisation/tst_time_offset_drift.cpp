@@ -1,4 +1,4 @@
-// Clocks that do not run at the reference's pace.
+// Clocks whose rate differs from the reference's.
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
@@ -43,7 +43,7 @@ class TestTimeOffsetDrift : public QObject {
   Q_OBJECT
 
  private slots:
-  // Of a camera and of a second IMU, with a prior that hardly pulls.
+  // Drift of a camera and of a second IMU, with a weak prior.
   void noiselessDrifts_areFound() {
     test::RigOptions options = driftingRig();
     options.centre_sigma_px = 0.0;
@@ -64,7 +64,7 @@ class TestTimeOffsetDrift : public QObject {
     }
   }
 
-  // The drifts' RMS over 10 seeds is known to some 22 %.
+  // The drifts' RMS over 10 seeds is accurate to some 22 %.
   void sigmas_areHonest() {
     constexpr unsigned kSeeds = 10;
     double drifts = 0.0, offsets = 0.0;
@@ -82,7 +82,7 @@ class TestTimeOffsetDrift : public QObject {
       QVERIFY(report.cameras[0].time_offset_drift_std_ppm > 0.0);
       drifts += std::pow(errors[drift] / report.standard_deviations[drift], 2);
       offsets += std::pow(errors[offset] / report.standard_deviations[offset], 2);
-      // In the recording's middle the one says nothing of the other.
+      // At the middle of the recording the two are uncorrelated.
       QVERIFY2(std::abs(report.correlation(offset, drift)) < 0.5,
                qPrintable(QString::number(report.correlation(offset, drift))));
     }
@@ -91,7 +91,7 @@ class TestTimeOffsetDrift : public QObject {
     QVERIFY2(of_offsets > 0.5 && of_offsets < 1.6, qPrintable(QString::number(of_offsets)));
   }
 
-  // Nobody has to ask for it.
+  // This is the default.
   void drift_isFoundByDefault() {
     const test::SimulatedRig rig = test::simulateRig(driftingRig());
     const BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
@@ -114,7 +114,7 @@ class TestTimeOffsetDrift : public QObject {
     QVERIFY(report.given.empty());
   }
 
-  // Who gives an offset knows of one clock, unless a prior says that there are two.
+  // A given offset implies one clock, unless a prior states that there are two.
   void givenOffset_doesNotDrift() {
     test::SimulatedRig rig = test::simulateRig(driftingRig());
     SensorPrior& prior = rig.input.cameras[0].prior;
@@ -131,7 +131,7 @@ class TestTimeOffsetDrift : public QObject {
             4.0 * report.cameras[0].time_offset_drift_std_ppm);
   }
 
-  // Without the option, too: who knows it says so.
+  // Also without the option: a prior of the session enables it.
   void knownDrift_isHeldOrWeighed() {
     test::SimulatedRig rig = test::simulateRig(driftingRig());
     const OptimisationOptions options = withoutDrift();

@@ -1,4 +1,4 @@
-// The page that flashes a board: whole in one file, and the board in it as it is printed.
+// The page that flashes a board: complete in one file, with the same board as on paper.
 #include "core/base/error.h"
 #include "core/printing/blink_page.h"
 #include "core/printing/board_drawing.h"
@@ -37,13 +37,13 @@ QString scriptOf(const Board& board) {
   return page.mid(begin, page.indexOf("</script>") - begin);
 }
 
-// Without what needs a browser.
+// The part of the page that needs no browser.
 QString functionsOf(const Board& board) {
   const QString script = scriptOf(board);
   return script.left(script.indexOf("measureRefresh((refresh_hz)"));
 }
 
-// What it prints.
+// The script's output.
 QString runInNode(const QString& script) {
   QProcess node;
   node.start("node", {"-e", script});
@@ -88,7 +88,8 @@ class TestBlinkPage : public QObject {
     QVERIFY_EXCEPTION_THROWN(blinkPage(board, 0.01), CalibrationError);
   }
 
-  // A stage of what the page uses of a browser: it flashes, at half the chosen rate in frames, until Escape.
+  // A substitute for the browser functions that the page uses: it flashes, at half the chosen rate in frames,
+  // until Escape.
   void script_flashesUntilEscape() {
     if (QStandardPaths::findExecutable("node").isEmpty()) QSKIP("node is not installed");
     const QString browser = R"(
@@ -117,12 +118,13 @@ handlers.keydown({ key: "Escape" });
 console.log(classes.has("flashing"));
 )";
     const QString said = runInNode(browser + scriptOf(checkerboard()) + play);
-    QCOMPARE(said, QString("(the screen shows 60 pictures a second) true\ntrue true\nvvhhvvhh\nfalse\n"));
+    QCOMPARE(said, QString("(the screen's refresh rate is 60 Hz) true\ntrue true\nvvhhvvhh\nfalse\n"));
   }
 
   void script_saysTheTrueSpacing() {
     if (QStandardPaths::findExecutable("node").isEmpty()) QSKIP("node is not installed");
-    // Of a screen of 1920 x 1080 px, 0.25 mm each, the checkerboard of 320 mm x 230 mm takes 1080 px in height.
+    // On a screen of 1920 x 1080 px, 0.25 mm each, the checkerboard of 320 mm x 230 mm takes 1080 px in
+    // height.
     const QString said =
         runInNode(functionsOf(checkerboard()) +
                   "const placed = layOut(1920, 1080, 1);"

@@ -132,7 +132,7 @@ void TestBoardDrawing::pdf_crossReferencesPointAtObjects() {
 
 void TestBoardDrawing::drawing_ofATooLargeBoardIsRefused() {
   Board b = board();
-  b.spacing_m = 30.1;  // millimetres taken for metres
+  b.spacing_m = 30.1;  // millimetres given as metres
   b.radius_m = 10.5;
   QVERIFY_EXCEPTION_THROWN(boardPdf(b, kSheet), CalibrationError);
   QVERIFY_EXCEPTION_THROWN(boardSvg(board(), {-0.01, {}}), CalibrationError);
@@ -155,7 +155,7 @@ void TestBoardDrawing::squares_areThoseThatFindersLookFor_data() {
                                      << TagPrint{2, "original"};
 }
 
-// The pattern of rendered_board.h, which finders are tested with, and here painted box over box: the same
+// The pattern of rendered_board.h, with which finders are tested, drawn box by box here: both must be equal
 // everywhere.
 void TestBoardDrawing::squares_areThoseThatFindersLookFor() {
   QFETCH(const PrintedBoard, printed);
@@ -195,7 +195,7 @@ void TestBoardDrawing::moreTagsThanThereAre_areRefused() {
                            CalibrationError);
 }
 
-// As large as fits with 1 cm around it, by the width of a board of 5 to 6 spacings.
+// The largest board that fits with a margin of 1 cm, by the width of a board of 5 to 6 spacings.
 void TestBoardDrawing::papers_holdBoardsOfAllTypes_data() {
   QTest::addColumn<Board>("printed");
   QTest::addColumn<Paper>("paper");
@@ -256,8 +256,8 @@ void TestBoardDrawing::png_isTrueToScale_data() {
   QTest::newRow("ChArUco") << boardOf(BoardType::Charuco, 5, 6, 0.03);
 }
 
-// The finder that searches frames finds every point where it is on the sheet, once that is blurred as by a lens, to
-// what the finder leaves of edges this sharp; and the ruler is 100 mm long.
+// The finder for frames finds every point at its position on the sheet, after blur as by a lens, within the
+// finder's error for edges this sharp; and the ruler is 100 mm long.
 void TestBoardDrawing::png_isTrueToScale() {
   QFETCH(const Board, printed);
   constexpr double kDpi = 96.0, kPxPerMm = kDpi / 25.4;
@@ -287,7 +287,7 @@ void TestBoardDrawing::png_tellsItsResolution() {
   const std::string png = boardPng(board(), 300.0, kSheet);
   const std::size_t chunk = png.find("pHYs");
   QVERIFY(chunk != std::string::npos);
-  QCOMPARE(png.substr(chunk + 4, 9), std::string("\0\0\x2E\x23\0\0\x2E\x23\1", 9));  // 11811 a metre
+  QCOMPARE(png.substr(chunk + 4, 9), std::string("\0\0\x2E\x23\0\0\x2E\x23\1", 9));  // 11811 per metre
   QCOMPARE(decoded(png).cols, qRound((5 * 30.1 + 2 * 10.5 + 2 * 10.0) / 25.4 * 300.0));
 }
 

@@ -1,5 +1,4 @@
-// Makes ROS 1 bags byte by byte, with none of the product's code, so that bags can be
-// made that no writer makes.
+// Builds ROS 1 bags byte by byte, without the product's code, including bags that no writer produces.
 #pragma once
 
 #include "core/data/recording.h"
@@ -25,16 +24,16 @@ class BagBuilder {
   std::uint32_t addEvents(const std::string& topic) {
     return addConnection(topic, "dvs_msgs/EventArray", kEventArrayMd5);
   }
-  // What the connection's data say of its topic, which the record's header has too: librosbag's Bag::write
-  // leaves it out, and a publisher may know it by another name.
+  // The topic in the connection's data, which the record's header also has: librosbag's Bag::write omits it,
+  // and a publisher may use another name.
   void setTopicInData(std::uint32_t connection, const std::optional<std::string>& topic);
   std::uint32_t addImu(const std::string& topic) { return addConnection(topic, "sensor_msgs/Imu", kImuMd5); }
 
   void message(std::uint32_t connection, std::int64_t record_time_ns, const std::string& content);
-  void record(const std::string& header, const std::string& data);  // as it is, into the chunk
+  void record(const std::string& header, const std::string& data);  // unchanged, into the chunk
   void endChunk();
 
-  // As a recorder leaves it that was killed: no index, and the bag header says so.
+  // Leaves the bag like a recorder that was killed: without an index, which the bag header states.
   std::string unfinished();
   std::string finished();
 

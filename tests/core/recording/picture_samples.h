@@ -1,4 +1,4 @@
-// The beginnings of files of pictures: enough for what does not decode them.
+// Headers of image files, sufficient for code that does not decode them.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline std::string pngBytes(std::uint32_t width, std::uint32_t height) {
          bigEndianBytes(height, 4) + std::string("\x08\0\0\0\0", 5) + "and so on";
 }
 
-// With an application's segment before the frame.
+// With an application segment before the frame.
 inline std::string jpegBytes(std::uint32_t width, std::uint32_t height) {
   return std::string("\xFF\xD8\xFF\xE0\0\x06JFIF\xFF\xC0\0\x11\x08", 15) + bigEndianBytes(height, 2) +
          bigEndianBytes(width, 2) + "and so on";

@@ -1,4 +1,4 @@
-// A whole recording in memory, as tests compare it, and a scratch folder to keep files in.
+// A whole recording in memory, for comparisons in tests, and a scratch folder.
 #pragma once
 
 #include "core/base/progress.h"
@@ -16,7 +16,7 @@
 
 namespace evical::test {
 
-// What a conversion reports.
+// Messages of a conversion.
 class Log : public ProgressSink {
  public:
   void stageStarted(const ProgressStage& /*stage*/) override {}
@@ -110,7 +110,7 @@ inline std::string fileBytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// Regular events and samples that differ from one another: `count` events 10 us apart, samples 1 ms apart.
+// Regular events and samples that are all different: `count` events 10 us apart, samples 1 ms apart.
 inline std::vector<Event> someEvents(std::size_t count, std::int64_t start_ns = 1'700'000'000'000'000'000) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < count; ++i)
@@ -133,7 +133,7 @@ inline std::vector<ImuSample> someSamples(std::size_t count,
   return samples;
 }
 
-// What messages of 100 events each ms hold.
+// Contents of messages of 100 events per ms.
 inline std::vector<Event> eventsOfMessages(std::size_t count) {
   std::vector<Event> events;
   for (const ImuSample& sample : someSamples(count)) {

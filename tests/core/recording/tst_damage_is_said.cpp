@@ -1,5 +1,4 @@
-// Files of which a little is spoilt: all events and samples come out, or there is a fault,
-// or the file is refused.
+// Slightly damaged files: all events and samples are read, or there is a fault, or the file is refused.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
@@ -86,7 +85,7 @@ void TestDamageIsSaid::hdf5_zeroTail() {
   }
 }
 
-// One letter of a dataset's name: the IMU's other two are left over.
+// One letter of a dataset's name: the IMU's other two datasets remain.
 void TestDamageIsSaid::hdf5_lostName() {
   write(*createDsec(folder_ / "whole.h5", kStreams));
   const std::string whole = fileBytes(folder_ / "whole.h5");
@@ -103,7 +102,7 @@ void TestDamageIsSaid::hdf5_lostName() {
 
 void TestDamageIsSaid::tumVieImu_zeroHeadOrTail_data() {
   QTest::addColumn<bool>("head");
-  QTest::addColumn<bool>("comment");  // as the data set has it
+  QTest::addColumn<bool>("comment");  // as in the data set
   for (const bool comment : {false, true}) {
     QTest::addRow("head%s", comment ? ", comment" : "") << true << comment;
     QTest::addRow("tail%s", comment ? ", comment" : "") << false << comment;

@@ -24,7 +24,7 @@ Q_DECLARE_METATYPE(Spoil)
 
 namespace {
 
-// 1 kHz, moved by hand, noise of a usual sensor.
+// 1 kHz, moved by hand, with the noise of a typical sensor.
 Samples handheld() {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.01);

@@ -1,5 +1,5 @@
-// Output files: whole under their name or not there, whoever else writes, and on the
-// disk before they are renamed.
+// Output files: complete under their name or absent, also with concurrent writers, and on disk before they
+// are renamed.
 #include "core/base/error.h"
 #include "core/recording/conversion.h"
 #include "core/recording/part_file.h"
@@ -22,7 +22,7 @@ std::filesystem::path watched;
 
 }  // namespace
 
-// In the place of the C library's, to see that and when it is called.
+// Replaces the C library's function, to observe its calls.
 extern "C" int fsync(int file) {
   ++synced_files;
   renamed_before_sync = renamed_before_sync || std::filesystem::exists(watched);
@@ -56,7 +56,7 @@ void TestPartFile::twoWritersOfOnePath_leaveAWholeFile_data() {
     if (!format.isFolder() && !format.one_camera) QTest::newRow(format.name) << format.name;
 }
 
-// The last to finish stays.
+// The last one to finish remains.
 void TestPartFile::twoWritersOfOnePath_leaveAWholeFile() {
   QFETCH(QString, format);
   const std::filesystem::path path = pathOf(recordingFormat(format.toStdString()));

@@ -15,7 +15,7 @@ using namespace evical::test;
 
 namespace {
 
-// Files cannot grow beyond a size: writing fails as it does on a full disk.
+// Limits the size of files: writing fails like on a full disk.
 class SmallFilesOnly {
  public:
   explicit SmallFilesOnly(rlim_t largest_bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -199,7 +199,7 @@ void TestRosbag::withoutIndex_everythingIsRead() {
   QCOMPARE(reader->faults()[0].kind, FaultKind::NoIndex);
 }
 
-// What is read must be a beginning of what was written, and the loss must be told.
+// The data read must be a prefix of the written data, and the loss must be reported.
 void TestRosbag::truncation_givesWhatIsWhole() {
   QFETCH(bool, lz4);
   const Recording written = sampleRecording(80'000);
@@ -223,7 +223,7 @@ void TestRosbag::corruption_neverCrashes() {
   std::mt19937 random(7);
   for (int i = 0; i < 150; ++i) {
     std::string broken = bytes;
-    // Half of the damage goes where the structure is: at the start and in the index.
+    // Half of the damage is in the structure: at the start and in the index.
     const std::size_t spread = i % 2 == 0 ? bytes.size() : 6000;
     for (int k = 0; k < 8; ++k) {
       const std::size_t at = random() % spread;
@@ -234,13 +234,13 @@ void TestRosbag::corruption_neverCrashes() {
       const auto reader = openRecording(path("broken.bag"));
       QVERIFY(readRecording(*reader).events.size() < 100'000);
     } catch (const CalibrationError& error) {
-      QVERIFY(error.kind() == ErrorKind::BadInput);  // the magic was hit
+      QVERIFY(error.kind() == ErrorKind::BadInput);  // the magic was damaged
     }
   }
 }
 
 void TestRosbag::lyingLengths_areRefused_data() {
-  QTest::addColumn<bool>("before_name");  // the number stands there, else behind it
+  QTest::addColumn<bool>("before_name");  // the number is there, otherwise after it
   QTest::addColumn<QByteArray>("name");
   QTest::newRow("chunk size") << false << QByteArray("\x09\0\0\0size=", 9);
   QTest::newRow("index position") << false << QByteArray("index_pos=");
@@ -269,7 +269,7 @@ void TestRosbag::unreadableFiles_areNamed_data() {
   QTest::newRow("old bag") << QByteArray("#ROSBAG V1.2\n") << QByteArray("old format");
   QTest::newRow("lfs") << QByteArray("version https://git-lfs.github.com/spec/v1\n")
                        << QByteArray("git lfs pull");
-  QTest::newRow("unknown") << QByteArray("hello world\n") << QByteArray("Readable are ROS 1 bags");
+  QTest::newRow("unknown") << QByteArray("hello world\n") << QByteArray("Use a ROS 1 bag");
 }
 
 void TestRosbag::unreadableFiles_areNamed() {

@@ -1,5 +1,5 @@
-// Bags from crashed recorders, full disks and bad cables: what is whole comes out, what is lost is said, and
-// no bytes whatever crash the reader or make it take much memory.
+// Bags from crashed recorders, full disks and bad cables: complete records are read, losses are reported, and
+// no bytes crash the reader or make it use much memory.
 #include "core/base/error.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
@@ -34,7 +34,7 @@ BagBuilder smallBag(const std::string& compression) {
   return bag;
 }
 
-// What came out must be what went in, only less of it.
+// The data read must be a subset of the written data.
 bool isTrue(const Contents& contents) {
   for (const auto& [stream, events] : contents.events) {
     if (events.size() % kEventsEach != 0) return false;
@@ -48,7 +48,7 @@ bool isTrue(const Contents& contents) {
   return true;
 }
 
-// Whatever happens is a result or a CalibrationError.
+// The outcome is a result or a CalibrationError.
 void readAnything(const std::filesystem::path& path) {
   try {
     readAll(path);
@@ -109,7 +109,7 @@ void TestRosbagDamage::truncation_anywhere_givesWhatIsWhole() {
     QVERIFY2(finished ? !contents.faults.empty() : true, qPrintable(QString("cut at %1").arg(size)));
     QVERIFY2(contents.eventCount() >= most, qPrintable(QString("cut at %1").arg(size)));
     most = std::max(most, contents.eventCount());
-    std::size_t whole_chunks = 0;  // those that lie completely before the cut
+    std::size_t whole_chunks = 0;  // those completely before the cut
     while (whole_chunks + 1 < bag.chunkPositions().size() && bag.chunkPositions()[whole_chunks + 1] <= size)
       ++whole_chunks;
     QVERIFY2(contents.eventCount() >= whole_chunks * 4 * kEventsEach,
@@ -165,7 +165,7 @@ void TestRosbagDamage::corruptChunk_losesNoOther() {
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
-// The second chunk's header length is nonsense; the index knows where the third begins.
+// The second chunk's header length is invalid; the index states the third chunk's position.
 void TestRosbagDamage::damagedRecordHeader_losesOneChunkWhereThereIsAnIndex() {
   BagBuilder bag = smallBag("lz4");
   std::string bytes = bag.finished();
@@ -188,7 +188,7 @@ void TestRosbagDamage::chunkOfZeros_losesNoOther_data() {
   }
 }
 
-// Whatever a disk lost: records before and behind it are read, without an index too.
+// A region lost by a disk: records before and after it are read, also without an index.
 void TestRosbagDamage::chunkOfZeros_losesNoOther() {
   QFETCH(QString, compression);
   QFETCH(bool, finished);
@@ -245,7 +245,7 @@ void TestRosbagDamage::damagedIndex_doesNotHinder() {
   QVERIFY(!contents.faults.empty());
 }
 
-// What is left of the index looks whole, but misses the last chunk, or two, or a connection.
+// The rest of the index looks complete, but lacks the last chunk, or two, or a connection.
 void TestRosbagDamage::indexCutBetweenItsRecords_losesNothing() {
   BagBuilder bag = smallBag("lz4");
   const std::size_t index = bag.unfinished().size();
@@ -256,7 +256,7 @@ void TestRosbagDamage::indexCutBetweenItsRecords_losesNothing() {
     QCOMPARE(contents.eventCount(), kMessages * kEventsEach);
     QCOMPARE(contents.sampleCount(), kMessages);
     QVERIFY(!contents.faults.empty());
-    for (int part = 0; part < 2; ++part) {  // header and data, each with its length before it
+    for (int part = 0; part < 2; ++part) {  // header and data, each preceded by its length
       std::uint32_t length = 0;
       std::memcpy(&length, whole.data() + end, sizeof length);
       end += sizeof length + length;
@@ -278,7 +278,7 @@ void TestRosbagDamage::messageWithAFalseCount_isLeftOut() {
 }
 
 void TestRosbagDamage::lyingLengths_takeNoMemory_data() {
-  QTest::addColumn<int>("offset");  // from the second chunk's beginning
+  QTest::addColumn<int>("offset");  // relative to the second chunk's beginning
   QTest::newRow("header length") << 0;
   QTest::newRow("field length") << 4;
   QTest::newRow("uncompressed size") << 53;

@@ -1,4 +1,4 @@
-// What a ROS 1 bag holds comes out, whichever way it was packed and named.
+// Contents of ROS 1 bags are read for every compression and naming.
 #include "core/base/error.h"
 #include "core/recording/recording_reader.h"
 #include "tests/core/recording/bag_builder.h"
@@ -96,7 +96,7 @@ void TestRosbagReader::chunks_ofEachCompression_giveTheSame() {
   QCOMPARE(contents.eventCount(), std::size_t{3030});
 }
 
-// Numbers from the script that wrote it.
+// Numbers from the script that wrote the file.
 void TestRosbagReader::bagOfPythonRosbag_isReadExactly() {
   const Contents contents = readAll(kRosbagReaderData / "rosbag_python_bz2.bag");
   QVERIFY(contents.faults.empty());
@@ -200,7 +200,7 @@ void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords_data() {
   }
 }
 
-// Two IMUs that their data tell nothing about stay two.
+// Two IMUs without a topic in their data remain two.
 void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords() {
   QFETCH(bool, finished);
   QFETCH(QString, in_data);
@@ -221,7 +221,7 @@ void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords() {
   }
 }
 
-// The index tells where it begins, however much of others lies before it.
+// The index states its beginning, after any number of other topics' messages.
 void TestRosbagReader::lateTopic_isDescribedAtOpening() {
   BagBuilder bag;
   const std::uint32_t early = bag.addEvents("/early"), late = bag.addEvents("/late");
@@ -283,7 +283,7 @@ void TestRosbagReader::zeroStamps_areReplacedByRecordTimes() {
   QCOMPARE(contents.imu.at(1).back().time_ns, kRosbagReaderStart_ns + 4);
 }
 
-// A simulator's clock may start at zero; its first stamp is then no missing one.
+// A simulator's clock may start at zero; its first stamp then does not count as missing.
 void TestRosbagReader::recordingThatBeginsAtZero_keepsItsTimes() {
   BagBuilder bag;
   const std::uint32_t events = bag.addEvents("/events"), imu = bag.addImu("/imu");
@@ -333,7 +333,7 @@ void TestRosbagReader::clockResetWithinAMessage_isNotSortedAway() {
 
 // 300000 events are a chunk of 4 MB.
 void TestRosbagReader::partOfASplitBag_saysSo_data() {
-  QTest::addColumn<QStringList>("files");  // the first is read
+  QTest::addColumn<QStringList>("files");  // the first one is read
   QTest::addColumn<bool>("expected");
   QTest::newRow("first") << QStringList{"a_0.bag", "a_1.bag"} << true;
   QTest::newRow("last") << QStringList{"a_2.bag", "a_0.bag", "a_1.bag"} << true;

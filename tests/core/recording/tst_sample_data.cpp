@@ -1,5 +1,5 @@
-// Recordings of other people's programs, which are too many or not free enough to lie in tests/data: in the folder that
-// EVICAL_DATA names. Counts and sums are those of other decoders, from its manifest.
+// Recordings of other programs, which are too large or not licensed for tests/data, in the folder
+// EVICAL_DATA. Counts and sums are those of other decoders, from its manifest.
 #include "core/recording/recording_reader.h"
 
 #include "tests/core/recording/recording_contents.h"
@@ -63,7 +63,7 @@ class TestSampleData : public QObject {
     QCOMPARE(static_cast<int>(contents.sampleCount()), samples);
   }
 
-  // IMU tables of the kinds that people report; all hold the same motion.
+  // IMU tables of the kinds in users' reports; all contain the same motion.
   void reportedImuTables_holdTheSameMotion_data() {
     QTest::addColumn<QString>("file");
     QTest::addColumn<int>("count");
@@ -88,7 +88,7 @@ class TestSampleData : public QObject {
     QVERIFY((samples.front().specific_force - force).norm() < 1e-6);
     QVERIFY((samples.front().angular_rate - rate).norm() < 1e-6);
     QCOMPARE(qlonglong(samples[1].time_ns - samples[0].time_ns), qlonglong(5'000'000));
-    if (count < 2000) return;  // the manifest's means are over the whole motion
+    if (count < 2000) return;  // the manifest's means are for the whole motion
     Eigen::Vector3d mean_force = Eigen::Vector3d::Zero(), mean_rate = Eigen::Vector3d::Zero();
     for (const RawImuSample& sample : samples)
       mean_force += sample.specific_force / 2000.0, mean_rate += sample.angular_rate / 2000.0;

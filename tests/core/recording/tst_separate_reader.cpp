@@ -14,7 +14,7 @@ namespace {
 
 using namespace evical;
 
-// Hands out events of a second each, and does something else with one of them.
+// Returns events of one second each, and fails in some way at one of them.
 class CountingReader : public RecordingReader {
  public:
   using Deed = void (*)();
@@ -115,7 +115,7 @@ void TestSeparateReader::selection_comesAcross() {
 void TestSeparateReader::reader_thatFalls_endsTheRecording_data() {
   QTest::addColumn<bool>("aborts");
   QTest::newRow("by a signal") << false;
-  QTest::newRow("by itself") << true;
+  QTest::newRow("by abort") << true;
 }
 
 void TestSeparateReader::reader_thatFalls_endsTheRecording() {

@@ -17,7 +17,7 @@ using Events = std::vector<Event>;
 
 constexpr std::int64_t kStrayStampsStart_ns = 1'600'000'000'000'000'000, kDay_ns = 86'400 * kSecond_ns;
 
-// One each 10 us.
+// One event per 10 us.
 Events steadyEvents(std::size_t count, std::int64_t start_ns = kStrayStampsStart_ns) {
   Events events;
   for (std::size_t i = 0; i < count; ++i)
@@ -71,7 +71,7 @@ class TestStrayStamps : public QObject {
   void firstSamplesOfAnotherClock_areDropped();
 };
 
-// Drivers stamp their first samples 0, or by a clock that is not set yet.
+// Some drivers stamp their first samples 0, or with a clock that is not set yet.
 void TestStrayStamps::firstSamplesOfAnotherClock_areDropped_data() {
   QTest::addColumn<qlonglong>("step_ns");
   QTest::newRow("all zero") << qlonglong(0);
@@ -149,7 +149,7 @@ void TestStrayStamps::packetWithAWrongStamp_isDropped() {
   QCOMPARE(result.strays, std::uint64_t{1000});
 }
 
-// The lens was covered: what comes after is borne out by more of the same.
+// The lens was covered: later events are confirmed by more of the same.
 void TestStrayStamps::pause_isNoStray() {
   Events events = steadyEvents(20'000);
   const Events after = steadyEvents(20'000, kStrayStampsStart_ns + 3600 * kSecond_ns);
@@ -172,8 +172,8 @@ void TestStrayStamps::fewEvents_countAsTheyAre() {
   QVERIFY(filtered({}, 1).kept.empty());
 }
 
-// Three seconds at 2 million events a second, where the scene would give more half of the time; the same of a scene that never
-// reaches that.
+// Three seconds at a limit of 2 million events per second, while the scene would exceed it half of the time;
+// then a scene that never reaches it.
 void TestStrayStamps::readOutAtItsLimit_isTold() {
   for (const bool limited : {true, false}) {
     ReadOutLoad load;

@@ -1,4 +1,5 @@
-// What writers say that streams will be called is what readers call them: nobody has to open the new file to know.
+// Stream names that writers announce are those that readers report: the new file need not be opened to know
+// them.
 #include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 
@@ -66,7 +67,7 @@ void TestStreamNames::streamNames_areThoseThatReadersGive_data() {
     QTest::addRow("%s, camera and IMU", format.name) << name << QStringList{"/dvs/events", "/dvs/imu"};
     QTest::addRow("%s, camera alone", format.name) << name << QStringList{"events"};
     QTest::addRow("%s, IMU alone", format.name) << name << QStringList{"some_imu"};
-    if (format.isFolder() || name == "dsec") continue;  // one stream of a type
+    if (format.isFolder() || name == "dsec") continue;  // one stream per type
     QTest::addRow("%s, rig", format.name)
         << name << QStringList{"/left/events", "/right/events", "/left/imu", "/right/imu"};
     QTest::addRow("%s, nobody's", format.name) << name << QStringList{"a", "b", "imu"};
@@ -90,13 +91,14 @@ void TestStreamNames::streamNames_areThoseThatReadersGive() {
   const std::vector<std::string> names = writer->streamNames();
   QCOMPARE(names.size(), streams.size());
   const std::unique_ptr<RecordingReader> reader = openRecording(path);
-  const std::size_t triggers = chosen.name == std::string_view("raw") ? 1 : 0;  // RAW has a stream for them
+  const std::size_t triggers =
+      chosen.name == std::string_view("raw") ? 1 : 0;  // RAW has a stream for triggers
   QCOMPARE(reader->streams().size(), streams.size() + triggers);
   for (std::size_t i = 0; i < streams.size(); ++i)
-    findStream(*reader, names[i], streams[i].type);  // throws where there is none
+    findStream(*reader, names[i], streams[i].type);  // throws if there is none
 }
 
-// A file with topics only is a recording that nobody can do anything with, but the conversion has succeeded.
+// A file with topics only is useless as a recording, but its conversion has succeeded.
 void TestStreamNames::conversion_tellsNewNames_alsoOfAnEmptyRecording() {
   ConversionRequest request;
   request.input = scratch_.write("empty/samples.csv", "t_s,ax,ay,az,gx,gy,gz\n");

@@ -1,5 +1,5 @@
-// What assessments say as YAML and JSON. Names need not be UTF-8: files and topics have any bytes, and reports are written
-// all the same.
+// Assessments as YAML and JSON. Names need not be UTF-8: files and topics may have any bytes, and reports
+// must be written nevertheless.
 #include "core/base/yaml_node.h"
 #include "core/report/assessment_report.h"
 #include "tests/support/test_program.h"
@@ -46,7 +46,7 @@ class TestDamagedNames : public QObject {
     isJsonWithNote(repeat);
   }
 
-  // Both are made from one description.
+  // Both are generated from one description.
   void yaml_hasTheKeysOfJson() {
     Maintenance maintenance;
     maintenance.reason = "it's: so";

@@ -1,4 +1,4 @@
-// Detections as tables: written and read they are the same, and what is damaged is refused with its line.
+// Detections as tables: unchanged after writing and reading; damaged tables are refused with the line.
 #include "core/base/error.h"
 #include "core/report/detections_csv.h"
 #include "tests/support/test_program.h"
@@ -106,9 +106,9 @@ class TestDetectionsCsv : public QObject {
                                    << QByteArray("-0.006666666666666667")
                                    << QByteArray("(line 2): var_x_px2");
     QTest::newRow("backwards") << QByteArray(",0.2,partial") << QByteArray(",0.01,partial")
-                               << QByteArray("(line 4): window_time_s '0.01' runs backwards");
+                               << QByteArray("(line 4): window_time_s '0.01' decreases");
     QTest::newRow("unknown kind") << QByteArray("partial") << QByteArray("whole")
-                                  << QByteArray("(line 4): grid 'whole' is not known");
+                                  << QByteArray("(line 4): grid 'whole' is unknown");
     QTest::newRow("quotes left open")
         << QByteArray("upper\"\"\"") << QByteArray("upper\"\"") << QByteArray("columns");
     QTest::newRow("empty") << QByteArray() << QByteArray() << QByteArray("is empty");

@@ -1,4 +1,4 @@
-// One recording beside another, and beside the solution that it is a part of.
+// One recording compared with another, and with the joint solution that contains it.
 #include "core/report/repeat_comparison.h"
 #include "tests/support/test_program.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Three recordings of one number; the third does not fit, and is not in the joint solution.
+// Three recordings of one quantity; the third disagrees, and is not in the joint solution.
 Repeatability threeRecordings() {
   Repeatability repeat;
   for (const char* const name : {"a", "b", "c"}) {
@@ -28,7 +28,7 @@ RepeatedNumber number() {
   RepeatedNumber one;
   one.values = {1.0, 3.0, 10.0};
   one.sigmas = {0.3, 0.4, 0.5};
-  one.joint = 1.72;  // weighed by 1/sigma^2
+  one.joint = 1.72;  // weighted by 1/sigma^2
   one.joint_sigma = 0.24;
   return one;
 }
@@ -47,7 +47,7 @@ class TestRepeatComparison : public QObject {
     QCOMPARE(differenceOf(threeRecordings(), number(), 1, 0)->value, -2.0);
   }
 
-  // var(a - joint) = var(a) - var(joint), as the joint solution is the best of what holds a.
+  // var(a - joint) = var(a) - var(joint), as the joint solution is the optimum that includes a.
   void partOfAll_isComparedWithoutWhatBothHaveInCommon() {
     const auto difference = differenceOf(threeRecordings(), number(), 0, kAllTogether);
     QVERIFY(difference);
@@ -66,7 +66,7 @@ class TestRepeatComparison : public QObject {
     one.sigmas[1] = kNone;
     QVERIFY(!differenceOf(threeRecordings(), one, 0, 1));
     QVERIFY(!differenceOf(threeRecordings(), one, 0, 0));
-    one.joint_sigma = 0.0;  // each has its own
+    one.joint_sigma = 0.0;  // separate in each recording
     QVERIFY(!differenceOf(threeRecordings(), one, 0, kAllTogether));
     QVERIFY(!numberOf(one, 7));
   }

@@ -95,7 +95,8 @@ void TestResidualStatistics::ellipse_holdsItsShare() {
   for (const Eigen::Vector2d& point : ellipse) QVERIFY(std::abs((point - s.mean_px).norm() - 0.2) < 0.01);
 }
 
-// Two windows of one circle each, at (3, 4) px and (-3, -4) px with sigmas of 1 px: every number by hand.
+// Two windows of one circle each, at (3, 4) px and (-3, -4) px with sigmas of 1 px: every number computed by
+// hand.
 void TestResidualStatistics::statistics_ofTwoResidualsAreThoseByHand() {
   CircleResidual residual;
   residual.centre_px = {30.0, 50.0};

@@ -33,7 +33,7 @@ NamedResult sampleForResultYaml() {
   CalibrationResult& result = test::ownResult(named);
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
-  result.causes = {QualityWarning{"the lens: \"z\" is off",
+  result.causes = {QualityWarning{"the lens: \"z\" is inaccurate",
                                   Repair{"optimisation.model.camera_intrinsics", "free"}, "lens", 0.875},
                    QualityWarning{"planar motion", {}, "observability"}};
   result.start_ns = 1'700'000'000'123'456'789;
@@ -116,7 +116,7 @@ class TestResultYaml : public QObject {
     QCOMPARE(resultYaml(readBack(text)), text);
   }
 
-  // Of frames and points there is none: it is held at 0.
+  // Frames and points have none: it is fixed at 0.
   void edgeLead_isShownWhereItIsEstimated() {
     NamedResult named = sampleForResultYaml();
     QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 2);
@@ -234,7 +234,7 @@ class TestResultYaml : public QObject {
     QTest::newRow("quaternion")
         << "evical_result: 1\ncameras: {a: {reference_from_camera: {rotation_xyzw: [0, 0, 0, "
            "0], translation_m: [0, 0, 0]}}}\n"
-        << "no unit quaternion";
+        << "not a unit quaternion";
     QTest::newRow("start") << "evical_result: 1\nrecording: {start_ns: 1.7e18}\n"
                            << "whole number";
     QTest::newRow("vector") << "evical_result: 1\ngravity_m_s2: [1, 2]\n"

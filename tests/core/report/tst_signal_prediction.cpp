@@ -27,7 +27,7 @@ double rms(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vecto
 class TestSignalPrediction : public QObject {
   Q_OBJECT
 
-  // Two IMUs, the second with a lever arm and a clock of its own; accelerometers that are late; no noise.
+  // Two IMUs, the second with a lever arm and a separate clock; delayed accelerometers; no noise.
   SimulatedRig rig_;
 
  private slots:
@@ -49,8 +49,8 @@ class TestSignalPrediction : public QObject {
     QFETCH(int, imu);
     const SignalPrediction prediction = predict(rig_, rig_.truth, static_cast<std::size_t>(imu));
     QVERIFY(prediction.rate_rad_s.time_s.size() > 1000);
-    // What a spline of 20 ms leaves of the sinusoids' second derivatives; the prediction are some
-    // 2 rad/s and 10 m/s^2.
+    // Error of the second derivatives of a spline of 20 ms for these sinusoids; the predictions are some 2
+    // rad/s and 10 m/s^2.
     QVERIFY2(rms(prediction.rate_rad_s.measured, prediction.rate_rad_s.predicted) < 1e-3, "rad/s");
     QVERIFY2(rms(prediction.force_m_s2.measured, prediction.force_m_s2.predicted) < 0.02, "m/s^2");
   }

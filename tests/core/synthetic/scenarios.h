@@ -5,7 +5,7 @@
 
 namespace evical::test {
 
-// A small sensor without distortion or noise, fronto-parallel to a board of 3x2 circles, all motion off.
+// A small sensor without distortion or noise, fronto-parallel to a board of 3x2 circles, without motion.
 inline Scenario stillScenario() {
   Scenario scenario;
   scenario.duration_s = 1.0;
@@ -31,7 +31,7 @@ inline Scenario stillScenario() {
   return scenario;
 }
 
-// The same waved about, with a camera that sits askew on the IMU.
+// The same with motion, and a camera that is mounted obliquely on the IMU.
 inline Scenario wavedScenario() {
   Scenario scenario = stillScenario();
   scenario.motion = {};

@@ -35,7 +35,7 @@ Eigen::Vector2d centreByPoints(const RigidTransform& world_from_camera, const Ca
   return centre.cwiseProduct(camera.focal_length_px) + camera.principal_point_px;
 }
 
-// Where the renderer has a circle's ink, of the first camera: its centroid, which is the ellipse's centre.
+// Centroid of a circle's ink as rendered for the first camera, which is the ellipse's centre.
 Eigen::Vector2d inkAt(const Scenario& scenario, const RigidTransform& world_from_camera,
                       const Eigen::Vector2d& about_px, int reach_px) {
   const SceneRenderer renderer(scenario, 0);
@@ -93,13 +93,13 @@ class TestBoardTruth : public QObject {
     }
   }
   void inside_meansTheWholeCircle() {
-    // Fronto-parallel, 400 px/m: the board's 3x2 circles of 8 px radius lie 20 px
-    // apart around the image's middle.
+    // Fronto-parallel, 400 px/m: the board's 3x2 circles of 8 px radius are 20 px apart around the image
+    // centre.
     Scenario scenario = test::stillScenario();
     QCOMPARE(circlesInView(SinusoidMotion(scenario), scenario, 0, 0.5), 6);
     QVERIFY(boardInView(SinusoidMotion(scenario), scenario, 0, 0.5));
-    // Columns at x = c + {-30, 10} and, in the middle row, {-10, 30}: 37.5 px left of the
-    // middle cuts into the first.
+    // Columns at x = c + {-30, 10} and, in the middle row, {-10, 30}: a border at 37.5 px left of the centre
+    // cuts the first one.
     scenario.cameras[0].intrinsics.principal_point_px.x() = 37.5;
     QCOMPARE(circlesInView(SinusoidMotion(scenario), scenario, 0, 0.5), 4);
     scenario.cameras[0].intrinsics.principal_point_px.x() = 38.5;
@@ -107,12 +107,12 @@ class TestBoardTruth : public QObject {
     scenario.cameras[0].intrinsics.principal_point_px.x() = -2.0;
     QVERIFY(!boardInView(SinusoidMotion(scenario), scenario, 0, 0.5));
   }
-  // Points of the bent sheet, each projected by itself.
+  // Points of the bent sheet, each projected separately.
   void bentBoard_isSeenWhereItsPointsAre() {
     Scenario scenario = test::wavedScenario();
     const SinusoidMotion motion(scenario);
     scenario.board_bow = {0.001, -0.002, 0.0015};
-    scenario.board.radius_m = 1e-3;  // so small that the mean of points' images is the ellipse's centre
+    scenario.board.radius_m = 1e-3;  // so small that the mean of the points' images is the ellipse's centre
     const CameraIntrinsics& camera = scenario.cameras[0].intrinsics;
     const Eigen::Vector2d extent = scenario.board.extent_m();
     const double rows = 8.0 * 0.001 / (extent.x() * extent.x()),
@@ -136,7 +136,7 @@ class TestBoardTruth : public QObject {
   }
   void bentBoard_isRenderedWhereItsTruthIs() {
     Scenario scenario = test::stillScenario();
-    scenario.scene.margin_m = 0.2;  // nothing but paper about each circle
+    scenario.scene.margin_m = 0.2;  // only paper around each circle
     scenario.motion.angle_amplitude_rad = {0.3, 0.3, 0.3};
     const SinusoidMotion motion(scenario);
     const double stamp_s = 0.3;
@@ -157,7 +157,7 @@ class TestBoardTruth : public QObject {
     }
     QVERIFY2(farthest_px > 0.2, qPrintable(QString::number(farthest_px)));
   }
-  // Wherever the hand is, of what it is in front of nothing is visible; it comes and goes.
+  // The hand hides everything behind it at any position; it comes and goes.
   void circlesBehindAHand_areHidden() {
     Scenario scenario = test::stillScenario();
     scenario.duration_s = 30.0;
@@ -171,7 +171,7 @@ class TestBoardTruth : public QObject {
       changes += (visible == 6) != (last == 6);
       last = visible;
     }
-    // It stays for 1 s of 3, and comes and goes for 1.6 s more.
+    // It stays for 1 s of 3 s, and comes and goes for 1.6 s more.
     QVERIFY2(some > 150 && some < 500 && all > 100, qPrintable(QString("%1 and %2").arg(some).arg(all)));
     QVERIFY(changes >= 18);  // ten visits
     for (const BoardView& view : simulateObservations(scenario, 0, 0.05, 0.02).views)

@@ -1,4 +1,5 @@
-// A drive's motion: rates and accelerations are the derivatives of its pose, stops stand still, attitudes go all around.
+// Simulated drives: rates and accelerations are the derivatives of the pose, the rig is at rest during stops,
+// and attitudes cover all directions.
 #include "core/geometry/so3.h"
 #include "core/synthetic/drive_motion.h"
 #include "tests/support/test_program.h"
@@ -27,7 +28,7 @@ class TestDriveMotion : public QObject {
   void ratesAndAccelerations_matchNumericDerivatives() {
     const DriveMotionModel motion(tumbling());
     constexpr double kStep_s = 1e-4;
-    // Never where the envelope begins or ends: there the next derivative jumps.
+    // Never at the borders of the envelope, where the next derivative is discontinuous.
     for (double t = 0.371; t < 115.0; t += 1.73) {
       const MotionState before = motion.at(t - kStep_s), now = motion.at(t), after = motion.at(t + kStep_s);
       const Eigen::Vector3d rate =
@@ -39,7 +40,7 @@ class TestDriveMotion : public QObject {
           (after.world_from_body.translation_m - before.world_from_body.translation_m) / (2.0 * kStep_s);
       const Eigen::Vector3d acceleration =
           (after.velocity_in_world_m_s - before.velocity_in_world_m_s) / (2.0 * kStep_s);
-      // What a step of 1e-4 s leaves of third derivatives.
+      // Error of a difference with a step of 1e-4 s, due to third derivatives.
       QVERIFY((rate - now.angular_velocity_in_body_rad_s).norm() < 1e-5);
       QVERIFY((turning - now.angular_acceleration_in_body_rad_s2).norm() < 1e-4);
       QVERIFY((velocity - now.velocity_in_world_m_s).norm() < 1e-5);

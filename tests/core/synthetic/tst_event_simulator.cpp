@@ -25,7 +25,7 @@ bool same(const std::vector<Event>& a, const std::vector<Event>& b) {
   });
 }
 
-// The board slides sideways: one slow sinusoid, about 100 px/s in the middle of its swing.
+// The board moves sideways: one slow sinusoid, about 100 px/s in the middle of its period.
 Scenario slidingScenario(double blur_px, double threshold) {
   Scenario scenario = test::stillScenario();
   scenario.motion.target_amplitude_m = {0.1, 0.0};
@@ -38,14 +38,14 @@ Scenario slidingScenario(double blur_px, double threshold) {
   return scenario;
 }
 
-// Mean lead of the bursts over the true edge, in px along the motion (docs/maths.md, 4), and
-// how many events a burst has.
+// Mean lead of the bursts relative to the true edge, in px along the motion (docs/maths.md, 4), and the
+// number of events per burst.
 struct Leads {
   double first = 0.0, mean = 0.0, last = 0.0, count = 0.0, speed_px_s = 0.0;
   int bursts = 0;
 };
 
-// Bursts of pixels that the edge of a circle crosses head on, leading and trailing edges alike.
+// Bursts of pixels that the edge of a circle crosses along its normal, leading and trailing edges alike.
 Leads leadsOf(const Scenario& scenario) {
   const SinusoidMotion motion(scenario);
   std::map<std::pair<int, bool>, std::vector<double>> trains;  // by pixel and polarity
@@ -53,7 +53,7 @@ Leads leadsOf(const Scenario& scenario) {
   for (const Event& event : eventsOf(scenario))
     trains[{event.y_px * width + event.x_px, event.brighter}].push_back(
         static_cast<double>(event.time_ns - scenario.start_ns) * 1e-9);
-  // About the middle of the swing, where the speed hardly changes while an edge passes.
+  // Near the middle of the period, where the speed hardly changes during an edge's passage.
   const double px_per_m = 200.0 / scenario.motion.distance_m;
   const double slowest_px_s = 0.85 * px_per_m * scenario.motion.target_amplitude_m.x() * 2.0 *
                               std::numbers::pi * scenario.motion.lowest_frequency_hz;
@@ -111,7 +111,7 @@ class TestEventSimulator : public QObject {
     QTest::addColumn<double>("first");
     QTest::addColumn<double>("mean");
     QTest::addColumn<double>("last");
-    // Method 4.1, computed for a straight edge.
+    // Method 4.1, for a straight edge.
     QTest::newRow("0.4, 0.3") << 0.4 << 0.3 << 0.61 << -0.05 << -0.76;
     QTest::newRow("0.6, 0.15") << 0.6 << 0.15 << 1.08 << -0.08 << -1.58;
     QTest::newRow("0.6, 0.3") << 0.6 << 0.3 << 0.83 << -0.06 << -1.03;
@@ -133,8 +133,8 @@ class TestEventSimulator : public QObject {
                              .arg(leads.bursts);
     qInfo("%s", qPrintable(said));
     QVERIFY2(leads.bursts > 100, qPrintable(said));
-    // The table is for pixels whose reference is the bright level itself. Here the edge before has left it up
-    // to a threshold away, so that first events come later, and fewer.
+    // The table is for pixels whose reference is exactly the bright level. Here the previous edge has left it
+    // up to a threshold away, so that first events are later, and fewer.
     QVERIFY2(std::abs(leads.first - first) < 0.2, qPrintable(said));
     QVERIFY2(std::abs(leads.mean - mean) < 0.13, qPrintable(said));
     QVERIFY2(std::abs(leads.last - last) < 0.32, qPrintable(said));
@@ -149,11 +149,11 @@ class TestEventSimulator : public QObject {
     const Leads prompt = leadsOf(scenario);
     pixel.latency_s = 1e-3;
     pixel.low_pass_s = 2e-3;
-    const Leads slow = leadsOf(scenario);  // against a truth that has the 3 ms in it
+    const Leads slow = leadsOf(scenario);  // compared with a truth that includes the 3 ms
     QVERIFY2(std::abs(slow.mean - prompt.mean) < 0.03, qPrintable(QString::number(slow.mean - prompt.mean)));
   }
-  // Slow in the dark, and slower where it darkens: leading and trailing edges of dark circles move apart, but
-  // the middle of both stays as late as the time constant says.
+  // Pixels are slow in the dark, and slower for darkening: leading and trailing edges of dark circles move
+  // apart, but the mean of both remains delayed by the time constant.
   void unevenPixels_areLateByTheSameOnTheWhole() {
     Scenario scenario = slidingScenario(0.6, 0.3);
     EventPixelModel& pixel = scenario.cameras[0].pixel;
@@ -176,14 +176,15 @@ class TestEventSimulator : public QObject {
     scenario.cameras[0].pixel.leak_rate_hz = 2.0;
     scenario.duration_s = 3.0;
     const std::vector<Event> events = eventsOf(scenario);
-    // At first references lie up to two thresholds away, which is a second.
+    // Initially references deviate by up to two thresholds, which decays within a second.
     const auto late = std::count_if(events.begin(), events.end(), [&](const Event& e) {
       return e.time_ns > scenario.start_ns + 1'000'000'000;
     });
     QVERIFY(std::abs(static_cast<double>(late) / (2.0 * 128 * 96 * 2.0) - 1.0) < 0.02);
     QVERIFY(std::all_of(events.begin(), events.end(), [](const Event& e) { return e.brighter; }));
   }
-  // Strong enough for one threshold up and one down in each period, of pixels whose reference is not in the middle.
+  // Strong enough for one threshold up and one down per period, in pixels whose reference is not in the
+  // middle.
   void lamp_flickersInTime() {
     Scenario scenario = test::stillScenario();
     scenario.scene.lamp_flicker = 0.25;  // 0.51 of log intensity from top to bottom, thresholds are 0.3
@@ -200,7 +201,7 @@ class TestEventSimulator : public QObject {
     QVERIFY(!same(steady, noisy));
     QVERIFY(std::abs(static_cast<double>(noisy.size()) / static_cast<double>(steady.size()) - 1.0) < 0.05);
   }
-  // No more than so many in any stretch, in order, and none later than it may wait.
+  // No more than the limit in any interval, in order, and none later than the longest wait.
   void arbiter_letsThroughOneByOne() {
     Scenario scenario = test::wavedScenario();
     scenario.duration_s = 0.3;
@@ -214,12 +215,13 @@ class TestEventSimulator : public QObject {
     QVERIFY(std::is_sorted(queued.begin(), queued.end(),
                            [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; }));
   }
-  // Against a truth with the delay in it a burst's mean is off by the same pixels at every speed.
+  // Compared with a truth that includes the delay, a burst's mean has the same error in pixels at every
+  // speed.
   void edges_leadAlikeAtEverySpeed() {
     Scenario scenario = slidingScenario(1.0, 0.3);
     scenario.duration_s = 5.0;
     const Leads slow = leadsOf(scenario);
-    // 300 px/s. As many swings, because a pixel's reference comes from the edges that passed before.
+    // 300 px/s. Equally many periods, because a pixel's reference depends on the previous edges.
     scenario.motion.lowest_frequency_hz = scenario.motion.highest_frequency_hz = 1.2;
     scenario.duration_s = 5.0 / 3.0;
     const Leads fast = leadsOf(scenario);
@@ -227,7 +229,8 @@ class TestEventSimulator : public QObject {
     qInfo("%s", qPrintable(said));
     QVERIFY2(std::abs(fast.mean - slow.mean) < 0.02, qPrintable(said));  // 0.1 ms between 100 and 300 px/s
   }
-  // A board that does not move, before which nothing else does: only what comes and goes fires.
+  // A static board with nothing else moving in front of it: only appearing and disappearing objects cause
+  // events.
   void handsAndPeople_fireWhereNothingElseMoves() {
     Scenario scenario = test::stillScenario();
     scenario.duration_s = 2.4;
@@ -243,12 +246,12 @@ class TestEventSimulator : public QObject {
     const std::vector<Event> people = eventsOf(scenario);
     QVERIFY2(people.size() > 300, qPrintable(QString::number(people.size())));
     QVERIFY(same(people, eventsOf(scenario, 3)));
-    // Behind the board: its middle hides them.
+    // Behind the board, which hides their middle.
     QVERIFY(std::none_of(people.begin(), people.end(), [](const Event& e) {
       return std::abs(e.x_px - 63) < 20 && std::abs(e.y_px - 47) < 20;
     }));
   }
-  // The lamp in the varnish of a board that slides sideways stays where it is in the image, and hides ink.
+  // The lamp's reflection on a board that moves sideways stays at its place in the image, and hides ink.
   void gloss_addsLightWhereTheLampIsMirrored() {
     Scenario scenario = slidingScenario(0.6, 0.3);
     const auto eventsNear = [&](int x, int y) {
@@ -259,7 +262,7 @@ class TestEventSimulator : public QObject {
     };
     const auto matt = eventsNear(63, 47), matt_aside = eventsNear(63, 80);
     scenario.scene.gloss.strength = 3.0;
-    // Mirrored in the image's middle if it is behind the camera.
+    // Mirrored about the image centre if it is behind the camera.
     scenario.scene.lamp_m = {0.0, 0.0, -1.5};
     const auto glossy = eventsNear(63, 47), glossy_aside = eventsNear(63, 80);
     const QString said = QString("%1 %2 %3 %4").arg(matt).arg(glossy).arg(matt_aside).arg(glossy_aside);
@@ -315,7 +318,7 @@ class TestEventSimulator : public QObject {
   void brightCircles_swapPolarities() {
     Scenario scenario = slidingScenario(0.6, 0.3);
     scenario.board.circles = CircleShade::Bright;
-    const Leads leads = leadsOf(scenario);  // looks for OFF ahead
+    const Leads leads = leadsOf(scenario);  // expects OFF to lead
     QVERIFY(leads.bursts == 0);
   }
   void stop_cancels() {

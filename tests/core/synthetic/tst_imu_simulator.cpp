@@ -47,7 +47,7 @@ class TestImuSimulator : public QObject {
                   .norm() < 1e-12);
     }
   }
-  // By three samples: their forces are those of three samples before, their rates are not.
+  // Delayed by three samples: specific forces are those of three samples before, rates are not.
   void lateAccelerometer_measuresWhatWas() {
     Scenario scenario = test::wavedScenario();
     const std::vector<ImuSample> prompt = simulateImu(scenario, 0);
@@ -58,7 +58,7 @@ class TestImuSimulator : public QObject {
       QVERIFY(late[k].angular_rate_rad_s == prompt[k].angular_rate_rad_s);
     }
   }
-  // As its amplitude at 5 Hz, behind a filter of 20 Hz: 1 / sqrt(1 + (5/20)^2); not late.
+  // Amplitude of 5 Hz after a filter of 20 Hz: 1 / sqrt(1 + (5/20)^2); without delay.
   void lowPass_flattensWithoutDelay() {
     Scenario scenario = test::stillScenario();
     scenario.motion.angle_amplitude_rad = {0.0, 0.1, 0.0};
@@ -142,7 +142,7 @@ class TestImuSimulator : public QObject {
     scenario.duration_s = 20.0;
     scenario.imus.front().faults = {.gyroscope_wander_rad_s = 0.1, .wander_time_s = 0.02};
     const std::vector<ImuSample> samples = simulateImu(scenario, 0);
-    double squares = 0.0, products = 0.0;  // with what comes 20 samples, one such time, later
+    double squares = 0.0, products = 0.0;  // with samples 20 periods, one such time, later
     for (std::size_t k = 0; k + 20 < samples.size(); ++k) {
       squares += samples[k].angular_rate_rad_s.squaredNorm();
       products += samples[k].angular_rate_rad_s.dot(samples[k + 20].angular_rate_rad_s);
@@ -176,7 +176,7 @@ class TestImuSimulator : public QObject {
     const double sigma = std::sqrt(squares / (3.0 * kSeeds));
     QVERIFY(std::abs(sigma / (1e-2 * 2.0) - 1.0) < 0.2);
   }
-  // Still and without noise, what a gyroscope measures is its bias.
+  // At rest and without noise, a gyroscope measures its bias.
   void meanBiases_areThoseInTheSamples() {
     Scenario scenario = test::stillScenario();
     SimulatedImu& imu = scenario.imus.front();

@@ -1,4 +1,4 @@
-// What is seen of a simulated room depends on the place that is seen, not on who looks.
+// The appearance of a simulated room depends on the place that is seen, not on the camera.
 #include "core/synthetic/room_renderer.h"
 
 #include "core/geometry/camera_model.h"
@@ -62,7 +62,7 @@ class TestRoomRenderer : public QObject {
   Q_OBJECT
 
  private slots:
-  // Turned by two pixels about its own y axis, nearly the same picture lies two pixels further.
+  // Rotated by two pixels about its own y axis, the camera sees nearly the same image, shifted by two pixels.
   void turningCamera_movesThePicture() {
     const Scenario scenario = roomScenario();
     const RoomRenderer renderer(scenario, 0);
@@ -80,7 +80,7 @@ class TestRoomRenderer : public QObject {
     QVERIFY2(moved < 0.4 * still, qPrintable(QString("%1 %2").arg(moved).arg(still)));
   }
 
-  // Boxes stand before walls and keep the middle free.
+  // Boxes are in front of walls and not in the middle.
   void boxes_stayApart() {
     Scenario scenario = roomScenario();
     scenario.room.boxes = 12;
@@ -97,7 +97,7 @@ class TestRoomRenderer : public QObject {
                                 (scene.walls[1].middle_m - scene.walls[0].middle_m) / 2.0) < 0.0);
   }
 
-  // A room without a picture makes no events but noise, however the camera turns.
+  // A room without texture causes no events except noise, for any rotation of the camera.
   void bareRoom_isDark() {
     Scenario scenario = roomScenario();
     scenario.scene.clutter_contrast = 0.0;

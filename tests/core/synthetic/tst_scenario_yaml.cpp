@@ -127,7 +127,7 @@ class TestScenarioYaml : public QObject {
         << "clutter_distance_m";
     QTest::newRow("a crowd") << "base: davis346.yaml\nscene: {people: {every_s: 0.01}}\n"
                              << "scene.people.every_s"
-                             << "crowd";
+                             << "too short";
     QTest::newRow("unknown gloss") << "base: davis346.yaml\nscene: {gloss: {width_deg: 3}}\n"
                                    << "scene.gloss.width_deg"
                                    << "spread_deg";
@@ -136,7 +136,7 @@ class TestScenarioYaml : public QObject {
                                      << "0.5";
     QTest::newRow("endless base") << "base: scenario.yaml\n"
                                   << "base"
-                                  << "without an end";
+                                  << "has no end";
     QTest::newRow("missing base") << "base: davis347.yaml\n"
                                   << "davis347.yaml"
                                   << "";
@@ -186,7 +186,7 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(truth["gravity_m_s2"].reals(3)[1], scenario.gravity_in_world_m_s2.y());
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
   }
-  // What bow and spacing are against what the session says: the middle of 0.5 m of columns stands out by 1 mm.
+  // Bow and spacing relative to the session: the middle of columns of 0.5 m is bowed by 1 mm.
   void truth_hasTheBoardsBow() {
     const Scenario scenario = read(
         "base: davis346.yaml\nboard: {column_bow_m: 0.001, twist_m: 0.0007}\nsession: {spacing_error: "
@@ -213,7 +213,7 @@ class TestScenarioYaml : public QObject {
   }
 
  private:
-  // The text as a scenario beside davis346.yaml.
+  // The text as a scenario in davis346.yaml's folder.
   Scenario read(const std::string& text) {
     const QTemporaryDir folder;
     const std::filesystem::path path = folder.path().toStdString();

@@ -78,7 +78,7 @@ class TestSinusoidMotion : public QObject {
     QVERIFY(distance_m(with.worldFromCamera(0, 1.2), without.worldFromCamera(0, 1.2)) < 1e-12);
     QVERIFY(distance_m(with.worldFromCamera(0, 1.51), with.worldFromCamera(0, 1.74)) < 1e-12);
     QVERIFY(with.imuAt(1.6).angular_velocity_in_body_rad_s.norm() < 1e-12);
-    // A stop and two ramps of half the speed are half a second less of motion.
+    // A stop and two ramps of half the speed reduce the motion by half a second.
     QVERIFY(distance_m(with.worldFromCamera(0, 2.3), without.worldFromCamera(0, 1.8)) < 1e-12);
   }
   void turns_keepTheCameraWhereItIs() {
@@ -115,7 +115,7 @@ class TestSinusoidMotion : public QObject {
     scenario.duration_s = 20.0;
     for (const double speed : {20.0, 70.0, 300.0}) {
       scenario.motion.image_speed_px_s = speed;
-      // Frequencies scale, so the instants that are averaged differ.
+      // Frequencies are scaled, so the averaged times differ.
       QVERIFY(std::abs(SinusoidMotion(scenario).imageSpeedRms_px_s() / speed - 1.0) < 0.15);
     }
   }

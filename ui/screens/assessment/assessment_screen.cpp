@@ -101,8 +101,9 @@ void AssessmentScreen::showAssessment(const Assessment& assessment, const QStrin
   for (const std::string& advice : assessment.advice) lines_.emplace_back("right", text(advice));
   for (const std::string& note : assessment.notes) lines_.emplace_back("info", text(note));
   for (const QString& note : more) lines_.emplace_back("info", note);
-  lines_.emplace_back("info", tr("What has not changed is called changed in %1 of 1000 cases at most.")
-                                  .arg(1e3 * assessment.false_alarms, 0, 'g', 2));
+  lines_.emplace_back("info",
+                      tr("Probability that an unchanged quantity is called changed: at most %1 in 1000.")
+                          .arg(1e3 * assessment.false_alarms, 0, 'g', 2));
   fillNotes();
 }
 

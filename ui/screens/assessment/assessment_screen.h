@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page that compares files that are chosen on it: a form and a button above; below them what was found, and a hint
-// until there is something.
+// Page that compares chosen files: a form and a button, and the result below them; a hint until there is a
+// result.
 #pragma once
 
 #include "core/data/assessment.h"
@@ -41,13 +41,13 @@ class AssessmentScreen : public QWidget {
   AssessmentScreen(Words words, QWidget* parent);
 
   QVBoxLayout& form() { return *form_; }  // above the button
-  QGridLayout& grid() { return *grid_; }  // of places of files; belongs into the form
+  QGridLayout& grid() { return *grid_; }  // of the rows of paths; part of the form
   VerdictLine& verdict() { return *verdict_; }
-  QListWidget* notes() { return notes_; }  // belongs into the content
+  QListWidget* notes() { return notes_; }  // part of the content
   void addSaveButton(const QString& tip);
-  void addResultButton(QPushButton* button);  // is there once something was found
+  void addResultButton(QPushButton* button);  // shown once there is a result
   QTabWidget* makeTabs();
-  // Below the verdict; last of all, so that keys reach the form before the button.
+  // Below the verdict. Called last, so that the form precedes the button in the order of keys.
   void setContent(QWidget* content);
 
   // `more`: further notes.

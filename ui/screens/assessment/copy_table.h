@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table whose rows are copied whole, with their header, as spreadsheets take them (Ctrl+C, or the context menu).
+// Table that copies whole rows with their header, in a form for spreadsheets (Ctrl+C, or the context menu).
 #pragma once
 
 #include <QTreeWidget>
@@ -12,13 +12,13 @@ class CopyTable : public QTreeWidget {
  public:
   explicit CopyTable(QWidget* parent = nullptr);
 
-  QString selectedText() const;  // empty where nothing is
+  QString selectedText() const;  // empty without a selection
   QString allText() const;
 
-  // To what headers and cells need; the first column also has what the others leave.
+  // Fits headers and cells; the first column also gets the remaining width.
   void fitColumns();
 
-  // Columns [first, end) of the row and of those below it to the right, as numbers are read.
+  // Right-aligns columns [first, end) of the row and of its children, as is usual for numbers.
   static void alignNumbers(QTreeWidgetItem& item, int first, int end);
 
  protected:
@@ -31,7 +31,7 @@ class CopyTable : public QTreeWidget {
   void copySelected();
   void widenFirst();
 
-  int first_px_ = 0;  // that its cells need
+  int first_px_ = 0;  // width of its cells
 };
 
 }  // namespace evical::ui

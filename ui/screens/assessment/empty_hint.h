@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page says in its middle while it has found nothing yet.
+// Text in the middle of a page that has no result yet.
 #pragma once
 
 class QString;

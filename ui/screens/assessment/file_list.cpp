@@ -42,7 +42,7 @@ FileList::FileList(const QString& things, const QString& title, const QString& t
   add->setObjectName("add_" + things);
   add->setToolTip(tip);
   remove_->setObjectName("remove_" + things);
-  remove_->setToolTip(tr("Take the chosen ones off the list; their files stay (Delete)"));
+  remove_->setToolTip(tr("Remove the selected entries from the list; the files are kept (Delete)"));
   connect(add, &QPushButton::clicked, this, &FileList::addRequested);
   connect(remove_, &QPushButton::clicked, this, &FileList::removeChosen);
   connect(list_, &QListWidget::itemSelectionChanged, this, &FileList::offer);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that a page works on together: chosen by a dialog that whoever listens opens, dropped, or taken off again.
+// List of files that a page compares. They are dropped, removed, or chosen in a dialog that the receiver
+// opens.
 #pragma once
 
 #include <QStringList>
@@ -15,11 +16,12 @@ class FileList : public QWidget {
   Q_OBJECT
 
  public:
-  // `things` is in the names of list and buttons: "recordings" makes list_recordings, add_recordings, remove_recordings.
+  // `things` is part of the object names: "recordings" makes list_recordings, add_recordings,
+  // remove_recordings.
   FileList(const QString& things, const QString& title, const QString& tip, QWidget* parent = nullptr);
 
   QStringList files() const;
-  void add(const QStringList& files);      // those that are not listed yet
+  void add(const QStringList& files);      // skips files that are listed already
   void insertButton(QPushButton* button);  // below Add
 
  signals:

@@ -40,11 +40,11 @@ QIcon iconOf(const Finding& finding) {
 
 QString wordsOf(const Finding& finding) {
   if (finding.changed)
-    return QObject::tr("It is further from the old value than chance explains (%1 sigmas; %2 are allowed)")
+    return QObject::tr("Differs from the old value by %1 sigmas; chance explains at most %2")
         .arg(finding.sigmas, 0, 'f', 1)
         .arg(finding.limit_sigmas, 0, 'f', 1);
-  if (finding.isConclusive()) return QObject::tr("No change is seen, and one that matters would have been");
-  return QObject::tr("No change is seen, but these data would not have shown one that matters");
+  if (finding.isConclusive()) return QObject::tr("No change; a relevant one would have been detected");
+  return QObject::tr("No change detected, but these data are too weak to detect a relevant one");
 }
 
 QTreeWidgetItem* itemOf(const ComparedNumber& number) {
@@ -86,16 +86,16 @@ QString changeText(const Finding& finding) {
 
 FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("finding_table");
-  setAccessibleName(tr("What has changed, quantity by quantity"));
+  setAccessibleName(tr("Change of each quantity"));
   setColumnCount(kColumns);
   setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), QString(QChar(0x3c3)),
                    tr("At the edge"), tr("Detectable"), tr("Required"), tr("Before"), tr("Now, alone")});
-  headerItem()->setToolTip(kSource, tr("What tells: stops, another IMU, or the trajectory"));
+  headerItem()->setToolTip(kSource, tr("Source: stops, another IMU, or the trajectory"));
   headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
-  headerItem()->setToolTip(kEdge, tr("By how many pixels it moves points at the image's edge"));
-  headerItem()->setToolTip(kDetectable, tr("The smallest change that these data show in 95 of 100 cases"));
-  headerItem()->setToolTip(kRequired, tr("The smallest change that the verdict asks about"));
-  headerItem()->setToolTip(kNow, tr("What the new data say by themselves"));
+  headerItem()->setToolTip(kEdge, tr("Shift of points at the image's edge, in pixels"));
+  headerItem()->setToolTip(kDetectable, tr("Smallest change that these data show in 95 of 100 cases"));
+  headerItem()->setToolTip(kRequired, tr("Smallest change that the verdict must rule out"));
+  headerItem()->setToolTip(kNow, tr("Estimate from the new data alone"));
   alignNumbers(*headerItem(), kChange, kColumns);
 }
 
@@ -118,7 +118,7 @@ void FindingTable::fill() {
   addTopLevelItems(items);
   expandAll();
   fitColumns();
-  // What is in order is a line; what has changed shows its numbers.
+  // Unchanged quantities are one line; changed ones show their numbers.
   collapseAll();
   for (int row = 0; row < items.size(); ++row)
     items[row]->setExpanded(findings_[static_cast<std::size_t>(row)].changed);
@@ -131,14 +131,15 @@ void FindingTable::changeEvent(QEvent* event) {
 
 StepTable::StepTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("step_table");
-  setAccessibleName(tr("What changed on the way"));
+  setAccessibleName(tr("Changes during the logs"));
   setRootIsDecorated(false);
   setIndentation(0);
   setColumnCount(kColumns);
-  setHeaderLabels({tr("Changed on the way"), tr("At"), tr("Noticed at"), tr("By"), tr("Or else")});
-  headerItem()->setToolTip(kAt, tr("Seconds since the logs' start"));
-  headerItem()->setToolTip(kNoticed, tr("From when on the logs tell it"));
-  headerItem()->setToolTip(kAlternatives, tr("Quantities that explain it nearly as well"));
+  setHeaderLabels(
+      {tr("Changed during the logs"), tr("At"), tr("Detected at"), tr("Change"), tr("Alternatives")});
+  headerItem()->setToolTip(kAt, tr("Time of the change, in seconds since the logs' start"));
+  headerItem()->setToolTip(kNoticed, tr("Time from which the logs show the change"));
+  headerItem()->setToolTip(kAlternatives, tr("Other quantities that explain the data nearly as well"));
   alignNumbers(*headerItem(), kAt, kAlternatives);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has changed of each quantity since an old result, its numbers below it; and what changed on the way.
+// Change of each quantity since an old result, with its numbers below it, and the changes during the logs.
 #pragma once
 
 #include "core/data/maintenance.h"

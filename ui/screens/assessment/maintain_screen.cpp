@@ -21,13 +21,13 @@
 namespace evical::ui {
 namespace {
 
-// What logs say themselves, then each of these.
+// Automatic (units of the logs), then each of `words`.
 template <class Words>
 QComboBox* unitBox(const char* object_name, const QString& title, const Words& words, QWidget* parent) {
   auto* const box = new QComboBox(parent);
   box->setObjectName(object_name);
   box->setAccessibleName(title);
-  box->setToolTip(QObject::tr("Where logs do not say what they are in, or say it wrongly"));
+  box->setToolTip(QObject::tr("Unit of the logs, if they do not state it or state it wrongly"));
   box->addItem(QObject::tr("automatic"));
   for (const char* const word : words) box->addItem(word);
   return box;
@@ -43,28 +43,28 @@ std::optional<Unit> unitOf(const QComboBox& box) {
 
 MaintainScreen::MaintainScreen(QWidget* charts, QWidget* parent)
     : AssessmentScreen(
-          {"maintain", "check", tr("Are the IMUs still as they were calibrated?"), tr("Check"),
+          {"maintain", "check", tr("Is the calibration of the IMUs still good?"), tr("Check"),
            tr("Compare the logs with the old result, and follow the IMUs over time"),
            tr("No board is needed. Hold the rig still in several orientations to determine the biases and "
-              "scales of each accelerometer. Turn several IMUs together to see how they are mounted relative "
-              "to each other, and when one has moved. A trajectory from another system checks the "
-              "accelerometer of the reference IMU without stops. Limits for what counts as a change are "
-              "under "
+              "scales of each accelerometer. Turn several IMUs together to determine how they are mounted "
+              "relative to each other, and whether one has moved. A trajectory from another system checks "
+              "the accelerometer of the reference IMU without stops. Set the limits of a change under "
               "Parameters, Maintain.")},
           parent),
       logs_(new FileList(
           "logs", tr("Logs of the IMUs"),
-          tr("Recordings with IMUs, in any format that Evical opens. Several are of several IMUs, or\n"
-             "follow each other"),
+          tr("Recordings with IMUs, in any supported format. Several recordings contain different IMUs,\n"
+             "or follow each other"),
           this)),
       result_(new OldResultRow("maintained_result", grid(), this)),
       trajectory_(new PathRow(
           "maintain_trajectory", tr("Tra&jectory"),
-          tr("If there is one: poses of the reference IMU from elsewhere, as a calibration writes them\n"
+          tr("Optional: poses of the reference IMU from another system, in the format of a calibration\n"
              "(trajectory.csv) or in TUM's format"),
           grid(), this)),
-      acceleration_unit_(unitBox("acceleration_unit", tr("Specific forces in"), kAccelerationUnits, this)),
-      rate_unit_(unitBox("angular_rate_unit", tr("Angular rates in"), kAngularRateUnits, this)),
+      acceleration_unit_(
+          unitBox("acceleration_unit", tr("Unit of specific forces"), kAccelerationUnits, this)),
+      rate_unit_(unitBox("angular_rate_unit", tr("Unit of angular rates"), kAngularRateUnits, this)),
       streams_(new QLineEdit(this)),
       steps_(new StepTable(this)),
       table_(new FindingTable(this)) {
@@ -82,9 +82,9 @@ MaintainScreen::MaintainScreen(QWidget* charts, QWidget* parent)
 QLayout* MaintainScreen::makeUnits() {
   streams_->setObjectName("streams");
   streams_->setAccessibleName(tr("Streams"));
-  streams_->setPlaceholderText(tr("by their names"));
+  streams_->setPlaceholderText(tr("by name"));
   streams_->setToolTip(
-      tr("Which stream or log is of which IMU of the old result, where names do not tell:\n"
+      tr("Stream or log of each IMU of the old result, if their names differ:\n"
          "NAME=STREAM, separated by commas"));
   auto* const row = new QHBoxLayout;
   const auto add = [&](const QString& title, QWidget* widget, int stretch) {
@@ -119,8 +119,9 @@ ImuLogSettings MaintainScreen::settings() const {
   for (const QString& pair : streams_->text().split(',', Qt::SkipEmptyParts)) {
     const QString name = pair.section('=', 0, 0).trimmed(), stream = pair.section('=', 1).trimmed();
     if (name.isEmpty() || stream.isEmpty())
-      throw badInput("Streams", "\"" + pair.trimmed().toStdString() + "\" is not NAME=STREAM",
-                     "Write an IMU's name of the old result, =, and its stream or log; or leave it empty");
+      throw badInput(
+          "Streams", "\"" + pair.trimmed().toStdString() + "\" is not NAME=STREAM",
+          "Enter the IMU's name in the old result, =, and its stream or log; or leave the field empty");
     settings.streams[name.toStdString()] = stream.toStdString();
   }
   return settings;
@@ -136,7 +137,7 @@ void MaintainScreen::setMaintenance(const Maintenance& maintenance) {
                 .arg(imu.to_s, 0, 'f', 1)
                 .arg(imu.stops.size());
     if (!imu.weakest.empty())
-      more << tr("Least known from the stops of %1: %2.")
+      more << tr("Quantity that the stops of %1 determine least: %2.")
                   .arg(QString::fromStdString(imu.name), QString::fromStdString(imu.weakest));
   }
   showAssessment(maintenance, more);

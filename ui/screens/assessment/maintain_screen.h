@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Are IMUs still as they were calibrated? An old result and logs go in; what has changed, and when, comes out.
+// Maintenance of IMUs: compares logs with an old result and shows what has changed, and when.
 #pragma once
 
 #include "core/data/maintenance.h"
@@ -22,14 +22,14 @@ class MaintainScreen : public AssessmentScreen {
   Q_OBJECT
 
  public:
-  // `charts`: what shows numbers over time.
+  // `charts`: widget with the numbers over time.
   explicit MaintainScreen(QWidget* charts, QWidget* parent = nullptr);
 
   OldResultRow& result() { return *result_; }
   FileList& logs() { return *logs_; }
   PathRow& trajectory() { return *trajectory_; }
 
-  // Throws CalibrationError (BadInput) where streams are given in words that say nothing.
+  // Throws CalibrationError (BadInput) if the streams are not pairs NAME=STREAM.
   ImuLogSettings settings() const;
   void setMaintenance(const Maintenance& maintenance);
 

@@ -9,7 +9,7 @@ namespace evical::ui {
 
 OldResultRow::OldResultRow(const QString& object_name, QGridLayout& grid, QWidget* parent)
     : PathRow(object_name, tr("&Old result"),
-              tr("A folder that a calibration or an export has written, or its result.yaml"), grid, parent),
+              tr("A folder written by a calibration or an export, or its result.yaml"), grid, parent),
       menu_(new QMenu(parent)) {
   setMenu(menu_);
   setKeptRuns({});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The place of an old result in a form: a folder, a file, or one of the session's runs.
+// Row for an old result in a form: a folder, a file, or one of the session's runs.
 #pragma once
 
 #include "ui/screens/assessment/path_row.h"
@@ -15,7 +15,7 @@ class OldResultRow : public PathRow {
  public:
   OldResultRow(const QString& object_name, QGridLayout& grid, QWidget* parent);
 
-  // By title and folder; beside the files that can be chosen.
+  // By title and folder; listed after the entries for files.
   void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
 
  signals:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A place of a file or folder in a form: typed, dropped, or chosen by a dialog that whoever listens opens.
+// Row for a file or folder in a form: typed, dropped, or chosen in a dialog that the receiver opens.
 #pragma once
 
 #include <QWidget>
@@ -16,14 +16,14 @@ class PathRow : public QObject {
   Q_OBJECT
 
  public:
-  // Three cells of `grid`: label, field, button. `title` has the label's key.
+  // Three cells of `grid`: label, field, button. `title` includes the label's shortcut.
   PathRow(const QString& object_name, const QString& title, const QString& tip, QGridLayout& grid,
           QWidget* parent);
 
   QString path() const;
-  void setPath(const QString& path);      // as a person does
-  void proposePath(const QString& path);  // unless a person has set one
-  void setMenu(QMenu* menu);              // of the button, in place of choosing at once
+  void setPath(const QString& path);      // like an edit of the user
+  void proposePath(const QString& path);  // unless the user has set one
+  void setMenu(QMenu* menu);              // of the button, instead of the dialog
   void setPlaceholder(const QString& text);
   void setEnabled(bool enabled);
 

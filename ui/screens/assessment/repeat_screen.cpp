@@ -34,7 +34,7 @@ QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* par
   auto* const choice = new QComboBox(parent);
   choice->setObjectName(object_name);
   choice->setAccessibleName(name);
-  choice->setToolTip(QObject::tr("A recording, or the solution of all together"));
+  choice->setToolTip(QObject::tr("A recording, or the joint solution of all"));
   choice->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   return choice;
 }
@@ -47,19 +47,19 @@ RepeatScreen::RepeatScreen(QWidget* parent)
            tr("Calibrate each recording, then all together, and compare them"),
            tr("Each recording is calibrated alone, then all in one solution. The scatter between recordings "
               "shows whether the stated uncertainties are realistic. A recording that does not fit the "
-              "others "
-              "is named, with what is different in it.")},
+              "others is listed with its differences.")},
           parent),
       files_(new FileList(
           "recordings", tr("Recordings and sessions of one rig"),
-          tr("Sessions or recordings of the same rig before the same board. Recordings have the\n"
-             "sensors and the board of the session that is open, else of the first in the list"),
+          tr("Sessions or recordings of the same rig with the same board. For recordings, sensors and board\n"
+             "are those of the open session, else of the first one in the list"),
           this)),
       add_open_(repeatButton("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"),
                              this)),
-      folder_(new PathRow("repeat_folder", tr("&Results go to"),
-                          tr("A folder: the results of each recording and of all together, a report, tables"),
-                          grid(), this)),
+      folder_(new PathRow(
+          "repeat_folder", tr("&Results folder"),
+          tr("Folder for the results of each recording and of all together, a report, and tables"), grid(),
+          this)),
       ratio_(selectableLabel("hint", {}, this)),
       first_(makeChoice("first_of_pair", tr("Compare"), this)),
       second_(makeChoice("second_of_pair", tr("with"), this)),
@@ -67,7 +67,7 @@ RepeatScreen::RepeatScreen(QWidget* parent)
       recordings_(new RepeatedList(this)),
       open_result_(repeatButton(
           "open_recording_result", "result", tr("Show on all pages"),
-          tr("Open the chosen recording's result, or that of all together where none is"), this)) {
+          tr("Open the chosen recording's result, or the joint one if no recording is chosen"), this)) {
   addForm();
   verdict().addLine(ratio_);
   QTabWidget* const tabs = makeTabs();
@@ -82,8 +82,8 @@ void RepeatScreen::addForm() {
   files_->insertButton(add_open_);
   form().addWidget(files_);
   form().addLayout(&grid());
-  QPushButton* const report = repeatButton("repeat_report", "report", tr("Open report"),
-                                           tr("A page with plots, in the browser"), this);
+  QPushButton* const report =
+      repeatButton("repeat_report", "report", tr("Open report"), tr("Page with plots, in the browser"), this);
   QPushButton* const place = repeatButton("repeat_open_folder", "folder", tr("Open folder"),
                                           tr("Show the files in the desktop's file manager"), this);
   addResultButton(report);
@@ -140,11 +140,11 @@ void RepeatScreen::setOpenFile(const QString& file) {
 void RepeatScreen::offer() {
   const QStringList all = files_->files();
   add_open_->setEnabled(!open_file_.isEmpty() && !all.contains(open_file_));
-  // One session may list several recordings.
+  // A session may list several recordings.
   const bool enough =
       all.size() >= kFewest || (all.size() == 1 && (all[0].endsWith(".yaml") || all[0].endsWith(".yml")));
   work().setHindrance(!enough                     ? tr("Add at least two recordings or sessions")
-                      : folder_->path().isEmpty() ? tr("Say where the results go")
+                      : folder_->path().isEmpty() ? tr("Choose a folder for the results")
                                                   : QString());
   const auto chosen = recordings_->chosen();
   open_result_->setEnabled(repeat_ &&
@@ -156,14 +156,14 @@ void RepeatScreen::setRepeat(const Repeatability& repeat) {
   repeat_ = repeat;
   QStringList more;
   if (!repeat.own_values_of.empty())
-    more << tr("Biases, gravity and time offsets are each recording's own: the solution of all together has "
+    more << tr("Biases, gravity and time offsets are separate for each recording: the joint solution lists "
                "those of %1.")
                 .arg(QString::fromStdString(repeat.own_values_of));
   showAssessment(repeat, more);
   ratio_->setVisible(repeat.rms_ratio > 0.0);
   ratio_->setText(
-      tr("Spread against what the sigmas promise: %1 RMS over all numbers (near 1: the sigmas are "
-         "honest); took %2 s.")
+      tr("Ratio of the observed scatter to the one expected from the sigmas: %1 RMS over all numbers "
+         "(near 1 if the sigmas are realistic). Duration: %2 s.")
           .arg(repeat.rms_ratio, 0, 'f', 2)
           .arg(repeat.took_s, 0, 'f', 1));
   numbers_->setRepeat(repeat);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several recordings of one rig: each calibrated alone, then all together; how well they agree, which do not fit, and any
-// two beside each other.
+// Several recordings of one rig: each calibrated alone, then all together. Shows how well they agree, which
+// ones do not fit, and a comparison of any two.
 #pragma once
 
 #include "core/data/repeatability.h"
@@ -26,13 +26,13 @@ class RepeatScreen : public AssessmentScreen {
 
   PathRow& folder() { return *folder_; }
   FileList& files() { return *files_; }
-  void setOpenFile(const QString& file);  // what is open in the window; empty: nothing
+  void setOpenFile(const QString& file);  // open in the window; empty: none
   void setRepeat(const Repeatability& repeat);
 
  signals:
   void openFolderRequested();
   void reportRequested();
-  void openResultRequested(int recording);  // -1: of all together
+  void openResultRequested(int recording);  // -1: joint solution
 
  private:
   void addForm();

@@ -34,14 +34,14 @@ QString repeatWordsOf(const RepeatedRecording& recording) {
     parts << QObject::tr("%1 of %2 differs by %3")
                  .arg(fromCore(finding.title), fromCore(finding.sensor), changeText(finding));
   if (!recording.reason.empty()) parts << fromCore(recording.reason);
-  return parts.isEmpty() ? QObject::tr("nothing against it") : parts.join("; ");
+  return parts.isEmpty() ? QObject::tr("agrees with the others") : parts.join("; ");
 }
 
 }  // namespace
 
 RepeatTable::RepeatTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("repeat_table");
-  setAccessibleName(tr("What the recordings say of each number"));
+  setAccessibleName(tr("Each number over the recordings"));
   setColumnCount(kColumns);
   setHeaderLabels({tr("Number"),
                    tr("Mean"),
@@ -54,10 +54,11 @@ RepeatTable::RepeatTable(QWidget* parent) : CopyTable(parent) {
                    tr("Difference"),
                    tr("in %1").arg(QChar(0x3c3))});
   headerItem()->setToolTip(kDeviation, tr("Standard deviation over the recordings"));
-  headerItem()->setToolTip(kMeanSigma, tr("What the recordings' own sigmas say that it would be"));
-  headerItem()->setToolTip(kRatio, tr("Spread against promise: near 1, the sigmas are honest"));
-  headerItem()->setToolTip(kTogether, tr("One solution of all recordings that fit"));
-  headerItem()->setToolTip(kSigmas, tr("The difference in its standard deviations"));
+  headerItem()->setToolTip(kMeanSigma, tr("Standard deviation that the recordings' sigmas predict"));
+  headerItem()->setToolTip(
+      kRatio, tr("Observed over predicted standard deviation: near 1 if the sigmas are realistic"));
+  headerItem()->setToolTip(kTogether, tr("Joint solution of all recordings that fit"));
+  headerItem()->setToolTip(kSigmas, tr("Difference in units of its standard deviation"));
   alignNumbers(*headerItem(), kMean, kColumns);
   comparePair({});
 }
@@ -89,7 +90,7 @@ void RepeatTable::fillPair(const RepeatedNumber& number, QTreeWidgetItem& item) 
 QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
   const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(fromCore(number.unit));
   auto* const item = new QTreeWidgetItem({fromCore(number.name) + unit});
-  // As many decimals as its spread has.
+  // Number of decimals according to the spread.
   const double spread = number.deviation > 0.0 ? number.deviation : number.mean_sigma;
   item->setText(kMean, QString::number(number.mean, 'f', decimalsFor(spread)));
   if (number.count > 1) {
@@ -106,7 +107,7 @@ QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
 void RepeatTable::fill() {
   QList<QTreeWidgetItem*> headings;
   for (const RepeatedQuantity& quantity : repeat_.quantities) {
-    const QString own = quantity.common ? QString() : tr(" (each recording has its own)");
+    const QString own = quantity.common ? QString() : tr(" (separate for each recording)");
     auto* const heading = new QTreeWidgetItem(
         {QString("%1: %2%3").arg(fromCore(quantity.sensor), fromCore(quantity.title), own)});
     QFont bold = font();
@@ -130,13 +131,13 @@ void RepeatTable::changeEvent(QEvent* event) {
 
 RepeatedList::RepeatedList(QWidget* parent) : CopyTable(parent) {
   setObjectName("repeated_list");
-  setAccessibleName(tr("Which recordings fit"));
+  setAccessibleName(tr("Fit of each recording"));
   setRootIsDecorated(false);
   setIndentation(0);
   setColumnCount(kColumns);
-  setHeaderLabels({tr("Recording"), tr("Verdict"), tr("Distance"), tr("What is said of it"), tr("File")});
-  headerItem()->setToolTip(kDistance,
-                           tr("From all others that fit (chi squared), and what chance explains at most"));
+  setHeaderLabels({tr("Recording"), tr("Verdict"), tr("Distance"), tr("Reason"), tr("File")});
+  headerItem()->setToolTip(
+      kDistance, tr("Distance from all others that fit (chi squared), and the largest that chance explains"));
   alignNumbers(*headerItem(), kDistance, kDistance + 1);
 }
 

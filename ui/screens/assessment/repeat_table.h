@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What several recordings say of each number: mean, spread beside what the sigmas promise, the solution of all together;
-// and two of them beside each other.
+// Each number over several recordings: mean, observed and predicted spread, and joint solution; with a
+// comparison of two recordings.
 #pragma once
 
 #include "core/report/repeat_comparison.h"
@@ -32,7 +32,7 @@ class RepeatTable : public CopyTable {
   explicit RepeatTable(QWidget* parent = nullptr);
 
   void setRepeat(const Repeatability& repeat);
-  // Columns of the repeat, or kAllTogether; nothing hides the comparison.
+  // Columns of the repeat, or kAllTogether; without a value, the comparison is hidden.
   struct Pair {
     std::size_t first = 0, second = kAllTogether;
     QString first_name = {}, second_name = {};
@@ -51,7 +51,7 @@ class RepeatTable : public CopyTable {
   std::optional<Pair> pair_;
 };
 
-// The recordings of a repeat: which fit, how far each is from the others, what is said of it.
+// Recordings of a repeat: whether they fit, their distances from the others, and the reasons.
 class RepeatedList : public CopyTable {
   Q_OBJECT
 
@@ -61,7 +61,7 @@ class RepeatedList : public CopyTable {
   explicit RepeatedList(QWidget* parent = nullptr);
 
   void setRecordings(std::vector<RepeatedRecording> recordings);
-  std::optional<std::size_t> chosen() const;  // one alone
+  std::optional<std::size_t> chosen() const;  // if exactly one is selected
 
  protected:
   void changeEvent(QEvent* event) override;

@@ -12,19 +12,20 @@
 namespace evical::ui {
 
 ResultCheckScreen::ResultCheckScreen(QWidget* parent)
-    : AssessmentScreen({"check_result", "check", tr("Is an old calibration still good?"), tr("Check"),
-                        tr("Calibrate the new recording, and test each quantity's change"),
-                        tr("Move the rig before the board for some ten seconds, as for a calibration, and "
-                           "choose that recording above. It is calibrated anew and held against the old "
-                           "result. Each quantity is reported as unchanged, changed, or cannot tell (the "
-                           "recording is too weak).")},
-                       parent),
+    : AssessmentScreen(
+          {"check_result", "check", tr("Is an old calibration still good?"), tr("Check"),
+           tr("Calibrate the new recording, and test each quantity's change"),
+           tr("Move the rig in front of the board for about ten seconds, as for a calibration, and "
+              "choose that recording above. It is calibrated again and compared with the old "
+              "result. Each quantity is reported as unchanged, changed, or cannot tell (the "
+              "recording is too weak).")},
+          parent),
       result_(new OldResultRow("old_result", grid(), this)),
-      recording_(new PathRow(
-          "new_recording", tr("&New recording"),
-          tr("Some ten seconds before the same board, or a session of them. Board and sensors of a\n"
-             "recording are those that are kept beside the old result."),
-          grid(), this)),
+      recording_(new PathRow("new_recording", tr("&New recording"),
+                             tr("About ten seconds in front of the same board, or a session of such a "
+                                "recording. For a recording,\n"
+                                "board and sensors are those stored with the old result."),
+                             grid(), this)),
       table_(new FindingTable(this)) {
   constexpr int kNotes_px = 110;
   form().addLayout(&grid());

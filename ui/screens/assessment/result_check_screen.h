@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is an old calibration still good? An old result and a new recording go in; what has changed comes out, and what this
-// recording would have shown.
+// Check of an old calibration with a new recording: shows what has changed, and the smallest changes that
+// this recording would have shown.
 #pragma once
 
 #include "core/data/calibration_check.h"

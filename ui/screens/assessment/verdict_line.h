@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page's verdict: a mark by colour and shape, the verdict itself, and why.
+// Verdict of a page: a mark by colour and shape, the verdict, and its reason.
 #pragma once
 
 #include <QWidget>
@@ -15,7 +15,7 @@ class VerdictLine : public QWidget {
   Q_OBJECT
 
  public:
-  // The labels are called <name>_verdict and <name>_reason.
+  // Object names of the labels: <name>_verdict and <name>_reason.
   explicit VerdictLine(const QString& name, QWidget* parent = nullptr);
 
   void addLine(QWidget* line);  // below

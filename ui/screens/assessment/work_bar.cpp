@@ -23,11 +23,11 @@ WorkBar::WorkBar(const QString& name, const QString& icon_name, const QString& t
   start_->setObjectName("start_" + name);
   start_->setProperty("primary", true);
   cancel_->setObjectName("cancel_" + name);
-  cancel_->setToolTip(tr("Stop it (Shift+F5)"));
+  cancel_->setToolTip(tr("Cancel the job (Shift+F5)"));
   bar_->setRange(0, kSteps);
   bar_->setTextVisible(false);
   bar_->setFixedWidth(kBar_px);
-  bar_->setAccessibleName(tr("How far it is"));
+  bar_->setAccessibleName(tr("Progress"));
   words_->setProperty("role", "hint");
   words_->setWordWrap(true);
   connect(start_, &QPushButton::clicked, this, &WorkBar::startRequested);
@@ -67,7 +67,7 @@ void WorkBar::offer() {
   cancel_->setVisible(own_);
   bar_->setVisible(own_);
   start_->setEnabled(!other_ && hindrance_.isEmpty());
-  const QString why = other_ ? tr("Something else is running") : hindrance_;
+  const QString why = other_ ? tr("Another job is running") : hindrance_;
   start_->setToolTip(why.isEmpty() ? tip_ : why);
   words_->setText(own_ ? QString() : why);
 }

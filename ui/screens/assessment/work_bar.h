@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page's own job: the button that starts it, how far it is, the button that stops it.
+// Job of a page: the button that starts it, its progress, the button that cancels it.
 #pragma once
 
 #include <QWidget>
@@ -19,7 +19,7 @@ class WorkBar : public QWidget {
           QWidget* parent);
 
   void addButton(QPushButton* button);  // at the right end
-  // Empty: it can start; else why not, beside the button.
+  // Reason why the job cannot start, next to the button; empty: it can.
   void setHindrance(const QString& why);
   void setRunning(bool own, bool other);
   void setProgress(const QString& stage, double fraction);

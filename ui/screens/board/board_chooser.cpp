@@ -11,7 +11,7 @@
 namespace evical::ui {
 namespace {
 
-// A field whose text is not taken yet gives it before a click here does something: so it must lose the focus.
+// Takes the focus when clicked, so that a field commits its text before the click acts.
 QToolButton* toolButton(const char* icon_name, const QString& tip, QWidget* parent) {
   auto* const made = new QToolButton(parent);
   made->setIcon(icon(icon_name));
@@ -23,7 +23,7 @@ QToolButton* toolButton(const char* icon_name, const QString& tip, QWidget* pare
 
 QString addTip() {
   return BoardChooser::tr(
-      "One more board, for cameras that see another one; it starts as a copy of this one");
+      "Adds a board for cameras that see a different one; it starts as a copy of this board");
 }
 
 }  // namespace
@@ -32,8 +32,7 @@ BoardChooser::BoardChooser(QWidget* parent)
     : QWidget(parent),
       tabs_(new QTabBar(this)),
       add_(toolButton("add", addTip(), this)),
-      remove_(toolButton("remove", tr("Remove this board; cameras that see it see the world's board then"),
-                         this)) {
+      remove_(toolButton("remove", tr("Remove this board; its cameras then use the first board"), this)) {
   tabs_->setObjectName("boards");
   add_->setObjectName("add_board");
   remove_->setObjectName("remove_board");
@@ -55,14 +54,14 @@ BoardChooser::BoardChooser(QWidget* parent)
   connect(remove_, &QToolButton::clicked, this, &BoardChooser::removeRequested);
 }
 
-// Tabs stay while their number does: a click on one may come in the middle of an edit.
+// Tabs are reused: a click on one may interrupt an edit.
 void BoardChooser::setBoards(const QStringList& names, std::size_t chosen) {
   const QSignalBlocker quiet(tabs_);
   while (tabs_->count() > names.size()) tabs_->removeTab(tabs_->count() - 1);
   while (tabs_->count() < names.size()) tabs_->addTab(icon("board"), {});
   for (int i = 0; i < tabs_->count(); ++i) {
     tabs_->setTabText(i, QString(names[i]).replace('&', "&&"));
-    tabs_->setTabToolTip(i, i == 0 ? tr("%1: its frame is the world").arg(names[i]) : names[i]);
+    tabs_->setTabToolTip(i, i == 0 ? tr("%1: its frame is the world frame").arg(names[i]) : names[i]);
   }
   tabs_->setCurrentIndex(static_cast<int>(chosen));
   tabs_->setVisible(names.size() > 1);

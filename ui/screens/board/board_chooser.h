@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which of the session's boards the form shows, by name; one more, one less. One alone needs no choice.
+// Chooses the board in the form by name, adds one, removes one. A single board needs no choice.
 #pragma once
 
 #include <QStringList>
@@ -20,15 +20,15 @@ class BoardChooser : public QWidget {
   explicit BoardChooser(QWidget* parent = nullptr);
 
   void setBoards(const QStringList& names, std::size_t chosen);
-  // Those with which something is wrong.
+  // Boards with a problem.
   void setWrong(const std::set<std::size_t>& wrong);
-  // Why there cannot be one more; empty: there can.
+  // Reason why no board can be added; empty: one can.
   void setFull(const QString& why);
 
  signals:
   void chosen(std::size_t index);
   void addRequested();
-  void removeRequested();  // of the one that is chosen
+  void removeRequested();  // of the chosen board
 
  private:
   QTabBar* tabs_;

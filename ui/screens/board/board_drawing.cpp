@@ -11,15 +11,15 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kMeasureMargin_px = 34.0;  // for axes and measures
+constexpr double kMeasureMargin_px = 34.0;  // for axes and dimensions
 constexpr QColor kInk(0x22, 0x22, 0x22);
 
-// Corners are between dark squares on bright paper, whatever circles once were.
+// Checkerboards and tags have dark squares on bright paper, regardless of the circles' shade.
 QColor paperOf(const Board& board) {
   return board.hasCircles() && board.circles == CircleShade::Bright ? kInk : QColor(Qt::white);
 }
 
-// From the outermost points to the sheet's edge.
+// Distance from the outermost points to the sheet's edge.
 double sheetBeyond_m(const Board& board) {
   constexpr double kRim = 0.3;  // of the spacing
   return board.printBeyond_m() + kRim * board.spacing_m;
@@ -58,7 +58,7 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
     painter.drawText(rect().adjusted(12, 12, -12, -12), Qt::AlignCenter | Qt::TextWordWrap, problem_);
     return;
   }
-  // The board's long side lies along the drawing's: x of the board points down then, as on a turned sheet.
+  // Long side along the drawing's: the board's x axis then points down, as on a rotated sheet.
   const Eigen::Vector2d extent_m = board_.extent_m();
   const double around_m = sheetBeyond_m(board_);
   const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
@@ -108,7 +108,8 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   const QPointF begin(begin_px, above_px), end(begin_px + px_per_m * neighbour_m.x(), above_px);
   painter.drawLine(begin, end);
   for (const QPointF& tick : {begin, end}) painter.drawLine(tick - QPointF(0, 3), tick + QPointF(0, 3));
-  // Shows the number in the form. In an asymmetric grid it is the spacing of rows, and neighbours in a row are two spacings apart.
+  // Same number as in the form: an asymmetric grid's spacing is between rows; neighbours in a row are two
+  // spacings apart.
   const bool two = board_.type == BoardType::AsymmetricCircles;
   painter.drawText(
       QPointF(begin.x(), above_px - 7.0),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The board as it is described, to scale, with its measures: what is typed can be held against the print.
+// Drawing of the board to scale, with dimensions, for comparison with the print.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -29,8 +29,8 @@ class BoardDrawing : public QWidget {
   void paintMeasures(QPainter& painter, double px_per_m, QPointF origin) const;
 
   Board board_;
-  std::vector<PaintedBox> squares_;  // of a board without circles
-  QString problem_;                  // why it cannot be drawn; empty: it can
+  std::vector<PaintedBox> squares_;  // for boards without circles
+  QString problem_;                  // reason why it cannot be drawn; empty: it can
 };
 
 }  // namespace evical::ui

@@ -38,7 +38,7 @@ QLabel* problemLabel(QWidget* parent) {
   return label;
 }
 
-// As wide as its fields; where there is no height for all of them it scrolls.
+// Has the width of its fields; scrolls if the height is too small.
 class FieldsArea final : public QScrollArea {
  public:
   FieldsArea(QFormLayout* form, QWidget* parent) : QScrollArea(parent) {
@@ -61,7 +61,7 @@ class FieldsArea final : public QScrollArea {
   }
 };
 
-// To start from: as long as the board is said to be.
+// Initial value: the nominal length of the board.
 MeasuredLength overWholeBoard(const Board& board) {
   MeasuredLength length;
   length.spacings = mostSpacings(board);
@@ -69,7 +69,7 @@ MeasuredLength overWholeBoard(const Board& board) {
   return length;
 }
 
-// What a board of another type has, where it has none yet: as boards usually have it.
+// Usual sizes for a new type of board, if it has none.
 void setSizes(Board& board) {
   constexpr double kRadius = 0.4, kTag = 0.75;  // of the spacing
   if (!board.hasCircles()) board.radius_m = 0.0;
@@ -85,20 +85,21 @@ BoardForm::BoardForm(QWidget* parent)
       form_(new QFormLayout),
       name_(new QLineEdit(this)),
       type_(new QComboBox(this)),
-      rows_(countBox(1,
-                     tr("Staggered lines of circles (odd, so that the board has an up and a down); a "
-                        "checkerboard's inner corners, tags, or a ChArUco board's squares"),
-                     this)),
-      cols_(countBox(1, tr("The same in one line"), this)),
+      rows_(countBox(
+          1,
+          tr("Staggered lines of circles (odd, so that the orientation is unique); inner corners of a "
+             "checkerboard, tags, or squares of a ChArUco board"),
+          this)),
+      cols_(countBox(1, tr("Number of circles, corners, tags or squares in a line"), this)),
       spacing_mm_(new NumberField(0.1, 10'000.0, this)),
       radius_mm_(new NumberField(0.01, 10'000.0, this)),
       is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
       length_mm_(new NumberField(0.1, 100'000.0, this)),
-      spacings_(
-          countBox(1,
-                   tr("From the first circle to the last there is one less than there are rows; in a line of "
-                      "a staggered board two from circle to circle"),
-                   this)),
+      spacings_(countBox(
+          1,
+          tr("Spacings between the first and the last circle: one fewer than circles; in a line of a "
+             "staggered board two from circle to circle"),
+          this)),
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
@@ -110,14 +111,14 @@ BoardForm::BoardForm(QWidget* parent)
                    tr("ChArUco"), tr("Points of a table")});
   circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
   type_->setToolTip(
-      tr("Circles, every other line shifted by half a step or none; the others are for frame "
+      tr("Circles, with or without a shift of every other line by half a step; the other types are for frame "
          "cameras only"));
-  spacing_mm_->setToolTip(
-      tr("Asymmetric: between two staggered lines, half of what lies between neighbours in a "
-         "line. Symmetric: between neighbours. A square's edge; from one tag to the next"));
+  spacing_mm_->setToolTip(tr(
+      "Asymmetric: distance between two staggered lines, half the distance of neighbours in a "
+      "line. Symmetric: distance of neighbours. Checkerboard: a square's edge. Tags: from one to the next"));
   tag_mm_->setToolTip(tr("Edge of a tag's black square"));
-  radius_mm_->setToolTip(tr("Of a circle, as printed"));
-  circles_->setToolTip(tr("Which way the printed circles differ from their background"));
+  radius_mm_->setToolTip(tr("Radius of a circle, as printed"));
+  circles_->setToolTip(tr("Brightness of the circles relative to the background"));
   addName();
   form_->addRow(tr("Type"), type_);
   form_->addRow(tr("Rows"), rows_);
@@ -153,8 +154,8 @@ void BoardForm::addName() {
   seen_by_->setObjectName("seen_by");
   name_problem_->setObjectName("name_problem");
   seen_by_->setWordWrap(true);
-  name_->setToolTip(tr("What the board is called in the session and in the cameras' forms"));
-  seen_by_->setToolTip(tr("Each camera's form says which board it sees"));
+  name_->setToolTip(tr("Name of the board in the session and in the cameras' forms"));
+  seen_by_->setToolTip(tr("Cameras that see this board, as set in the cameras' forms"));
   form_->addRow(tr("Name"), name_);
   form_->addRow(name_problem_);
   form_->addRow(tr("Seen by"), seen_by_);
@@ -174,21 +175,20 @@ void BoardForm::setName(const QString& name, const QString& seen_by) {
   form_->setRowVisible(seen_by_, !name.isEmpty());
 }
 
-// The field keeps what was typed, so that it can be mended.
+// The typed text stays, so that it can be corrected.
 void BoardForm::setNameProblem(const QString& text) {
   name_problem_->setText(text);
   form_->setRowVisible(name_problem_, !text.isEmpty());
 }
 
 void BoardForm::addMeasure(QFormLayout& form) {
-  is_measured_->setToolTip(
-      tr("A ruler tells a length over the whole board ten times as well as one spacing"));
-  length_mm_->setToolTip(tr("Between the centres of two circles in one line, as far apart as there are"));
-  length_std_mm_->setToolTip(tr("How well ruler and eye tell the length, one sigma; 0: exactly"));
+  is_measured_->setToolTip(tr("A length over the whole board is about ten times as accurate as one spacing"));
+  length_mm_->setToolTip(tr("Between the centres of two circles in one line, as far apart as possible"));
+  length_std_mm_->setToolTip(tr("Standard deviation of the measured length; 0: exact"));
   form.addRow(is_measured_);
   form.addRow(tr("Length [mm]"), length_mm_);
-  form.addRow(tr("Spacings in it"), spacings_);
-  form.addRow(tr("Its sigma [mm]"), length_std_mm_);
+  form.addRow(tr("Number of spacings"), spacings_);
+  form.addRow(tr("Sigma [mm]"), length_std_mm_);
   connect(is_measured_, &QCheckBox::clicked, this, [this] { sayMeasured("measured"); });
   connect(length_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.length_m"); });
   connect(spacings_, &QSpinBox::valueChanged, this, [this] { sayMeasured("measured.spacings"); });
@@ -216,7 +216,7 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   drawing_->setBoard(board);
 }
 
-// Points come from a session's file: they are shown, and may give way to another type, but cannot be chosen.
+// Tables of points come from a session's file: shown, replaceable by another type, but not selectable.
 void BoardForm::showType() {
   const int index = static_cast<int>(board_.type);
   const int points = static_cast<int>(BoardType::Points);
@@ -224,7 +224,7 @@ void BoardForm::showType() {
   type_->setCurrentIndex(index);
 }
 
-// What such a board does not have needs no room.
+// Rows that do not apply to the board are hidden.
 void BoardForm::showRows() {
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
                                static_cast<QWidget*>(length_std_mm_)})
@@ -270,7 +270,7 @@ void BoardForm::showNumbersOnly() {
   numbers_only_ = true;
   showRows();
   drawing_->hide();
-  // All rows at once: who holds the form scrolls.
+  // All rows are visible: the parent scrolls.
   if (auto* const fields = findChild<QScrollArea*>())
     fields->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One printed board: its numbers, and a drawing that follows them; of several its name and who sees it, too.
+// Form of one printed board with a drawing; with several boards also its name and cameras.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -28,17 +28,17 @@ class BoardForm : public QWidget {
   explicit BoardForm(QWidget* parent = nullptr);
 
   void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
-  // For a board that is still to be printed: nothing was measured, and others draw it.
+  // For a board that is not yet printed: without a measured length and without the drawing.
   void showNumbersOnly();
-  // Empty: the only one, which needs none.
+  // Empty: the only board, which needs no name.
   void setName(const QString& name, const QString& seen_by);
   void setNameProblem(const QString& text);
   void setProblem(const QString& text);
 
  signals:
-  void renamed(const QString& name);  // to whatever was typed
+  void renamed(const QString& name);  // to the typed text
   void edited(const evical::Board& board, const QString& field);
-  // The length that tells the spacing; nothing where the spacing is given as it is.
+  // Measured length that determines the spacing; none if the spacing is given directly.
   void measured(const std::optional<evical::MeasuredLength>& measured, const QString& field);
 
  private:

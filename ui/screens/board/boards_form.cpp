@@ -19,7 +19,7 @@ bool isOf(const QString& field, const QString& key) {
   return field == key || field.startsWith(key + ".");
 }
 
-// The one that is new, or that was chosen before, wherever they are now.
+// Index of the new board, or of the previously chosen one after a change of the list.
 std::size_t chosenAfter(const std::vector<std::string>& before, const std::vector<std::string>& after,
                         std::size_t chosen) {
   const auto among = [](const std::vector<std::string>& names, const std::string& name) {
@@ -40,16 +40,15 @@ BoardsForm::BoardsForm(QWidget* parent)
     : QWidget(parent),
       chooser_(new BoardChooser(this)),
       form_(new BoardForm(this)),
-      blinks_(new QCheckBox(tr("It flashes, on a screen or with lamps"), this)) {
+      blinks_(new QCheckBox(tr("The board flashes (screen or lamps)"), this)) {
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(form_, 1);
   layout->addWidget(blinks_);
   blinks_->setObjectName("blinks");
   blinks_->setToolTip(
-      tr("Before an event camera that stands still, any kind of board will do if it flashes: for the lens of "
-         "one "
-         "camera alone"));
+      tr("For the intrinsics of one event camera at rest. Any type of board is suitable if it "
+         "flashes."));
   connect(blinks_, &QCheckBox::clicked, this, &BoardsForm::setBlinking);
   connect(chooser_, &BoardChooser::chosen, this, &BoardsForm::choose);
   connect(chooser_, &BoardChooser::addRequested, this, &BoardsForm::add);
@@ -86,9 +85,9 @@ void BoardsForm::showChosen() {
   for (const std::string& name : boardNames(session_)) names << QString::fromStdString(name);
   const auto chosen = static_cast<qsizetype>(chosen_);
   chooser_->setBoards(names, chosen_);
-  chooser_->setFull(session_.board_blinks ? tr("A board that blinks stands alone")
+  chooser_->setFull(session_.board_blinks ? tr("A flashing board must be the only one")
                     : static_cast<std::size_t>(names.size()) >= session_.cameras.size()
-                        ? tr("A camera sees one board, so there cannot be more boards than cameras")
+                        ? tr("Each camera sees one board, so there cannot be more boards than cameras")
                         : QString());
   blinks_->setVisible(session_.further_boards.empty() && session_.board.hasPattern());
   blinks_->setChecked(session_.board_blinks);
@@ -121,12 +120,13 @@ void BoardsForm::setProblems(const std::vector<std::pair<QString, QString>>& fie
   form_->setProblem(texts.join('\n'));
 }
 
-// Only of a board that blinks there may be several recordings, one for each of its places.
+// Only a flashing board may have several recordings, one for each of its poses.
 void BoardsForm::setBlinking(bool blinking) {
   Session changed = session_;
   changed.board_blinks = blinking;
   if (!blinking) changed.more_recordings.clear();
-  emit sessionEdited(changed, blinking ? tr("Let the board flash") : tr("Let the board stand still"), {});
+  emit sessionEdited(changed, blinking ? tr("Mark the board as flashing") : tr("Mark the board as printed"),
+                     {});
 }
 
 void BoardsForm::choose(std::size_t index) {

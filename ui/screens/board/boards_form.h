@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session's boards: one form, of the one that is chosen, and who sees it.
+// The session's boards: a form for the chosen one, and the cameras that see it.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -23,10 +23,10 @@ class BoardsForm : public QWidget {
   explicit BoardsForm(QWidget* parent = nullptr);
 
   void setSession(const Session& session);
-  // By field: "board", "boards.tags", "boards.tags.rows"; says which of them are of boards.
+  // By field: "board", "boards.tags", "boards.tags.rows".
   static bool isOfBoards(const QString& field) { return field.startsWith("board"); }
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
-  // For the place beside the heading.
+  // Widget for the heading's line.
   QWidget* chooser() const;
 
  signals:

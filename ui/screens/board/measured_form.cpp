@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMeasuredMmPerM = 1e3;
 
-// In a line of a staggered board there are two from circle to circle.
+// Neighbours in a line of a staggered board are two spacings apart.
 int spacingsBetween(const Board& board) {
   return board.type == BoardType::AsymmetricCircles ? 2 : 1;
 }
@@ -37,19 +37,19 @@ MeasuredForm::MeasuredForm(QWidget* parent)
   is_measured_->setObjectName("is_measured");
   length_mm_->setObjectName("measured_length");
   circles_->setObjectName("measured_circles");
-  is_measured_->setToolTip(tr("Printers stretch: the length over a whole line tells by how much"));
+  is_measured_->setToolTip(tr("Printers change the scale: the length of a whole line determines the factor"));
   length_mm_->setToolTip(
-      tr("From the centre of the first circle to that of the last in one line; of tags, between the same "
+      tr("Between the centres of the first and the last circle in one line; for tags, between the same "
          "corners of two"));
-  length_std_mm_->setToolTip(tr("How well ruler and eye tell the length, one sigma; 0: exactly"));
-  circles_->setToolTip(tr("From the first to the last that were measured, both counted"));
+  length_std_mm_->setToolTip(tr("Standard deviation of the measured length; 0: exact"));
+  circles_->setToolTip(tr("Number of circles in the measured line, including both ends"));
   circles_->setFocusPolicy(Qt::StrongFocus);
   auto* const form = new QFormLayout(this);
   form->setContentsMargins(0, 0, 0, 0);
   form->addRow(is_measured_);
   form->addRow(tr("Length [mm]"), length_mm_);
-  form->addRow(tr("Over so many circles"), circles_);
-  form->addRow(tr("Its sigma [mm]"), length_std_mm_);
+  form->addRow(tr("Number of circles"), circles_);
+  form->addRow(tr("Sigma [mm]"), length_std_mm_);
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(circles_),
                                static_cast<QWidget*>(length_std_mm_)}) {
     field->setAccessibleName(qobject_cast<QLabel*>(form->labelForField(field))->text());
@@ -59,7 +59,7 @@ MeasuredForm::MeasuredForm(QWidget* parent)
   connect(is_measured_, &QCheckBox::toggled, this, &MeasuredForm::changed);
   connect(length_mm_, &NumberField::valueEdited, this, &MeasuredForm::changed);
   connect(length_std_mm_, &NumberField::valueEdited, this, &MeasuredForm::changed);
-  // As long as it was to be, over as many as are chosen.
+  // Nominal length over the chosen number of circles.
   connect(circles_, &QSpinBox::valueChanged, this, [this](int count) {
     length_mm_->setValue(kMeasuredMmPerM * board_.spacing_m * spacingsBetween(board_) * (count - 1));
     emit changed();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a ruler says of a print: a length over as many of its points as there are.
+// Measurement of a print by ruler: the length over as many points as possible.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -22,8 +22,8 @@ class MeasuredForm : public QWidget {
  public:
   explicit MeasuredForm(QWidget* parent = nullptr);
 
-  void setBoard(const Board& board);  // that is printed; what was measured of another one is forgotten
-  std::optional<MeasuredLength> measured() const;  // nothing: taken for as it was to be printed
+  void setBoard(const Board& board);               // printed board; resets the measurement
+  std::optional<MeasuredLength> measured() const;  // none: nominal size
 
  signals:
   void changed();

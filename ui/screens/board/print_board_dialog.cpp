@@ -43,7 +43,7 @@ namespace {
 constexpr double kSheetMmPerM = 1e3, kMmPerInch = 25.4;
 const char* const kBoardFolderKey = "board_folder";
 
-// In the window's words: keys of files and commands are not there.
+// Without the error's place: keys of files do not appear in the window.
 QString textOf(const CalibrationError& error) {
   QString text = QObject::tr("The board %1. %2.")
                      .arg(QString::fromStdString(error.problem()), QString::fromStdString(error.advice()));
@@ -82,8 +82,8 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
       preview_(new SheetPreview(this)),
       message_(wrappedLabel({}, "hint", this)),
       half_turn_(
-          wrappedLabel(tr("This board looks the same when it is turned upside down: it does for a camera's "
-                          "lens alone, not with an IMU. Take an odd number of rows."),
+          wrappedLabel(tr("This board looks the same upside down: it suits only the intrinsics of a camera, "
+                          "not a calibration with an IMU. Choose an odd number of rows."),
                        "problem", this)),
       measured_(new MeasuredForm(this)) {
   setWindowTitle(tr("Print a board"));
@@ -140,21 +140,21 @@ QWidget* PrintBoardDialog::makePaper() {
   auto* const group = new QGroupBox(tr("2. The paper"), this);
   group->setLayout(paper_form_);
   paper_->setObjectName("paper");
-  paper_->addItem(tr("As large as the board needs"));
+  paper_->addItem(tr("Size of the board"));
   for (const Paper& paper : papers()) paper_->addItem(QString::fromStdString(paper.name));
-  paper_->setToolTip(tr("The board is in the middle of the sheet, upright or lying"));
+  paper_->setToolTip(tr("The board is centred on the sheet, in portrait or landscape format"));
   margin_mm_->setValue(kSheetMmPerM * SheetOptions{}.margin_m);
-  margin_mm_->setToolTip(tr("White around the board, at least"));
-  border_bits_->addItems({tr("1 bit"), tr("2 bits, as Kalibr's")});
+  margin_mm_->setToolTip(tr("Minimum white margin around the board"));
+  border_bits_->addItems({tr("1 bit"), tr("2 bits, as in Kalibr")});
   border_bits_->setCurrentIndex(TagPrint{}.border_bits - 1);
   border_bits_->setToolTip(tr("Width of the tags' black border"));
   for (const std::string& name : markerNames()) markers_->addItem(QString::fromStdString(name));
   markers_->setCurrentText(QString::fromUtf8(kUsualMarkers));
-  markers_->setToolTip(tr("ArUco's dictionary of the markers, by their bits"));
+  markers_->setToolTip(tr("ArUco dictionary of the markers, by number of bits"));
   constexpr int kLeast_dpi = 50, kMost_dpi = 1200, kUsual_dpi = 300;
   resolution_dpi_->setRange(kLeast_dpi, kMost_dpi);
   resolution_dpi_->setValue(kUsual_dpi);
-  resolution_dpi_->setToolTip(tr("Pixels an inch of a PNG; PDF and SVG are exact"));
+  resolution_dpi_->setToolTip(tr("Pixels per inch of a PNG; PDF and SVG are exact"));
   resolution_dpi_->setFocusPolicy(Qt::StrongFocus);
   const std::initializer_list<std::pair<QString, QWidget*>> rows = {{tr("Paper"), paper_},
                                                                     {tr("Margin [mm]"), margin_mm_},
@@ -174,29 +174,30 @@ QWidget* PrintBoardDialog::makePaper() {
 QWidget* PrintBoardDialog::makeMeasure() {
   auto* const group = new QGroupBox(tr("3. After printing"), this);
   auto* const layout = new QVBoxLayout(group);
-  layout->addWidget(
-      wrappedLabel(tr("The line below the board must be 100 mm long. Glue the print to something flat, "
-                      "and measure it. Any error in the board's size becomes the same error in translation."),
-                   "hint", group));
+  layout->addWidget(wrappedLabel(
+      tr("The line below the board must be 100 mm long. Glue the print to a flat plate, "
+         "and measure it. A relative error of the board's size causes the same relative error of "
+         "translations."),
+      "hint", group));
   layout->addWidget(measured_);
   layout->addWidget(take_);
   return group;
 }
 
 void PrintBoardDialog::makeButtons() {
-  print_ = sheetButton("board", tr("&Print..."), tr("Straight to a printer, at 100 %"), this);
-  save_ = sheetButton("save", tr("&Save..."), tr("To a PDF, SVG or PNG file, true to scale"), this);
+  print_ = sheetButton("board", tr("&Print..."), tr("Send to a printer, at 100 %"), this);
+  save_ = sheetButton("save", tr("&Save..."), tr("Save to a PDF, SVG or PNG file, to scale"), this);
   blink_ =
       sheetButton("demo", tr("Page that &blinks..."),
-                  tr("For the browser: flashes the board on a screen, for the lens of an event camera that "
-                     "stands still"),
+                  tr("Web page that flashes the board on a screen, for the intrinsics of an event camera at "
+                     "rest"),
                   this);
-  open_ = sheetButton("open", tr("&Open"), tr("Shows the file that was written"), this);
-  take_ = sheetButton(
-      "done", tr("&Use this board"),
-      tr("The session's board from now on, with what was measured; without a session, that of the "
-         "next recording that is opened"),
-      this);
+  open_ = sheetButton("open", tr("&Open"), tr("Opens the written file"), this);
+  take_ =
+      sheetButton("done", tr("&Use this board"),
+                  tr("Use this board, with the measured length, in the session; without a session, in the "
+                     "next recording that is opened"),
+                  this);
   save_->setObjectName("save_board");
   take_->setObjectName("take_board");
   open_->setObjectName("open_board");
@@ -207,12 +208,12 @@ void PrintBoardDialog::makeButtons() {
   connect(blink_, &QPushButton::clicked, this, &PrintBoardDialog::chooseBlinkFile);
   connect(open_, &QPushButton::clicked, this, [this] {
     if (!QDesktopServices::openUrl(QUrl::fromLocalFile(written_file_)))
-      say(tr("No program of this desktop opens %1").arg(written_file_), true);
+      say(tr("No program on this computer opens %1").arg(written_file_), true);
   });
   connect(take_, &QPushButton::clicked, this, [this] {
     const std::optional<MeasuredLength> measured = measured_->measured();
     emit boardTaken(board_, measured);
-    say(measured ? tr("Taken, with what was measured.") : tr("Taken as it was to be printed."), false);
+    say(measured ? tr("Entered, with the measured length.") : tr("Entered, with the nominal size."), false);
   });
 }
 
@@ -234,7 +235,7 @@ void PrintBoardDialog::showBoard() {
   paper_form_->setRowVisible(markers_, board_.type == BoardType::Charuco);
   try {
     sheet_ = layOut(board_, sheetOptions(), tagPrint());
-    say(tr("A sheet of %1 mm x %2 mm. Print it at 100 %.")
+    say(tr("Sheet of %1 mm x %2 mm. Print it at 100 %.")
             .arg(sheet_->width_mm, 0, 'f', 0)
             .arg(sheet_->height_mm, 0, 'f', 0),
         false);
@@ -259,14 +260,16 @@ void PrintBoardDialog::chooseFile() {
 void PrintBoardDialog::chooseBlinkFile() {
   const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
   const QString file = QFileDialog::getSaveFileName(
-      this, tr("Save the page that blinks"), QDir(folder).filePath("board.html"), tr("Pages (*.html)"));
+      this, tr("Save the blinking page"), QDir(folder).filePath("board.html"), tr("Pages (*.html)"));
   if (!file.isEmpty()) saveTo(file);
 }
 
 void PrintBoardDialog::saveTo(const QString& file) {
   const QString ending = QFileInfo(file).suffix().toLower();
   if (!QStringList{"pdf", "svg", "png", "html"}.contains(ending))
-    return say(tr("%1 is not written: name it .pdf, .svg or .png").arg(QFileInfo(file).fileName()), true);
+    return say(tr("%1 was not written. Choose a name that ends with .pdf, .svg or .png")
+                   .arg(QFileInfo(file).fileName()),
+               true);
   say(tr("Writing %1...").arg(QFileInfo(file).fileName()), false);
   QSettings().setValue(kBoardFolderKey, QFileInfo(file).path());
   emit fileRequested(
@@ -276,9 +279,10 @@ void PrintBoardDialog::saveTo(const QString& file) {
 void PrintBoardDialog::setWritten(const QString& file) {
   written_file_ = file;
   say(file.endsWith(".html", Qt::CaseInsensitive)
-          ? tr("%1 is written. Open it on the screen that is to flash; it asks for a length, and says what "
-               "the "
-               "board's numbers are.")
+          ? tr("%1 is written. Open it on the screen that is to flash, and enter the measured length: the "
+               "page "
+               "shows the "
+               "board's numbers.")
                 .arg(file)
           : tr("%1 is written. Print it at 100 %, and check the line below the board: 100 mm.").arg(file),
       false);
@@ -294,7 +298,7 @@ void PrintBoardDialog::print() {
   const bool lying = sheet_->width_mm > sheet_->height_mm;
   const QSizeF upright_mm(std::min(sheet_->width_mm, sheet_->height_mm),
                           std::max(sheet_->width_mm, sheet_->height_mm));
-  printer.setFullPage(true);  // true to scale, whatever the printer's margins are
+  printer.setFullPage(true);  // to scale, regardless of the printer's margins
   printer.setPageLayout({QPageSize(upright_mm, QPageSize::Millimeter),
                          lying ? QPageLayout::Landscape : QPageLayout::Portrait, QMarginsF()});
   QPrintDialog dialog(&printer, this);
@@ -304,7 +308,7 @@ void PrintBoardDialog::print() {
   painter.scale(dots_per_mm, dots_per_mm);
   paintSheet(painter, *sheet_);
   say(painter.end() ? tr("Sent to the printer. Check the line below the board: 100 mm.")
-                    : tr("The printer took nothing. Save a PDF, and print that."),
+                    : tr("The printer did not accept the sheet. Save a PDF and print it."),
       false);
 }
 

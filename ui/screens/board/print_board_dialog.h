@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A board to print: its numbers, the paper, a preview; to a file, to a printer, or as a page that blinks. Afterwards what
-// a ruler says of the print, for the session.
+// Dialog that prints a board: numbers, paper, preview; output to a file, a printer, or a blinking page; then
+// the measured size of the print, for the session.
 #pragma once
 
 #include "core/geometry/board.h"
@@ -25,7 +25,7 @@ class MeasuredForm;
 class NumberField;
 class SheetPreview;
 
-// A file that is wanted: .pdf, .svg, .png, or .html, which blinks.
+// Output file: .pdf, .svg, .png, or .html (blinking).
 struct BoardFile {
   QString path;
   Board board;
@@ -33,7 +33,7 @@ struct BoardFile {
   TagPrint print;
   double resolution_dpi = 300.0;  // of a .png
 };
-// Long for a large .png. Throws CalibrationError.
+// Takes long for a large .png. Throws CalibrationError.
 void writeBoardFile(const BoardFile& file);
 
 class PrintBoardDialog : public QDialog {
@@ -46,13 +46,13 @@ class PrintBoardDialog : public QDialog {
   SheetOptions sheetOptions() const;
   TagPrint tagPrint() const;
 
-  void saveTo(const QString& file);  // asks for it, by the file's ending
+  void saveTo(const QString& file);  // format by the file's extension
   void setWritten(const QString& file);
   void setNotWritten(const QString& why);
 
  signals:
   void fileRequested(const evical::ui::BoardFile& file);
-  // The board is the session's from now on, with what was measured of it.
+  // The session uses this board from now on, with its measured length.
   void boardTaken(const evical::Board& board, const std::optional<evical::MeasuredLength>& measured);
 
  private:

@@ -26,7 +26,7 @@ void paintSheet(QPainter& painter, const BoardSheet& sheet) {
   for (const Eigen::Vector2d& centre_mm : sheet.centres_mm)
     painter.drawEllipse(QPointF(centre_mm.x(), centre_mm.y()), sheet.radius_mm, sheet.radius_mm);
   paintBox(painter, sheet.ruler);
-  // Fonts have whole pixels: a large one, made small.
+  // Fonts have integer pixel sizes, so a large font is scaled down.
   constexpr int kLetter_px = 100;
   QFont font("Helvetica");
   font.setPixelSize(kLetter_px);
@@ -46,10 +46,10 @@ SheetPreview::SheetPreview(QWidget* parent) : QWidget(parent) {
 
 void SheetPreview::setSheet(std::optional<BoardSheet> sheet) {
   sheet_ = std::move(sheet);
-  setToolTip(sheet_ ? tr("The sheet of %1 mm x %2 mm, as it will be printed")
+  setToolTip(sheet_ ? tr("Sheet of %1 mm x %2 mm, as printed")
                           .arg(sheet_->width_mm, 0, 'f', 0)
                           .arg(sheet_->height_mm, 0, 'f', 0)
-                    : tr("What cannot be printed cannot be shown"));
+                    : tr("No preview: the board cannot be printed"));
   setAccessibleDescription(sheet_ ? QString::fromStdString(sheet_->caption) : toolTip());
   update();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A printed sheet as core lays it out, on the screen and on a printer.
+// Printed sheet with the layout of core, on the screen and on a printer.
 #pragma once
 
 #include "core/printing/board_sheet.h"
@@ -12,7 +12,7 @@ class QPainter;
 
 namespace evical::ui {
 
-// In millimetres of the sheet, whatever the painter makes of them.
+// In millimetres of the sheet, in the painter's current transform.
 void paintSheet(QPainter& painter, const BoardSheet& sheet);
 
 class SheetPreview : public QWidget {
@@ -21,7 +21,7 @@ class SheetPreview : public QWidget {
  public:
   explicit SheetPreview(QWidget* parent = nullptr);
 
-  void setSheet(std::optional<BoardSheet> sheet);  // nothing: there is none to be shown
+  void setSheet(std::optional<BoardSheet> sheet);  // none: empty preview
   QSize sizeHint() const override { return {420, 420}; }
   QSize minimumSizeHint() const override { return {220, 220}; }
 

@@ -40,7 +40,7 @@ QRectF ImageMapView::imageRect() const {
   return {room.center().x() - 0.5 * shown.width(), room.top(), shown.width(), shown.height()};
 }
 
-// From the panel's colour to one that everybody tells from it, in lightness too.
+// From the panel's colour to a clearly distinguishable one, also in lightness.
 QColor ImageMapView::colourOf(double value) const {
   const QColor& end = cells_.more_is_better ? theme().accent : theme().warning;
   return mixed(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
@@ -55,7 +55,7 @@ void ImageMapView::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setPen(theme().faint_text);
   if (cells_.values.empty()) {
-    painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, tr("Nothing to compare with yet."));
+    painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, tr("No lens to compare with."));
     return;
   }
   const QRectF image = imageRect();
@@ -105,7 +105,7 @@ QString ImageMapView::textAt(const QPoint& position) const {
   return tr("x %1 px, y %2 px: %3")
       .arg(part.x() * cells_.resolution_px.width_px, 0, 'f', 0)
       .arg(part.y() * cells_.resolution_px.height_px, 0, 'f', 0)
-      .arg(known ? textOf(*value) : tr("the lens sees nothing here"));
+      .arg(known ? textOf(*value) : tr("outside the lens's field of view"));
 }
 
 bool ImageMapView::event(QEvent* event) {

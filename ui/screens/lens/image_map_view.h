@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One number for each part of a camera's image, as coloured cells with a scale below.
+// Map of one number per cell of a camera's image, as colours with a scale below.
 #pragma once
 
 #include "core/geometry/resolution.h"
@@ -15,9 +15,9 @@ namespace evical::ui {
 struct ImageMapCells {
   int columns = 0, rows = 0;
   Resolution resolution_px;
-  std::vector<std::optional<double>> values;  // row by row; nothing: hatched
+  std::vector<std::optional<double>> values;  // row by row; none: hatched
   QString unit;
-  bool more_is_better = false;  // colours: of circles the many are fine, of errors the few
+  bool more_is_better = false;  // for the colours: true for counts, false for errors
 };
 
 class ImageMapView : public QWidget {
@@ -28,7 +28,7 @@ class ImageMapView : public QWidget {
 
   void setCells(ImageMapCells cells);
   const ImageMapCells& cells() const { return cells_; }
-  QString textAt(const QPoint& position) const;  // "x 120 px, y 40 px: 0.031 px"; empty beside the image
+  QString textAt(const QPoint& position) const;  // "x 120 px, y 40 px: 0.031 px"; empty outside the image
   QRectF imageRect() const;
   QSize minimumSizeHint() const override { return {220, 200}; }
 

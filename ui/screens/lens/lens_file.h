@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files that a lens can be saved as, one by one.
+// File formats in which a lens can be saved.
 #pragma once
 
 #include <QtGlobal>
@@ -9,8 +9,8 @@
 namespace evical::ui {
 
 struct LensFile {
-  const char* title;  // for people
-  const char* name;   // as core names it (pipeline/intrinsics_files.h)
+  const char* title;  // shown
+  const char* name;   // in core (pipeline/intrinsics_files.h)
 };
 
 inline constexpr std::array kLensFiles = {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPixelNumbers = 4;  // fx fy cx cy; distortion has no unit
 
-// As many decimals as the sigma's second digit.
+// Number of decimals up to the sigma's second digit.
 QString lensText(double value, double sigma) {
   constexpr int kMost = 8;
   return QString::number(value, 'f', decimalsFor(sigma, kMost));
@@ -26,7 +26,7 @@ QString pixels(double value) {
 }
 
 QString sigmaText(double sigma) {
-  return sigma > 0.0 ? lensText(sigma, sigma) : QObject::tr("held");
+  return sigma > 0.0 ? lensText(sigma, sigma) : QObject::tr("fixed");
 }
 
 QString lensNameOf(std::size_t number, CameraModel model) {
@@ -78,7 +78,7 @@ LensGroup numbersOf(const IntrinsicsResult& result, const std::optional<LensComp
 }
 
 LensGroup fitOf(const IntrinsicsResult& result) {
-  LensGroup group{QObject::tr("How well it is known"), {}};
+  LensGroup group{QObject::tr("Accuracy"), {}};
   const auto add = [&](const QString& name, const QString& value, const QString& unit) {
     group.rows.push_back({name, value, {}, unit, {}, {}});
   };
@@ -92,14 +92,14 @@ LensGroup fitOf(const IntrinsicsResult& result) {
 LensGroup viewsOf(const NamedIntrinsics& named) {
   const IntrinsicsResult& result = named.result;
   const std::vector<IntrinsicsView>& views = named.story.views;
-  LensGroup group{QObject::tr("What it rests on"), {}};
+  LensGroup group{QObject::tr("Data"), {}};
   const auto add = [&](const QString& name, const QString& value, const QString& unit) {
     group.rows.push_back({name, value, {}, unit, {}, {}});
   };
   add(QObject::tr("Views used"), QObject::tr("%1 of %2").arg(result.views_used).arg(result.views_found), {});
   add(QObject::tr("Points used"), QString::number(result.circles_used), {});
-  add(QObject::tr("Points left out"), QString::number(result.circles_rejected), {});
-  add(QObject::tr("Board tilted by up to"), QString::number(result.largest_tilt_deg, 'f', 0), "deg");
+  add(QObject::tr("Points excluded"), QString::number(result.circles_rejected), {});
+  add(QObject::tr("Largest tilt of the board"), QString::number(result.largest_tilt_deg, 'f', 0), "deg");
   if (!views.empty()) {
     const auto [nearest, farthest] = std::minmax_element(
         views.begin(), views.end(), [](const auto& a, const auto& b) { return a.distance_m < b.distance_m; });
@@ -108,7 +108,7 @@ LensGroup viewsOf(const NamedIntrinsics& named) {
         "m");
   }
   add(QObject::tr("Passes over the recording"), QString::number(result.passes), {});
-  if (result.moved_px > 0.0) add(QObject::tr("The last pass moved pixels by"), pixels(result.moved_px), "px");
+  if (result.moved_px > 0.0) add(QObject::tr("Change by the last pass"), pixels(result.moved_px), "px");
   return group;
 }
 
@@ -118,7 +118,7 @@ std::vector<LensGroup> lensGroups(const NamedIntrinsics& named,
                                   const std::optional<LensComparison>& compared) {
   std::vector<LensGroup> groups = {numbersOf(named.result, compared), fitOf(named.result), viewsOf(named)};
   if (std::vector<LensRow> tried = triedModels(named); tried.size() > 1)
-    groups.push_back({QObject::tr("Lens models tried: errors in sigmas, points that fit"), std::move(tried)});
+    groups.push_back({QObject::tr("Lens models tried: errors in sigmas, fitted points"), std::move(tried)});
   return groups;
 }
 
@@ -127,7 +127,7 @@ std::vector<LensRow> triedModels(const NamedIntrinsics& named) {
   for (const TriedModel& tried : named.story.tried) {
     const QString title = QString::fromUtf8(cameraModelTitle(tried.model));
     LensRow row;
-    row.name = tried.model == named.result.intrinsics.model ? QObject::tr("%1 (taken)").arg(title) : title;
+    row.name = tried.model == named.result.intrinsics.model ? QObject::tr("%1 (selected)").arg(title) : title;
     const double share = tried.circles > 0 ? 100.0 * tried.circles_used / tried.circles : 0.0;
     row.value = QObject::tr("%1, %2 %").arg(tried.spread_sigma, 0, 'f', 2).arg(share, 0, 'f', 0);
     rows.push_back(row);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A calibrated lens as rows for people: each number with its standard deviation, how far it is from another lens's, and
-// what it rests on.
+// Rows of a calibrated lens: each number with its standard deviation, its difference to another lens, and the
+// data behind it.
 #pragma once
 
 #include "core/pipeline/lens/lens_comparison.h"
@@ -15,7 +15,7 @@ namespace evical::ui {
 
 struct LensRow {
   QString name, value, sigma, unit;
-  QString difference, sigmas;  // against the other lens; empty where nothing is compared
+  QString difference, sigmas;  // to the other lens; empty without a comparison
   bool far = false;            // by more than three sigmas
 };
 
@@ -27,8 +27,8 @@ struct LensGroup {
 std::vector<LensGroup> lensGroups(const NamedIntrinsics& named,
                                   const std::optional<LensComparison>& compared);
 
-// A line each: the models that the views were explained with, the spread of their errors and the share of the points
-// that they explain; the one taken says so.
+// One row per model that was tried: the spread of its errors, the share of points that it explains, and a
+// mark for the selected one.
 std::vector<LensRow> triedModels(const NamedIntrinsics& named);
 
 }  // namespace evical::ui

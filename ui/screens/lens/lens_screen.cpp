@@ -108,7 +108,7 @@ QWidget* LensScreen::makeEmpty() {
   text->setText(tr("The camera is not calibrated yet."));
   text->setAlignment(Qt::AlignCenter);
   auto* const start = new QPushButton(icon("calibrate"), tr("Calibrate the camera"), empty);
-  start->setToolTip(tr("Find the lens from the open recording (F5)"));
+  start->setToolTip(tr("Calibrate the lens from the open recording (F5)"));
   connect(start, &QPushButton::clicked, this, &LensScreen::calibrateRequested);
   layout->addStretch();
   layout->addWidget(text);
@@ -121,7 +121,7 @@ QPushButton* LensScreen::makeSave() {
   auto* const save = new QPushButton(icon("export"), tr("Save as..."), this);
   save->setObjectName("save_lens");
   save->setAccessibleName(tr("Save the lens as"));
-  save->setToolTip(tr("One file of the lens, all of them, or files for another program (Ctrl+E: all)"));
+  save->setToolTip(tr("Save one file of the lens, all of them, or files for another program (Ctrl+E: all)"));
   auto* const menu = new QMenu(save);
   for (std::size_t k = 0; k < kLensFiles.size(); ++k) {
     const QString title = QCoreApplication::translate("LensFile", kLensFiles[k].title);
@@ -139,11 +139,11 @@ QWidget* LensScreen::makeHeader() {
   auto* const words = new QVBoxLayout;
   words->setSpacing(2);
   for (QLabel* const line : {verdict_, reason_, fit_, outdated_}) words->addWidget(line);
-  outdated_->setText(tr("The session has changed since: calibrate again to see what comes of it."));
+  outdated_->setText(tr("The session has changed since this result. Calibrate again to update it."));
   outdated_->hide();
   auto* const use = new QPushButton(icon("camera"), tr("Use in the session"), header);
   use->setObjectName("use_lens");
-  use->setToolTip(tr("Put this lens into the session's camera, so that calibrations of the rig know it"));
+  use->setToolTip(tr("Set this lens as the session's camera intrinsics, for calibrations of the rig"));
   connect(use, &QPushButton::clicked, this, &LensScreen::useRequested);
   auto* const layout = new QHBoxLayout(header);
   layout->setContentsMargins(4, 0, 4, 0);
@@ -162,13 +162,13 @@ QWidget* LensScreen::makeComparisons() {
   what->setBuddy(against_);
   against_->setObjectName("lens_against");
   against_->setAccessibleName(tr("Lens to compare with"));
-  against_->setToolTip(tr("The lens that the session had, or one of a file"));
+  against_->setToolTip(tr("The session's previous lens, or one from a file"));
   against_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   auto* const file = new QPushButton(icon("open"), tr("A file..."), bar);
   file->setObjectName("lens_other");
   file->setAccessibleName(tr("Compare with the lens of a file"));
   file->setToolTip(
-      tr("A lens or a result of Evical's, a Kalibr camchain, a ROS camera_info, or eKalibr's intrinsics"));
+      tr("Lens or result of Evical, camchain of Kalibr, camera_info of ROS, or intrinsics of eKalibr"));
   connect(file, &QPushButton::clicked, this, &LensScreen::otherRequested);
   layout->addWidget(what);
   layout->addWidget(against_, 1);
@@ -293,10 +293,10 @@ void LensScreen::compare() {
       comparison_ = compareLenses(lens_->result, with->second);
       if (!comparison_->numbers)
         remark =
-            tr("Their models differ, so that single numbers mean different things: compare where rays are "
-               "seen, under Difference.");
+            tr("The models differ, so single numbers are not comparable. Compare the projections "
+               "under Difference.");
     } catch (const CalibrationError& error) {
-      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
+      remark = tr("The lenses cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
     }
   }
   remark_->setText(remark);
@@ -310,16 +310,16 @@ void LensScreen::showVerdict() {
   const bool ok = result.status == CalibrationStatus::Ok;
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(lensVerdictWords(result.status));
-  reason_->setText(ok ? tr("The views determine the lens as well as needed.")
+  reason_->setText(ok ? tr("The views determine the lens with the needed accuracy.")
                       : sentence(QString::fromStdString(result.reason)));
   fit_->setText(
-      tr("%1: pixels of rays known to %2 px RMS; points fit to %3 px RMS in %4 views; took %5 s.")
+      tr("%1: projection uncertainty %2 px RMS; reprojection error %3 px RMS in %4 views; duration %5 s.")
           .arg(QString::fromStdString(lens_->camera), px(result.image.rms_px), px(result.reprojection_rms_px))
           .arg(result.views_used)
           .arg(result.elapsed_s, 0, 'f', 1));
   notes_->clear();
   for (const std::string& advice : result.advice) notes_->addItem(sentence(QString::fromStdString(advice)));
-  if (result.advice.empty()) notes_->addItem(tr("Nothing to improve: the views cover image and tilts."));
+  if (result.advice.empty()) notes_->addItem(tr("No advice: the views cover the image and the tilts."));
 }
 
 void LensScreen::showParameters() {
@@ -356,16 +356,16 @@ void LensScreen::showMaps() {
   coverage.more_is_better = true;
   uncertainty_->setCells(std::move(uncertainty));
   coverage_->setCells(std::move(coverage));
-  uncertainty_text_->setText(tr("How well it is known where a ray is seen: %1 px RMS, at most %2 px.")
+  uncertainty_text_->setText(tr("Standard deviation of a ray's pixel: %1 px RMS, at most %2 px.")
                                  .arg(px(result.image.rms_px), px(result.image.max_px)));
   const double cells = std::max(1.0, static_cast<double>(result.image.cells.size()));
-  coverage_text_->setText(tr("Points of the board that were used, by place: %1 % of the image has some. "
-                             "Elsewhere the model speaks "
-                             "alone.")
+  coverage_text_->setText(tr("Used points of the board, by place: %1 % of the image has some. "
+                             "Elsewhere only the model constrains "
+                             "the lens.")
                               .arg(100.0 * (1.0 - empty / cells), 0, 'f', 0));
   views_->setViews(lens_->story.views);
-  views_text_->setText(tr("Views that were used: %1. Tilts tell the focal length: the more they and the "
-                          "distances differ, the better.")
+  views_text_->setText(tr("Views used: %1. Tilted views determine the focal length: the tilts and "
+                          "distances should vary.")
                            .arg(lens_->story.views.size()));
 }
 
@@ -381,11 +381,11 @@ void LensScreen::showDifference() {
   for (const LensComparison::Place& place : comparison_->places) cells.values.push_back(place.difference_px);
   cells.unit = "px";
   difference_->setCells(std::move(cells));
-  difference_text_->setText(
-      tr("How far apart both see a ray, a turn of the camera taken out: %1 px RMS, at most %2 px; that is %3 "
-         "sigmas RMS.")
-          .arg(px(comparison_->rms_px), px(comparison_->max_px))
-          .arg(comparison_->rms_sigmas, 0, 'f', 1));
+  difference_text_->setText(tr("Distance between both projections after the best rotation of the camera: %1 "
+                               "px RMS, at most %2 px; %3 "
+                               "sigmas RMS.")
+                                .arg(px(comparison_->rms_px), px(comparison_->max_px))
+                                .arg(comparison_->rms_sigmas, 0, 'f', 1));
 }
 
 void LensScreen::changeEvent(QEvent* event) {

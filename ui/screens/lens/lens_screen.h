@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera calibrated alone: every number and how sure it is, where in the image it is known how well, what the views
-// were, and how far it is from another lens of this camera.
+// Result of a camera calibrated alone: numbers with sigmas, uncertainty over the image, the views, and the
+// difference to another lens of this camera.
 #pragma once
 
 #include "core/format/intrinsics_yaml.h"
@@ -31,23 +31,23 @@ class LensScreen : public QWidget {
   Q_OBJECT
 
  public:
-  // By its title in lists.
+  // Title in lists, and lens.
   using Other = std::pair<QString, KnownIntrinsics>;
 
   explicit LensScreen(QWidget* parent = nullptr);
 
   void setLens(std::optional<NamedIntrinsics> found);
-  // Lenses to compare with; one that was not there before is compared with at once.
+  // Lenses to compare with; a new one is compared with immediately.
   void setOthers(std::vector<Other> others);
-  void setOutdated(bool outdated);  // the session is not as it was for this lens
-  // Formats of other programs that take a lens alone: name and description, below the files of one's own.
+  void setOutdated(bool outdated);  // the session has changed since this lens
+  // Formats of other programs for a lens alone: name and description, listed below Evical's files.
   void setPrograms(const std::vector<std::pair<QString, QString>>& programs);
 
  signals:
   void calibrateRequested();
-  void useRequested();           // in the session
+  void useRequested();           // in the session's camera
   void otherRequested();         // a file to compare with
-  void saveRequested(int file);  // one of the files, by LensFile
+  void saveRequested(int file);  // index of a LensFile
   void saveAllRequested();       // all of them, into a folder
   void exportRequested(const QString& program);
 

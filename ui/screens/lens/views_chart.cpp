@@ -13,7 +13,7 @@
 namespace evical::ui {
 namespace {
 
-// 1, 2 or 5 times a power of ten: four to ten of them reach `most`.
+// 1, 2 or 5 times a power of ten, so that four to ten steps reach `most`.
 double stepOf(double most) {
   const double power = std::pow(10.0, std::floor(std::log10(most)) - 1.0);
   for (const double step : {1.0, 2.0, 5.0, 10.0, 20.0})

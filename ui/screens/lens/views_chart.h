@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The views that a lens rests on: how far the board was, and how it was tilted. A dot each, larger for more points.
+// Chart of the views of a lens: distance and tilt of the board. One dot per view, larger for more points.
 #pragma once
 
 #include "core/data/intrinsics_story.h"
@@ -19,7 +19,7 @@ class ViewsChart : public QWidget {
   void setViews(std::vector<IntrinsicsView> views);
   std::size_t count() const { return views_.size(); }
   QPointF placeOf(std::size_t view) const;
-  QString textAt(const QPoint& position) const;  // of the view there, empty where there is none
+  QString textAt(const QPoint& position) const;  // of the view at this position; empty: none
   QSize minimumSizeHint() const override { return {220, 180}; }
 
  protected:

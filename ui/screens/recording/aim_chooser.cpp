@@ -17,15 +17,15 @@ AimChooser::AimChooser(QWidget* parent)
       rig_(new QPushButton(icon("axes"), tr("the rig"), this)),
       cameras_(new QComboBox(this)) {
   camera_->setObjectName("aim_camera");
-  camera_->setToolTip(
-      tr("The lens alone: focal length, principal point, distortion. A recording of one camera is enough."));
+  camera_->setToolTip(tr(
+      "The lens only: focal length, principal point, distortion. A recording of one camera is sufficient."));
   rig_->setObjectName("aim_rig");
   rig_->setToolTip(
-      tr("How camera and IMU, or cameras, stand to each other, in space and in time; lenses that are not "
-         "known, first"));
+      tr("Rotation, translation and time offset between camera and IMU, or between cameras; unknown lenses "
+         "are calibrated first"));
   cameras_->setObjectName("aim_which");
   cameras_->setAccessibleName(tr("Camera to calibrate"));
-  cameras_->setToolTip(tr("Which of the cameras is calibrated"));
+  cameras_->setToolTip(tr("Camera that is calibrated"));
   auto* const group = new QButtonGroup(this);
   auto* const layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

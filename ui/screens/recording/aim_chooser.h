@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two choices side by side: calibrate the camera, or the rig; and of several cameras, which.
+// Choice between two calibrations: a camera or the rig; with several cameras, also which one.
 #pragma once
 
 #include "ui/document/calibration_aim.h"
@@ -19,7 +19,7 @@ class AimChooser : public QWidget {
   explicit AimChooser(QWidget* parent = nullptr);
 
   void setAim(CalibrationAim aim);
-  // Asked for while there are several and the aim is one of them.
+  // Shown if there are several and the aim is a camera.
   void setCameras(const QStringList& names, int chosen);
 
  signals:

@@ -22,8 +22,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kNotKnown =
-    static_cast<int>(kCameraModelNames.size());  // in the list of models, after all of them
+constexpr int kNotKnown = static_cast<int>(kCameraModelNames.size());  // last entry in the list of models
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
 QLabel* hiddenProblemLabel(QWidget* parent) {
@@ -57,39 +56,38 @@ CameraForm::CameraForm(QWidget* parent)
       centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       coefficient_names_(new QLabel(this)),
-      take_over_(new QPushButton(tr("Take over what the last run found"), this)),
+      take_over_(new QPushButton(tr("Use the last run's estimate"), this)),
       file_problem_(hiddenProblemLabel(this)),
       problem_(hiddenProblemLabel(this)) {
   for (int model = 0; model < kNotKnown; ++model)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
-  model_->addItem(tr("Not known: from this recording"));
+  model_->addItem(tr("Unknown: calibrate from this recording"));
   shutter_->setObjectName("shutter");
   shutter_->addItems({tr("Global"), tr("Rolling")});  // in Shutter's order
-  shutter_->setToolTip(
-      tr("Of frame cameras; event cameras have none. A rolling one gets its line delay estimated."));
+  shutter_->setToolTip(tr("For frame cameras only. The line delay of a rolling shutter is estimated."));
   sensor_->setObjectName("same_sensor_as");
   sensor_->setToolTip(
-      tr("A DAVIS gives events and frames from one sensor: they have one lens and one pose, and the result "
-         "tells by how much events are later."));
+      tr("A DAVIS records events and frames with one sensor: they share lens and pose, and the result "
+         "contains the delay between them."));
   board_->setObjectName("board");
-  board_->setToolTip(tr("Of the session's boards the one before this camera"));
-  name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
-  width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
-  height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
-  model_->setToolTip(tr(
-      "How the lens bends rays: equidistant for wide angles, double sphere, EUCM and omni for those beyond "
-      "some 150 degrees. Where it is not known, the "
-      "intrinsics are calibrated first, from the same events."));
+  board_->setToolTip(tr("The session's board in front of this camera"));
+  name_->setToolTip(tr("Name of the camera in the session, the result and the exports"));
+  width_px_->setToolTip(tr("Width of the sensor; 0: from the recording"));
+  height_px_->setToolTip(tr("Height of the sensor; 0: from the recording"));
+  model_->setToolTip(
+      tr("Projection of the lens: equidistant for wide angles; double sphere, EUCM and omni beyond about "
+         "150 degrees. If unknown, the "
+         "intrinsics are calibrated first, from the same events."));
   focal_x_px_->setToolTip(tr("fx"));
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
   centre_y_px_->setToolTip(tr("cy"));
   auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
-  file->setToolTip(tr("Evical's own map or result, a Kalibr camchain, or a ROS camera_info"));
+  file->setToolTip(tr("Map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
   coefficient_names_->setObjectName("coefficient_names");
   take_over_->setObjectName("take_over");
-  take_over_->setToolTip(tr("So that they are saved with the session and used in the next runs"));
+  take_over_->setToolTip(tr("Saves these intrinsics with the session, for use in the next runs"));
   take_over_->hide();
   connect(take_over_, &QPushButton::clicked, this, &CameraForm::takeOver);
   auto* const coefficients = new QWidget(this);
@@ -113,7 +111,7 @@ CameraForm::CameraForm(QWidget* parent)
   form_->setContentsMargins(8, 8, 8, 8);
   form_->setRowWrapPolicy(QFormLayout::DontWrapRows);  // wrapped fields vanish before rows that are hidden
   for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
-    constexpr int kLeastCharacters = 8;  // what does not fit is in the list that opens
+    constexpr int kLeastCharacters = 8;  // longer names are readable in the open list
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     box->setMinimumContentsLength(kLeastCharacters);
   }
@@ -151,7 +149,7 @@ std::vector<NumberField*> CameraForm::intrinsicsFields() const {
   return fields;
 }
 
-// For fields that are too wide to stand beside their label.
+// For fields that are too wide for the same line as the label.
 void CameraForm::addUnderLabel(const QString& text, QWidget* field) {
   auto* const label = new QLabel(text, this);
   label->setBuddy(field);
@@ -196,7 +194,7 @@ void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::s
   form_->setRowVisible(clock_offset_s_, !camera.recording.empty());
 }
 
-// Another camera's sensor has that camera's lens.
+// A camera on another camera's sensor shares its lens.
 void CameraForm::showSensor() {
   sensor_->clear();
   sensor_->addItem(tr("Its own"));
@@ -237,7 +235,7 @@ std::optional<CameraIntrinsics> CameraForm::typedIntrinsics() const {
   typed.resolution_px = camera_.resolution_px;
   typed.focal_length_px = {focal_x_px_->value(), focal_y_px_->value()};
   typed.principal_point_px = {centre_x_px_->value(), centre_y_px_->value()};
-  // Another model's coefficients mean nothing in this one.
+  // Coefficients of one model are meaningless in another.
   const CameraIntrinsics before = camera_.intrinsics.value_or(typed);
   if (!camera_.intrinsics || before.model != typed.model) {
     const CameraIntrinsics other = plainLens(before, typed.model);
@@ -267,7 +265,7 @@ void CameraForm::say(const QString& field) {
     changed.intrinsics->resolution_px = changed.resolution_px;
   if (field == "intrinsics") {
     changed.intrinsics = typedIntrinsics();
-    changed.intrinsics_uncertainty.reset();  // which was of other numbers
+    changed.intrinsics_uncertainty.reset();  // belongs to the previous numbers
   }
   const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
                     changed.intrinsics == camera_.intrinsics && changed.shutter == camera_.shutter &&
@@ -282,7 +280,7 @@ void CameraForm::setFound(const std::optional<CameraIntrinsics>& found) {
   showTakeOver();
 }
 
-// A lens that is another camera's is taken over there.
+// A lens shared with another camera is set in that camera's form.
 void CameraForm::showTakeOver() {
   take_over_->setVisible(found_ && !camera_.intrinsics && camera_.same_sensor_as.empty());
 }
@@ -290,7 +288,7 @@ void CameraForm::showTakeOver() {
 void CameraForm::takeOver() {
   if (!found_) return;
   SessionCamera changed = camera_;
-  changed.intrinsics = found_;  // without its sigmas: the same recording would count twice
+  changed.intrinsics = found_;  // without sigmas: the recording would count twice
   changed.intrinsics_uncertainty.reset();
   changed.resolution_px = found_->resolution_px;
   emit edited(changed, "found_intrinsics");

@@ -27,14 +27,14 @@ class CameraForm : public QWidget {
  public:
   explicit CameraForm(QWidget* parent = nullptr);
 
-  // `others`: names of cameras whose sensor this one's stream may come from, too. `boards`: those it may see, where
-  // there are several.
+  // `others`: cameras that may share this camera's sensor. `boards`: boards that it may see, if there are
+  // several.
   void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {},
                  const std::vector<std::string>& boards = {});
   void setProblem(const QString& text);
-  // Those that the last run found; offered while the camera has none of its own.
+  // Intrinsics of the last run; offered while the camera has none.
   void setFound(const std::optional<CameraIntrinsics>& found);
-  // Shows what is wrong with the file next to the button, and leaves the camera as it is.
+  // If the file is unusable, shows the reason next to the button and leaves the camera unchanged.
   void loadIntrinsics(const QString& file);
 
  signals:
@@ -44,7 +44,7 @@ class CameraForm : public QWidget {
   void chooseFile();
   void takeOver();
   void say(const QString& field);
-  std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
+  std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: unknown
   void showSensor();
   void showBoard();
   void showTakeOver();

@@ -22,7 +22,7 @@
 namespace evical::ui {
 namespace {
 
-// Of a rig with one camera and one IMU nobody needs the names.
+// A rig with one camera and one IMU needs no names.
 bool hasSeveralSensors(const RecordingAssessment& assessment) {
   const auto count = [&](AssessedThing thing) {
     return std::count_if(assessment.all.begin(), assessment.all.end(),
@@ -55,12 +55,12 @@ CheckCard::CheckCard(QWidget* parent)
   auto* const how = new QToolButton(this);
   how->setText(tr("How to record..."));
   how->setObjectName("how_to_record");
-  how->setToolTip(tr("Shows the motions that a calibration needs"));
+  how->setToolTip(tr("Animations of the motions that a calibration needs"));
   connect(how, &QToolButton::clicked, this, &CheckCard::howToRecordRequested);
   progress_->setRange(0, 1000);
   progress_->setTextVisible(false);
   progress_->setFixedWidth(160);
-  progress_->setAccessibleName(tr("How far the recording has been looked through"));
+  progress_->setAccessibleName(tr("Progress of the check"));
   auto* const line = new QHBoxLayout;
   line->addWidget(mark_);
   line->addWidget(summary_, 1);
@@ -94,9 +94,9 @@ CheckCard::CheckCard(QWidget* parent)
 
 QWidget* CheckCard::makeBoardLine() {
   auto* const line = new QWidget(this);
-  auto* const confirm = new QPushButton(icon("check"), tr("It is this one"), line);
+  auto* const confirm = new QPushButton(icon("check"), tr("Confirm board"), line);
   confirm->setObjectName("confirm_board");
-  confirm->setToolTip(tr("Confirms that the board's numbers are those of the print before the camera"));
+  confirm->setToolTip(tr("Confirms that these numbers match the printed board"));
   connect(confirm, &QPushButton::clicked, this, &CheckCard::boardConfirmed);
   auto* const layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -109,9 +109,9 @@ QWidget* CheckCard::makeFollowLine() {
   auto* const line = new QWidget(this);
   follow_ = new QCheckBox(tr("&Follow while it is being written"), line);
   follow_->setObjectName("follow_recording");
-  follow_->setToolTip(tr(
-      "Another program is writing this recording: it is looked through again and again, and what is still\n"
-      "missing is said here, until nothing more comes for five seconds"));
+  follow_->setToolTip(
+      tr("Another program is writing this recording. It is checked repeatedly, and missing motions are\n"
+         "listed here, until no data arrive for five seconds"));
   connect(follow_, &QCheckBox::toggled, this, &CheckCard::followingWanted);
   auto* const layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -149,7 +149,7 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
 void CheckCard::clear() {
   showState(tr("Before you calibrate"), std::nullopt);
   idle_ = true;
-  // Those are to be said whatever else is known.
+  // Both lines are shown in any state.
   setVisible(board_line_->isVisibleTo(this) || follow_line_->isVisibleTo(this));
 }
 
@@ -162,14 +162,14 @@ void CheckCard::setChecking(double fraction) {
 }
 
 void CheckCard::setWaiting() {
-  showState(tr("Whether the recording is good enough is looked at afterwards"), {});
+  showState(tr("The recording is checked after the current job"), {});
   setVisible(true);
 }
 
 void CheckCard::setFailed(const QString& why) {
   if (following_) {
-    showState(tr("Nothing can be said yet"), {});
-    advice_->setText(tr("It is looked through again when there is more of it."));
+    showState(tr("Not enough data to check yet"), {});
+    advice_->setText(tr("The check is repeated when more data arrive."));
     advice_->setToolTip(why);
     advice_->show();
     return setVisible(true);
@@ -235,15 +235,14 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
     ++row;
   }
   for (int i = 0; i < row; ++i) grid_->setRowStretch(i, 0);
-  grid_->setRowStretch(row, 1);  // what is left is below
+  grid_->setRowStretch(row, 1);  // remaining height goes below
 }
 
 void CheckCard::showDetails(bool shown) {
   more_->setText(shown ? tr("Less") : tr("More"));
   more_->setIcon(icon(shown ? "up" : "down"));
   more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  more_->setToolTip(shown ? tr("Hides what was looked at")
-                          : tr("Shows all that was looked at, with its lights"));
+  more_->setToolTip(shown ? tr("Hides the individual checks") : tr("Shows all checks with their lights"));
   const bool visible = shown && more_->isVisibleTo(this);
   if (visible == details_->isVisibleTo(this)) return;
   details_->setVisible(visible);
@@ -252,7 +251,7 @@ void CheckCard::showDetails(bool shown) {
 }
 
 void CheckCard::setUnconfirmedBoard(const QString& board) {
-  board_->setText(tr("Board: %1: not confirmed. Compare its numbers with the print.").arg(board));
+  board_->setText(tr("Board: %1, not confirmed. Compare these numbers with the print.").arg(board));
   board_line_->setVisible(!board.isEmpty());
   if (idle_) setVisible(!board.isEmpty());
 }

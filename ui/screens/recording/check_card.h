@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the recording is good enough, before anybody calibrates: one sentence, a light for each thing that was looked
-// at, and what to do better.
+// Check of the recording before a calibration: one sentence, a light for each criterion, and advice.
 #pragma once
 
 #include "core/pipeline/rig/recording_assessment.h"
@@ -26,26 +25,26 @@ class CheckCard : public QFrame {
  public:
   explicit CheckCard(QWidget* parent = nullptr);
 
-  // One of them is shown at a time.
-  void clear();                       // nothing is known, and nothing is looked at
+  // States; one at a time is shown.
+  void clear();                       // no recording, no check
   void setChecking(double fraction);  // 0..1
-  void setWaiting();                  // for other work
+  void setWaiting();                  // for another job
   void setAssessment(const RecordingAssessment& assessment);
   void setFailed(const QString& why);
-  // The recording is still being written: offers to follow it. Off: nothing of that.
+  // Offers to follow a recording that is still being written.
   void offerFollowing(bool offered);
-  // It is followed: what is said is of a part of it, which is no reason for alarm, and stays until more is known.
+  // While followed, an assessment concerns part of the recording: no alarm, and it stays until the next one.
   void setFollowing(bool following);
-  // The board is a guess that nobody has looked at: "11 x 4, 50 mm". Empty: somebody has.
+  // Unconfirmed board that was guessed: "11 x 4, 50 mm". Empty: confirmed.
   void setUnconfirmedBoard(const QString& board);
 
-  QString text() const;  // all that is shown, for tests and screen readers
+  QString text() const;  // all visible text, for tests and screen readers
 
  signals:
   void boardConfirmed();
   void followingWanted(bool following);
   void howToRecordRequested();
-  void detailsShown(bool shown);  // they need the room of what is below
+  void detailsShown(bool shown);  // they take the space of the widgets below
 
  private:
   QWidget* makeBoardLine();
@@ -63,7 +62,7 @@ class CheckCard : public QFrame {
   QWidget *board_line_, *follow_line_;
   QCheckBox* follow_;
   QGridLayout* grid_;
-  bool idle_ = true;  // nothing is known of the recording
+  bool idle_ = true;  // no recording
   bool following_ = false, assessed_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is to be added to the times of a sensor that was recorded into a file of its own.
+// Seconds that are added to the stamps of a sensor recorded into a separate file.
 #pragma once
 
 #include "ui/forms/number_field.h"
@@ -7,11 +7,11 @@
 namespace evical::ui {
 
 inline NumberField* clockOffsetField(QWidget* parent) {
-  constexpr double kMost_s = 1e10;  // the difference of any two clocks that count from 1970 or from power-on
+  constexpr double kMost_s = 1e10;  // between any clocks that count from 1970 or from power-on
   auto* const field = new NumberField(-kMost_s, kMost_s, parent);
   field->setToolTip(
-      QObject::tr("Where this sensor's own file counts time from another zero: the seconds to add to its "
-                  "times so that they are those of the recording, within the searched time offset "
+      QObject::tr("Seconds to add to the times of this sensor's file if its clock has another zero than the "
+                  "recording. The remaining error must be within the searched time offset "
                   "(initialisation)"));
   return field;
 }

@@ -73,9 +73,9 @@ void HowToRecordDialog::choose(int row) {
 void HowToRecordDialog::setPlaying(bool playing) {
   picture_->setPlaying(playing);
   play_->setText(playing ? tr("Pause") : tr("Play"));
-  play_->setShortcut(Qt::Key_Space);  // which a new text takes away
+  play_->setShortcut(Qt::Key_Space);  // setText() removes it
   play_->setIcon(icon(playing ? "pause" : "play"));
-  play_->setToolTip(playing ? tr("Holds the picture (Space)") : tr("Lets the picture move (Space)"));
+  play_->setToolTip(playing ? tr("Pauses the animation (Space)") : tr("Plays the animation (Space)"));
 }
 
 }  // namespace evical::ui

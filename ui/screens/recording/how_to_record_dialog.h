@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How to move before the board, in moving pictures; as stills with arrows where people have turned animations off.
+// Animations of the motions in front of the board; stills with arrows if the desktop's animations are
+// disabled.
 #pragma once
 
 #include <QDialog>
@@ -13,7 +14,7 @@ namespace evical::ui {
 class MotionPicture;
 
 enum class Motion { Moving, Reduced };
-Motion motionOfDesktop();  // as the desktop is set
+Motion motionOfDesktop();  // setting of the desktop
 
 class HowToRecordDialog : public QDialog {
   Q_OBJECT
@@ -21,7 +22,7 @@ class HowToRecordDialog : public QDialog {
  public:
   HowToRecordDialog(Motion motion, QWidget* parent);
 
-  void showMotion(const QString& name);  // as shownMotions() has it
+  void showMotion(const QString& name);  // a name of shownMotions()
 
  private:
   void choose(int row);

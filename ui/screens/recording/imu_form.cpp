@@ -28,7 +28,7 @@ constexpr double microG(double micro_g) {
   return micro_g * 1e-6 * 9.80665;
 }
 
-// What the data sheets call typical, in their units: deg/s and micro g, each per root hertz.
+// Typical values of data sheets, in their units: deg/s and micro g, each per root hertz.
 const NoisePreset kPresets[] = {
     {"Evical's default", ImuNoise{}},
     {"Bosch BMI088, typical", {perDeg(0.014), microG(175)}},
@@ -39,7 +39,7 @@ const NoisePreset kPresets[] = {
     {"TDK ICM-20948, typical", {perDeg(0.015), microG(230)}},
 };
 
-// Units in their boxes: the first entry stands for "not given".
+// Boxes for units; the first entry means "not given".
 template <class Unit>
 int indexOf(const std::optional<Unit>& unit) {
   return unit ? static_cast<int>(*unit) + 1 : 0;
@@ -50,7 +50,7 @@ std::optional<Unit> unitAt(int index) {
   return index > 0 ? std::optional(static_cast<Unit>(index - 1)) : std::nullopt;
 }
 
-// Random walks stay as they are.
+// Random walks are unchanged.
 void setDensities(const ImuNoise& noise, SessionImu& imu) {
   imu.noise.gyroscope_density = noise.gyroscope_density;
   imu.noise.accelerometer_density = noise.accelerometer_density;
@@ -59,9 +59,9 @@ void setDensities(const ImuNoise& noise, SessionImu& imu) {
 QLabel* explanation(QWidget* parent) {
   auto* const label = new QLabel(
       QObject::tr(
-          "How noisy the IMU is: a sample's standard deviation is the density times the square root of "
-          "the rate. Data sheets give it at rest, vibration adds to it. The calibration finds out how "
-          "large the residuals really are, weighs by that, and notes it when they are off."),
+          "Noise density of the IMU: a sample's standard deviation is the density times the square root of "
+          "the rate. Data sheets give it at rest; vibration adds to it. The calibration estimates the actual "
+          "size of the residuals, weights them accordingly, and notes large differences."),
       parent);
   label->setProperty("role", "hint");
   label->setWordWrap(true);
@@ -81,24 +81,23 @@ ImuForm::ImuForm(QWidget* parent)
       angular_rate_unit_(new QComboBox(this)),
       acceleration_unit_(new QComboBox(this)) {
   for (const NoisePreset& preset : kPresets) preset_->addItem(preset.name);
-  preset_->addItem(tr("Own numbers"));
-  const QString unstated = tr("as the format says");
+  preset_->addItem(tr("Custom"));
+  const QString unstated = tr("from the file");
   angular_rate_unit_->addItems({unstated, "rad/s", "deg/s"});
   acceleration_unit_->addItems({unstated, QString("m/s") + QChar(0xb2), "g", "-g"});
-  name_->setToolTip(tr("What the IMU is called in the session, the result and the exports"));
-  preset_->setToolTip(tr("Densities that the data sheet calls typical"));
+  name_->setToolTip(tr("Name of the IMU in the session, the result and the exports"));
+  preset_->setToolTip(tr("Typical noise densities of data sheets"));
   angular_rate_unit_->setToolTip(
-      tr("What the recording's angular rates are in, where the file's format does not say it or says it "
+      tr("Unit of the recorded angular rates, if the file does not state it or states it "
          "wrongly"));
   acceleration_unit_->setToolTip(
-      tr("What the recording's accelerations are in, where the file's format does not say it or says it "
-         "wrongly; "
-         "-g for drivers that report gravity"));
+      tr("Unit of the recorded accelerations, if the file does not state it or states it wrongly; "
+         "-g for drivers that report gravity instead of specific force"));
   form_->setContentsMargins(8, 8, 8, 8);
   constexpr int kLeast_px = 70;  // "0.00187"
   for (NumberField* const field : {gyroscope_, accelerometer_}) field->setMinimumWidth(kLeast_px);
   for (QComboBox* const box : {preset_, angular_rate_unit_, acceleration_unit_}) {
-    constexpr int kLeastCharacters = 12;  // what does not fit is in the list that opens
+    constexpr int kLeastCharacters = 12;  // longer names are readable in the open list
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     box->setMinimumContentsLength(kLeastCharacters);
   }
@@ -108,8 +107,8 @@ ImuForm::ImuForm(QWidget* parent)
   form_->addRow(QString("Gyroscope [rad/s/%1Hz]").arg(QChar(0x221a)), gyroscope_);
   form_->addRow(QString("Accelerometer [m/s%1/%2Hz]").arg(QChar(0xb2)).arg(QChar(0x221a)), accelerometer_);
   form_->addRow(explanation(this));
-  form_->addRow(tr("Angular rates in"), angular_rate_unit_);
-  form_->addRow(tr("Accelerations in"), acceleration_unit_);
+  form_->addRow(tr("Unit of angular rates"), angular_rate_unit_);
+  form_->addRow(tr("Unit of accelerations"), acceleration_unit_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
@@ -130,7 +129,7 @@ void ImuForm::setImu(const SessionImu& imu) {
   form_->setRowVisible(clock_offset_s_, !imu.recording.empty());
   angular_rate_unit_->setCurrentIndex(indexOf(imu.angular_rate_unit));
   acceleration_unit_->setCurrentIndex(indexOf(imu.acceleration_unit));
-  int match = static_cast<int>(std::size(kPresets));  // own numbers
+  int match = static_cast<int>(std::size(kPresets));  // custom
   for (std::size_t i = 0; i < std::size(kPresets); ++i) {
     if (kPresets[i].noise.gyroscope_density == imu.noise.gyroscope_density &&
         kPresets[i].noise.accelerometer_density == imu.noise.accelerometer_density)

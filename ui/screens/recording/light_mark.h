@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A light that is told by its shape, too: a disc, a triangle, a square.
+// Light that differs by shape as well as by colour: a disc, a triangle, a square.
 #pragma once
 
 #include "core/pipeline/rig/recording_assessment.h"

@@ -16,7 +16,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kFrame_ms = 40;
-constexpr double kFocal_px = 262.0, kWidth_px = 346.0, kHeight_px = 260.0;  // of the camera that is drawn
+constexpr double kFocal_px = 262.0, kWidth_px = 346.0, kHeight_px = 260.0;  // of the drawn camera
 
 Board shownBoard() {
   Board board;
@@ -25,13 +25,13 @@ Board shownBoard() {
   return board;
 }
 
-// Its long side lies along the image's.
+// The board's long side is parallel to the image's.
 Eigen::Vector3d onBoard(const Board& board, const Eigen::Vector2d& point_m) {
   const Eigen::Vector2d from_middle_m = point_m - 0.5 * board.extent_m();
   return {from_middle_m.y(), -from_middle_m.x(), kShownDistance_m};
 }
 
-// A place to look from, as wide as needed.
+// Pinhole view of the scene.
 struct Looker {
   RigidTransform looker_from_world;
   double focal_px = 1.0;
@@ -43,7 +43,7 @@ struct Looker {
   }
 };
 
-// From behind and above, to the left of who holds the camera.
+// From behind and above, to the left of the person with the camera.
 Looker looksOver(const QRectF& box) {
   const Eigen::Vector3d eye(-0.75, -0.5, -0.45), at(0.02, 0.0, 0.32);
   const Eigen::Vector3d ahead = (at - eye).normalized();
@@ -63,7 +63,7 @@ void paintArrowHead(QPainter& painter, QPointF tip, QPointF from) {
   painter.drawPolygon(QPolygonF{tip, tip - along + kHalfWidth * across, tip - along - kHalfWidth * across});
 }
 
-// Where the followed point goes, with a head at either end.
+// Path of the followed point, with an arrowhead at each end.
 void paintWay(QPainter& painter, const Looker& looker, const ShownMotion& motion) {
   constexpr int kSteps = 240;
   QPolygonF way;
@@ -74,7 +74,7 @@ void paintWay(QPainter& painter, const Looker& looker, const ShownMotion& motion
   painter.drawPolyline(way);
   painter.setPen(Qt::NoPen);
   painter.setBrush(theme().accent);
-  // At its two ends: the two points that are furthest apart.
+  // The ends are the two points that are furthest apart.
   qsizetype first = 0, last = 0;
   const auto far = [&](qsizetype a, qsizetype b) {
     return std::hypot(way[a].x() - way[b].x(), way[a].y() - way[b].y());
@@ -114,7 +114,7 @@ void paintBoard(QPainter& painter, const Looker& looker) {
   }
 }
 
-// A body, and the corners of what it sees.
+// Camera body and field of view.
 void paintCamera(QPainter& painter, const Looker& looker, const RigidTransform& world_from_camera,
                  double opacity) {
   constexpr double kAhead_m = 0.1;
@@ -142,7 +142,7 @@ void paintCamera(QPainter& painter, const Looker& looker, const RigidTransform& 
   painter.setPen(QPen(theme().accent, 1.5));
   const QPointF centre = at(0.0, 0.0, 0.0);
   for (int i = 0; i < 4; ++i) painter.drawPolygon(QPolygonF{centre, front[i], front[(i + 1) % 4]});
-  // Its up, so that turns about the lens are seen.
+  // Upper edge, which makes rotations about the optical axis visible.
   painter.setPen(QPen(theme().warning, 3.0));
   painter.drawLine(front[0], front[1]);
   painter.restore();
@@ -152,7 +152,7 @@ Looker cameraAt(const RigidTransform& world_from_camera, const QRectF& image) {
   return {inverse(world_from_camera), kFocal_px * image.width() / kWidth_px, image.center()};
 }
 
-// Median of the circles', of a sensor of 346 x 260 pixels.
+// Median image speed of the circles, for a sensor of 346 x 260 pixels.
 double speed_px_s(const ShownMotion& motion, double share) {
   constexpr double kStep_s = 0.02;
   const QRectF sensor(0.0, 0.0, kWidth_px, kHeight_px);
@@ -219,12 +219,11 @@ void MotionPicture::paintEvent(QPaintEvent*) {
     painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), 8.0, 8.0);
   }
   paintScene(painter, left.adjusted(6.0, 6.0, -6.0, -kCaption_px));
-  paintCaption(painter, left, tr("What to do"));
+  paintCaption(painter, left, tr("Motion"));
   paintView(painter, right.adjusted(8.0, 8.0, -8.0, -kCaption_px - 2.0));
-  // By tens: nobody reads more of what changes all the time.
+  // In steps of ten: finer digits would change too fast to read.
   const int speed = 10 * static_cast<int>(std::lround(0.1 * speed_px_s(motion_, share_)));
-  paintCaption(painter, right,
-               playing() ? tr("What the camera sees: %1 px/s").arg(speed) : tr("What the camera sees"));
+  paintCaption(painter, right, playing() ? tr("Camera image: %1 px/s").arg(speed) : tr("Camera image"));
 }
 
 void MotionPicture::paintCaption(QPainter& painter, const QRectF& box, const QString& text) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A motion, drawn: who holds the camera before the board, and what the camera sees.
+// Drawing of a motion: a person with the camera in front of the board, and the camera's image.
 #pragma once
 
 #include "ui/screens/recording/shown_motion.h"
@@ -18,10 +18,10 @@ class MotionPicture : public QWidget {
  public:
   explicit MotionPicture(QWidget* parent = nullptr);
 
-  void setMotion(const ShownMotion& motion);  // from its begin
-  void setPlaying(bool playing);              // else it stands where it is
+  void setMotion(const ShownMotion& motion);  // from its start
+  void setPlaying(bool playing);              // else it pauses
   bool playing() const { return timer_.isActive(); }
-  double share() const { return share_; }  // of the ten seconds
+  double share() const { return share_; }  // elapsed share of the ten seconds
   void setShare(double share);
   QSize sizeHint() const override { return {560, 300}; }
   QSize minimumSizeHint() const override { return {360, 190}; }
@@ -41,7 +41,7 @@ class MotionPicture : public QWidget {
   QTimer timer_;
   QElapsedTimer since_tick_;
   double share_ = 0.0;
-  bool wanted_ = false;  // it plays whenever it is seen
+  bool wanted_ = false;  // plays while visible
 };
 
 }  // namespace evical::ui

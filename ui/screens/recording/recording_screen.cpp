@@ -36,7 +36,7 @@ bool isOfUnfinishedFile(FaultKind kind) {
   return kind == FaultKind::Truncated || kind == FaultKind::NoIndex;
 }
 
-// `beside`: on the heading's line.
+// Card with an optional widget on the heading's line.
 QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget* beside = nullptr) {
   auto* const frame = new QFrame(parent);
   frame->setProperty("card", "true");
@@ -60,7 +60,7 @@ QScrollArea* scrolling(QWidget* content) {
   return area;
 }
 
-// From the first event or sample to the last, of whatever stream.
+// From the first to the last event or sample of any stream.
 std::optional<double> duration_s(const Inspection& inspection) {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
@@ -144,7 +144,7 @@ QWidget* RecordingScreen::makeHeader() {
   verdict_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   line->addWidget(verdict_, 1);
   camera_only_->setObjectName("camera_only");
-  camera_only_->setToolTip(tr("Its lens alone: that is all that one camera without an IMU can tell"));
+  camera_only_->setToolTip(tr("Calibrates the lens only: one camera without an IMU determines nothing else"));
   camera_only_->hide();
   connect(camera_only_, &QPushButton::clicked, this, &RecordingScreen::cameraOnlyRequested);
   line->addWidget(camera_only_);
@@ -191,8 +191,8 @@ QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
   auto* const add = new QPushButton(icon("open"), tr("Sensors from another file..."), line);
   add->setObjectName("add_recording");
   add->setToolTip(
-      tr("An IMU or a camera that was recorded into a file of its own, by the same clock or one whose offset "
-         "is known"));
+      tr("An IMU or a camera that was recorded into a separate file, by the same clock or with a known "
+         "offset"));
   connect(add, &QPushButton::clicked, this, &RecordingScreen::addRecordingRequested);
   layout->addWidget(add);
   return line;
@@ -206,8 +206,8 @@ QWidget* RecordingScreen::makeForms() {
   column->addWidget(sensors_, 1);
   auto* const form = new QFormLayout;
   reference_->setToolTip(
-      tr("The IMU in whose frame, and on whose clock, everything is expressed; a camera "
-         "where there is no IMU"));
+      tr("The IMU that defines the reference frame and clock; a camera "
+         "if there is no IMU"));
   form->addRow(tr("Reference"), reference_);
   column->addLayout(form);
   auto* const row = new QHBoxLayout(forms);
@@ -230,7 +230,7 @@ void RecordingScreen::setSession(const Session& session) {
   showSensors();
 }
 
-// Other cameras whose sensor this one's stream may come from, too: none where others have it from this one.
+// Cameras that may share this camera's sensor. None if others already share this camera's.
 std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
@@ -240,12 +240,12 @@ std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) co
   return names;
 }
 
-// None where there is but one.
+// Empty if there is only one.
 std::vector<std::string> RecordingScreen::possibleBoards() const {
   return session_.further_boards.empty() ? std::vector<std::string>() : boardNames(session_);
 }
 
-// Forms stay while the number of sensors does: an edit must not take the focus away.
+// Forms are rebuilt only if the number of sensors changes: an edit must not lose the focus.
 void RecordingScreen::showSensors() {
   if (cameras_.size() != session_.cameras.size() || imus_.size() != session_.imus.size()) {
     while (sensors_->count() > 0) delete sensors_->widget(0);
@@ -324,7 +324,7 @@ void RecordingScreen::showVerdict() {
   const bool reserved = !camera_only && !reservation_.isEmpty();
   verdict_->setText(problems_ == 1  ? tr("One thing is missing")
                     : problems_ > 1 ? tr("%1 things are missing").arg(problems_)
-                    : camera_only   ? tr("Nothing to calibrate but the lens:")
+                    : camera_only   ? tr("Only the lens can be calibrated:")
                     : reserved      ? reservation_
                                     : tr("Ready to calibrate"));
   const bool bad = problems_ > 0 || (reserved && reservation_light_ == Light::Poor);
@@ -344,7 +344,7 @@ void RecordingScreen::clearInspections() {
 }
 
 void RecordingScreen::setInspecting(const QString& recording) {
-  showOrHide(looking_text_, tr("Looking through %1...").arg(recording));
+  showOrHide(looking_text_, tr("Reading %1...").arg(recording));
   looking_->setValue(0);
   looking_->show();
 }
@@ -380,7 +380,7 @@ void RecordingScreen::setBeingWritten(bool being_written) {
   showFileFaults();
 }
 
-// Faults that belong to no stream: truncated or corrupt files.
+// Faults without a stream: truncated or corrupt files.
 void RecordingScreen::showFileFaults() {
   QStringList faults;
   for (const Inspected& one : inspected_)
@@ -417,7 +417,7 @@ void RecordingScreen::chooseRole(int row, int role) {
     changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
   if (static_cast<StreamRole>(role) == StreamRole::Imu) {
     const SessionImu guessed = guessedImu(summary, *one->inspection, changed, own_recording);
-    // If the other of the two streams is already an IMU, it becomes this one.
+    // If the other one of the two streams is already an IMU, this one replaces it.
     std::erase_if(changed.imus, [&](const SessionImu& imu) {
       return imu.recording == own_recording &&
              (imu.stream == guessed.stream || imu.stream == guessed.accelerometer_stream);

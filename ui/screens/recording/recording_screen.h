@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is in the recording, and what must be known of it: streams and their roles, the board, the sensors.
+// Recording and session: streams and their roles, the board, the sensors.
 #pragma once
 
 #include "core/pipeline/rig/recording_assessment.h"
@@ -36,33 +36,33 @@ class RecordingScreen : public QWidget {
   explicit RecordingScreen(QWidget* parent = nullptr);
 
   void setSession(const Session& session);
-  // By field: "cameras.left.intrinsics", "board", ...; each is said next to its field.
-  // By camera; what the last run found where the session gave none.
+  // By camera: intrinsics of the last run if the session has none.
   void setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found);
+  // By field: "cameras.left.intrinsics", "board", ...; each text is shown next to its field.
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
-  // A rig was asked for, and one camera without an IMU is there.
+  // If a rig calibration was requested but the session has one camera and no IMU.
   void offerCameraOnly(bool offered);
   AimChooser& aim() const { return *aim_; }  // what is calibrated
 
-  // What there is to say against "ready to calibrate" where no problem is; empty: nothing. With a good light nothing is wrong yet.
+  // Text in place of "ready to calibrate" if there is no problem; empty: none. Light::Good: undecided.
   void setReservation(const QString& text, Light light);
   CheckCard* checkCard() const { return check_; }
 
   void clearInspections();
   void setInspecting(const QString& recording);
   void setInspectionProgress(double fraction);
-  // Of the session's recording, or of another one that has sensors too.
-  // That it ends in the middle of something is no fault then.
+  // An incomplete end is not a fault then.
   void setBeingWritten(bool being_written);
+  // For the session's recording, or another one with sensors.
   void addInspection(const QString& recording, std::shared_ptr<const Inspection> inspection);
   void setInspectionFailed(const QString& why);
 
  signals:
-  // `merge_key`: edits in a row with the same one are one step of undo.
+  // Consecutive edits with the same `merge_key` are one step of undo.
   void sessionEdited(const evical::Session& session, const QString& what, const QString& merge_key);
   void openRecordingRequested();
   void addRecordingRequested();
-  void cameraOnlyRequested();  // its calibration
+  void cameraOnlyRequested();  // requests the calibration of the camera
 
  private:
   struct Inspected {
@@ -85,7 +85,7 @@ class RecordingScreen : public QWidget {
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
   void listStreams();
-  std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
+  std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's recording
   void showFileFaults();
 
   bool being_written_ = false;

@@ -33,7 +33,7 @@ QPushButton* choice(const QString& text, const QString& icon_name, QWidget* pare
 StartScreen::StartScreen(QWidget* parent)
     : QWidget(parent),
       recent_(new QListWidget(this)),
-      no_recent_(wrappedLabel(tr("Nothing yet. What you open is listed here."), "hint", this)),
+      no_recent_(wrappedLabel(tr("No recent files. Files that you open are listed here."), "hint", this)),
       demo_(choice(tr("Try the demo recording"), "demo", this)),
       demo_progress_(new QProgressBar(this)),
       aim_(new AimChooser(this)) {
@@ -57,24 +57,24 @@ QWidget* StartScreen::makeChoices() {
   auto* const layout = new QVBoxLayout(column);
   layout->setSpacing(10);
   layout->addWidget(wrappedLabel(tr("Evical"), "title", column));
-  layout->addWidget(wrappedLabel(
-      tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
-         "with its uncertainty, from one recording of a printed circle grid. Or a camera alone."),
-      "hint", column));
+  layout->addWidget(
+      wrappedLabel(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
+                      "with its uncertainty, from one recording of a printed circle grid. Also calibrates "
+                      "single cameras."),
+                   "hint", column));
   layout->addSpacing(6);
   layout->addWidget(aim_, 0, Qt::AlignLeft);
   layout->addSpacing(6);
   auto* const recording = choice(tr("Open a recording..."), "recording", column);
   recording->setToolTip(tr("A ROS bag, or a folder with events.txt and imu.txt"));
   auto* const session = choice(tr("Open a session..."), "open", column);
-  session->setToolTip(tr("A session file that names recording, board and sensors"));
-  demo_->setToolTip(tr("Simulates ten seconds of a recording with a known truth, and opens it"));
+  session->setToolTip(tr("A session file that lists recording, board and sensors"));
+  demo_->setToolTip(tr("Simulates a recording of ten seconds with a known truth, and opens it"));
   auto* const print_board = choice(tr("Print a board..."), "board", column);
   print_board->setObjectName("print_board_button");
-  print_board->setToolTip(
-      tr("A target of circles, squares or tags, true to scale, for a printer or a screen"));
+  print_board->setToolTip(tr("A target of circles, squares or tags, to scale, for a printer or a screen"));
   auto* const how = choice(tr("How to record..."), "play", column);
-  how->setToolTip(tr("Moving pictures of the motions that a calibration needs"));
+  how->setToolTip(tr("Animations of the motions that a calibration needs"));
   auto* const before = new QHBoxLayout;
   before->addWidget(print_board);
   before->addWidget(how);
@@ -107,7 +107,7 @@ QWidget* StartScreen::makeRecent() {
   recent_->setAccessibleName(tr("Recent files"));
   recent_->setTextElideMode(Qt::ElideMiddle);
   recent_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  recent_->setToolTip(tr("Double click, or Enter"));
+  recent_->setToolTip(tr("Double-click or press Enter to open"));
   connect(recent_, &QListWidget::itemActivated, this,
           [this](QListWidgetItem* item) { emit fileChosen(item->data(Qt::UserRole).toString()); });
   return column;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where everybody begins: open something, go on with something, or try the demo.
+// Start page: open a recording or a session, continue with a recent one, or try the demo.
 #pragma once
 
 #include <QStringList>
@@ -21,7 +21,7 @@ class StartScreen : public QWidget {
   explicit StartScreen(QWidget* parent = nullptr);
 
   void setRecentFiles(const QStringList& files);  // newest first
-  void setDemoProgress(double fraction);          // while it is simulated
+  void setDemoProgress(double fraction);          // during its simulation
   void setDemoRunning(bool running);
   AimChooser& aim() const { return *aim_; }  // what is calibrated
 
@@ -31,7 +31,7 @@ class StartScreen : public QWidget {
   void demoRequested();
   void printBoardRequested();
   void howToRecordRequested();
-  void fileChosen(const QString& file);  // one of the recent
+  void fileChosen(const QString& file);  // a recent file
 
  private:
   QWidget* makeChoices();

@@ -19,7 +19,7 @@ namespace {
 enum StreamColumn { kRole, kStream, kContent, kCount, kRate, kRange, kFaults, kStreamColumns };
 constexpr int kNameRole = Qt::UserRole, kRecordingRole = Qt::UserRole + 1;
 
-// 12022916 per second reads worse than 12.02 M/s.
+// 12.02 M/s is more readable than 12022916 per second.
 QString rateText(const StreamSummary& stream) {
   constexpr double kMillion = 1e6, kThousand = 1e3;
   if (stream.rate_hz <= 0.0) return {};
@@ -67,7 +67,7 @@ QString rangeText(const StreamSummary& stream) {
   return QObject::tr("%1 s").arg(secondsSince(stream.first_ns, stream.last_ns), 0, 'f', 2);
 }
 
-// Frames without times are for intrinsics alone, which the window does not calibrate by themselves.
+// Frames without times suit intrinsics only, which the window does not calibrate from frames alone.
 bool canBeCamera(const StreamInfo& info) {
   return info.type == StreamType::Events || info.type == StreamType::Points ||
          (info.type == StreamType::Frames && info.readable && info.timed);
@@ -123,7 +123,7 @@ void StreamTable::addInspection(const Inspection& inspection, const std::filesys
 }
 
 void StreamTable::fitHeight() {
-  constexpr int kMostRows = 5;  // further ones are scrolled to: the forms below need the room
+  constexpr int kMostRows = 5;  // more are reached by scrolling: the forms below need space
   const int rows = std::clamp(rowCount(), 1, kMostRows);
   setFixedHeight(horizontalHeader()->sizeHint().height() + rows * verticalHeader()->defaultSectionSize() + 6);
 }
@@ -134,7 +134,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   insertRow(row);
   QComboBox* const box = roleBox(stream.info, this);
   box->setAccessibleName(tr("Role of %1").arg(fromCore(stream.info.name)));
-  // In the row's middle, at its own height.
+  // Vertically centred, at its own height.
   auto* const cell = new QWidget(this);
   auto* const layout = new QHBoxLayout(cell);
   layout->setContentsMargins(2, 0, 2, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The streams of a recording, what is in them, and which part each plays.
+// Streams of a recording, their content, and their roles.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -23,7 +23,7 @@ class StreamTable : public QTableWidget {
   explicit StreamTable(QWidget* parent = nullptr);
 
   void clearStreams();
-  // `own_recording`: the file, where it is not the session's. Its streams follow those that are there.
+  // `own_recording`: the file if it is not the session's. Its streams are appended.
   void addInspection(const Inspection& inspection, const std::filesystem::path& own_recording = {});
   void setSession(const Session& session);  // the roles
   StreamRole role(int row) const;

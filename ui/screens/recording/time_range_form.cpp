@@ -20,7 +20,7 @@ QString numberText(double value) {
   return QLocale::c().toString(value, 'g', kDigits);
 }
 
-// What was typed: a time, nothing, or something else.
+// Typed text: a time, nothing, or invalid.
 struct Typed {
   bool is_empty = false, is_time = false;
   double time_s = 0.0;
@@ -94,23 +94,24 @@ void TimeRangeForm::setDuration(std::optional<double> duration_s) {
 void TimeRangeForm::take() {
   const Typed begin = typedIn(*begin_), end = typedIn(*end_);
   for (const Typed& typed : {begin, end})
-    if (!typed.is_empty && !typed.is_time) return say(tr("Give seconds since the recording's start."));
+    if (!typed.is_empty && !typed.is_time) return say(tr("Enter seconds since the recording's start."));
   const bool to_the_end = end.is_empty;
   if (begin.time_s == 0.0 && to_the_end) {
     if (range_s_) emit edited({});
     return showAdvice();
   }
-  if (to_the_end && !duration_s_) return say(tr("Give an end too: the recording's is not known yet."));
+  if (to_the_end && !duration_s_)
+    return say(tr("Enter the end as well: the recording's end is not yet known."));
   const double end_s = to_the_end ? *duration_s_ : end.time_s;
   if (duration_s_ && begin.time_s >= *duration_s_)
     return say(tr("The recording ends at %1 s.").arg(*duration_s_, 0, 'f', 2));
-  if (end_s <= begin.time_s) return say(tr("The end must come after the begin."));
+  if (end_s <= begin.time_s) return say(tr("The end must be after the begin."));
   const std::array<double, 2> typed = {begin.time_s, end_s};
   if (range_s_ != typed) emit edited(typed);
   showAdvice();
 }
 
-// Fields keep what was typed, so that it can be mended.
+// The typed text stays, so that it can be corrected.
 void TimeRangeForm::say(const QString& problem) {
   words_->setText(problem);
   words_->setProperty("role", "problem");
@@ -126,7 +127,7 @@ void TimeRangeForm::showAdvice() {
     const auto [begin_s, end_s] = *range_s_;
     advice = tr("%1 s of the recording are used.").arg(end_s - begin_s, 0, 'g', 4);
     if (duration_s_ && end_s > *duration_s_)
-      advice = tr("The recording ends before, at %1 s.").arg(*duration_s_, 0, 'f', 2);
+      advice = tr("The recording ends earlier, at %1 s.").arg(*duration_s_, 0, 'f', 2);
   }
   words_->setText(advice);
   words_->setProperty("role", "hint");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which part of the recording is used: begin and end in seconds since its start, empty for as much as there
-// is. What cannot be is said beside the fields and changes nothing.
+// Used part of the recording: begin and end in seconds since its start; empty for the whole. For an invalid
+// range, the reason is shown next to the fields and nothing changes.
 #pragma once
 
 #include <QWidget>
@@ -23,7 +23,7 @@ class TimeRangeForm : public QWidget {
   explicit TimeRangeForm(QWidget* parent = nullptr);
 
   void setRange(const Range& range_s);
-  void setDuration(std::optional<double> duration_s);  // of the recording, where it is known
+  void setDuration(std::optional<double> duration_s);  // of the recording, if known
 
  signals:
   void edited(const std::optional<std::array<double, 2>>& range_s);  // nothing: all of the recording

@@ -20,7 +20,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kColourScale_px = 34;  // the colour scale and its numbers, below
+constexpr int kColourScale_px = 34;  // colour scale and its numbers, at the bottom
 
 QColor colourOf(double correlation) {
   const QColor& end = correlation < 0.0 ? theme().axes[2] : theme().axes[0];
@@ -80,7 +80,7 @@ double CorrelationView::cellSize_px() const {
                   std::min(width() - origin().x() - 4.0, height() - origin().y() - kColourScale_px) / count);
 }
 
-// Names stand left of the rows and, upright, above the columns.
+// Names are left of the rows and, vertical, above the columns.
 QPointF CorrelationView::origin() const {
   constexpr double kSideShare = 0.36, kTopShare = 0.3;
   return {std::min(longestLabel_px(), kSideShare * width()),
@@ -126,7 +126,7 @@ void CorrelationView::paintCells(QPainter& painter) const {
   painter.drawRect(square(hovered_->first, hovered_->second));
 }
 
-// Where lines are too narrow for all names some are left out: the tool tips have them all.
+// Names are thinned out if the lines are too narrow; tool tips have them all.
 void CorrelationView::paintLabels(QPainter& painter) const {
   painter.setFont(labelFont());
   painter.setPen(theme().text);

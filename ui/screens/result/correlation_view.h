@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which quantities can only be told apart badly: the correlation matrix as a heat map. Rows and columns are named in
-// words, a name for all parts of a quantity.
+// Correlation matrix as a heat map, for quantities that are hardly separable. Rows and columns have names,
+// one for all parts of a quantity.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -27,7 +27,7 @@ class CorrelationView : public QWidget {
   void setResult(const NamedResult& result);
   QStringList axisLabels() const;
   QString csv() const;
-  // "left: translation x and left: time offset: 0.94" of the largest, without those of one with itself.
+  // The largest off-diagonal ones: "left: translation x and left: time offset: 0.94".
   QStringList strongestPairs(int count) const;
   QString textAt(const QPoint& position) const;
   QPoint cellMiddle(Eigen::Index row, Eigen::Index col) const;
@@ -42,7 +42,7 @@ class CorrelationView : public QWidget {
 
  private:
   using Cell = std::pair<Eigen::Index, Eigen::Index>;
-  // Neighbours of one quantity: x, y and z.
+  // Adjacent parts of one quantity: x, y and z.
   struct Group {
     QString label;
     Eigen::Index begin = 0, count = 0;

@@ -10,7 +10,7 @@ double areaOf(const QRectF& place) {
 
 }  // namespace
 
-// What lies outside is as bad as what lies over another text.
+// Area outside counts like overlap with another text.
 double LabelPlaces::covered(const QRectF& place) const {
   double sum = areaOf(place) - areaOf(place.intersected(area_));
   for (const QRectF& other : taken_) sum += areaOf(place.intersected(other));

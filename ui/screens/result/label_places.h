@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where texts of a drawing find room, none over another.
+// Placement of texts in a drawing without overlaps.
 #pragma once
 
 #include <QRectF>
@@ -13,8 +13,8 @@ class LabelPlaces {
   explicit LabelPlaces(const QRectF& area) : area_(area) {}
 
   void occupy(const QRectF& place) { taken_.push_back(place); }
-  // About the first of these middles where it covers nothing and is all inside; else where it covers least. Occupied
-  // from then on.
+  // Around the first of these centres without overlap inside the area; else around the one with the least.
+  // Occupies the place.
   QRectF place(const QSizeF& size, const std::vector<QPointF>& middles);
 
  private:

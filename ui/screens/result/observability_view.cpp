@@ -17,7 +17,7 @@ namespace evical::ui {
 
 namespace {
 
-constexpr double kLeastRatio = 0.03, kRatioScale_px = 96.0;  // the scale, and the words below it
+constexpr double kLeastRatio = 0.03, kRatioScale_px = 96.0;  // the scale and the text below it
 constexpr int kLeastRow_px = 26, kMostRow_px = 40;
 
 }  // namespace
@@ -38,16 +38,18 @@ void ObservabilityView::setObservability(const std::vector<double>& information,
 QString ObservabilityView::text() const {
   if (!calibrated_) return tr("No calibration yet.");
   if (needed_over_sigma_.empty())
-    return tr("Rotations, translations and time offsets were all given: none had to be observed.");
+    return tr("All rotations, translations and time offsets were given: none was estimated.");
   const double least = needed_over_sigma_.front();
   const auto unmet = std::count_if(needed_over_sigma_.begin(), needed_over_sigma_.end(),
                                    [](double ratio) { return ratio < 1.0; });
-  const QString first = tr("The least certain direction is %1: it is known %2 times as well as needed.")
+  const QString first = tr("The weakest direction is %1: its accuracy is %2 times the needed one.")
                             .arg(nameOf(0))
                             .arg(least, 0, 'g', 2);
-  if (unmet == 0) return first + " " + tr("All directions are known well enough.");
+  if (unmet == 0) return first + " " + tr("All directions reach the needed accuracy.");
   return first + " " +
-         tr("%1 of %2 directions are not known well enough.").arg(unmet).arg(needed_over_sigma_.size());
+         tr("%1 of %2 directions do not reach the needed accuracy.")
+             .arg(unmet)
+             .arg(needed_over_sigma_.size());
 }
 
 QString ObservabilityView::nameOf(std::size_t bar) const {
@@ -61,7 +63,7 @@ QSize ObservabilityView::minimumSizeHint() const {
   return {kLeastWidth_px, static_cast<int>(kRatioScale_px) + bars * kLeastRow_px};
 }
 
-// A factor of ten is as wide everywhere.
+// Logarithmic scale.
 double ObservabilityView::place_px(double ratio) const {
   const double most = std::max(30.0, 2.0 * needed_over_sigma_.back());
   return width() * std::log(std::clamp(ratio, kLeastRatio, most) / kLeastRatio) /
@@ -71,7 +73,7 @@ double ObservabilityView::place_px(double ratio) const {
 void ObservabilityView::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   if (needed_over_sigma_.empty()) {
-    if (calibrated_) return;  // the words above it say why
+    if (calibrated_) return;  // the text above gives the reason
     painter.setPen(theme().faint_text);
     painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, text());
     return;
@@ -85,7 +87,7 @@ double ObservabilityView::rowHeight_px() const {
   return std::min<double>(kMostRow_px, (height() - kRatioScale_px) / bars);
 }
 
-// Its name and value above it.
+// Name and value above the bar.
 void ObservabilityView::paintBar(QPainter& painter, std::size_t bar) const {
   constexpr double kBar_px = 7.0, kGap_px = 10.0;
   const double ratio = needed_over_sigma_[bar], row_px = rowHeight_px();
@@ -99,7 +101,7 @@ void ObservabilityView::paintBar(QPainter& painter, std::size_t bar) const {
   painter.drawText(line, Qt::AlignRight | Qt::AlignBottom | Qt::TextDontClip, value);
   painter.fillRect(QRectF(0.0, top + row_px - kBar_px, place_px(ratio), kBar_px),
                    ratio < 1.0 ? theme().bad : theme().good);
-  // What is needed, beside bars only: names stay readable.
+  // Mark of the needed accuracy, only at the bars: names stay readable.
   painter.setPen(QPen(theme().text, 1.5));
   painter.drawLine(QPointF(place_px(1.0), top + row_px - kBar_px - 2.0),
                    QPointF(place_px(1.0), top + row_px + 2.0));
@@ -120,9 +122,9 @@ void ObservabilityView::paintScale(QPainter& painter) const {
   painter.drawText(
       QRectF(0.0, bottom + 22.0, width(), kRatioScale_px - 22.0),
       Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
-      tr("A bar says how many times better than needed a direction is known (need over sigma), on a "
-         "logarithmic scale. The mark: just as well as needed. Directions mix rotation, translation "
-         "and time offset; each is named by its largest part, the weakest first."));
+      tr("Each bar is the needed standard deviation over the estimated one, on a "
+         "logarithmic scale. The mark is at 1, the needed accuracy. Directions mix rotation, translation "
+         "and time offset; each has the name of its largest part, the weakest first."));
 }
 
 bool ObservabilityView::event(QEvent* event) {
@@ -130,7 +132,7 @@ bool ObservabilityView::event(QEvent* event) {
   const auto* const help = static_cast<QHelpEvent*>(event);
   const auto bar = static_cast<std::size_t>(std::max(0.0, help->pos().y() / rowHeight_px()));
   QToolTip::showText(help->globalPos(),
-                     bar < needed_over_sigma_.size() ? tr("%1: known %2 times as well as needed")
+                     bar < needed_over_sigma_.size() ? tr("%1: accuracy %2 times the needed one")
                                                            .arg(nameOf(bar))
                                                            .arg(needed_over_sigma_[bar], 0, 'g', 3)
                                                      : QString(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well the recording determines each direction, held against what is needed.
+// Observability of each direction, relative to the need.
 #pragma once
 
 #include <QString>
@@ -18,10 +18,10 @@ class ObservabilityView : public QWidget {
  public:
   explicit ObservabilityView(QWidget* parent = nullptr);
 
-  // Information in units of what is needed, ascending (UncertaintyReport::observability), and each direction in words;
-  // results of older programs name the first only.
+  // Information in units of the need, ascending (UncertaintyReport::observability), and the name of each
+  // direction; results of older programs name only the first.
   void setObservability(const std::vector<double>& information, const QStringList& directions);
-  QString text() const;  // in words
+  QString text() const;  // as text
   QSize minimumSizeHint() const override;
 
  protected:
@@ -37,7 +37,7 @@ class ObservabilityView : public QWidget {
   QString nameOf(std::size_t bar) const;
 
   bool calibrated_ = false;
-  std::vector<double> needed_over_sigma_;  // empty: everything was given
+  std::vector<double> needed_over_sigma_;  // empty: all quantities were given
   QStringList directions_;
   FileSaver* saver_;
 };

@@ -111,7 +111,7 @@ QWidget* PosePanel::makeBar() {
   layout->setContentsMargins(0, 0, 0, 0);
   sensor_->setObjectName("posed_sensor");
   sensor_->setAccessibleName(tr("Sensor whose pose is shown"));
-  sensor_->setToolTip(tr("Whose pose is shown and copied"));
+  sensor_->setToolTip(tr("Sensor whose pose is shown and copied"));
   copy_->setObjectName("copy_as");
   copy_->setText(tr("Copy as"));
   copy_->setIcon(icon("copy"));
@@ -119,7 +119,7 @@ QWidget* PosePanel::makeBar() {
   copy_->setPopupMode(QToolButton::InstantPopup);
   copy_->setFocusPolicy(Qt::StrongFocus);
   copy_->setAccessibleName(tr("Copy the pose as"));
-  copy_->setToolTip(tr("Copy the pose with all its digits, for a document or another program"));
+  copy_->setToolTip(tr("Copy the pose with all digits, for a document or another program"));
   copy_->setMenu(copy_menu_);
   auto* const save = new QToolButton(bar);
   save->setObjectName("save_rig");
@@ -200,7 +200,7 @@ void PosePanel::setResult(const NamedResult& named) {
 
 void PosePanel::showPose() {
   if (poses_.empty()) {
-    direction_->setText(tr("A single sensor has no pose: it is the reference."));
+    direction_->setText(tr("A single sensor is the reference and has no other pose."));
     for (QLabel* const label : {translation_, vector_, angles_, warning_, quaternion_, matrix_, time_})
       label->clear();
     warning_->hide();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One sensor's pose in all the ways that people write it down, with a drawing of the rig; and copied in the ways that
-// programs read it.
+// One sensor's pose in the usual representations, with a drawing of the rig; it can be copied in formats of
+// other programs.
 #pragma once
 
 #include "core/report/sensor_pose.h"
@@ -26,7 +26,7 @@ class PosePanel : public QScrollArea {
   explicit PosePanel(QWidget* parent = nullptr);
 
   void setResult(const NamedResult& named);
-  // "Copy as", for other menus too: of the pose that is shown, or of all.
+  // "Copy as" for other menus too: the shown pose, or all poses.
   QMenu* copyMenu() const { return copy_menu_; }
 
  protected:

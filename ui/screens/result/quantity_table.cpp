@@ -54,11 +54,11 @@ QuantityTable::QuantityTable(QWidget* parent) : QTreeWidget(parent) {
   for (const int column : {kValue, kSigma, kDifference, kSigmas})
     headerItem()->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
   headerItem()->setToolTip(kSigma, tr("Standard deviation"));
-  headerItem()->setToolTip(kSigmas, tr("The difference against the standard deviation"));
+  headerItem()->setToolTip(kSigmas, tr("Difference in standard deviations"));
   setAccessibleName(tr("Calibrated quantities"));
 }
 
-// All at once: a tree that grows item by item measures its columns each time.
+// Filled in one step: a tree that grows item by item measures its columns each time.
 void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared) {
   groups_ = std::move(groups);
   setColumnHidden(kDifference, !compared);
@@ -82,7 +82,7 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   fitColumns();
 }
 
-// By the texts: a header that resizes to contents asks the style for each item's size, at every layout.
+// Measures the texts: a header that resizes to contents asks the style for each item's size at every layout.
 void QuantityTable::fitColumns() {
   const QFontMetrics metrics(font());
   const int margin_px = 2 * metrics.horizontalAdvance('0');
@@ -112,7 +112,7 @@ void QuantityTable::fitColumns() {
   widenNames();
 }
 
-// To what the other columns leave, never to less than the names need.
+// Remaining width, but at least that of the names.
 void QuantityTable::widenNames() {
   int others_px = 0;
   for (int column = kValue; column < kColumns; ++column)

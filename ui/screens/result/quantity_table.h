@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A result's quantities, a group a sensor. The names are always whole: where all columns find no room, it scrolls.
-// Rows are copied whole, with their header (Ctrl+C), or all of them (context menu).
+// Table of a result's quantities, one group per sensor. Names are never elided: the table scrolls instead.
+// Copies whole rows with their header (Ctrl+C), or all of them (context menu).
 #pragma once
 
 #include "ui/screens/result/result_parameters.h"
@@ -22,9 +22,9 @@ class QuantityTable : public QTreeWidget {
   explicit QuantityTable(QWidget* parent = nullptr);
 
   void setGroups(std::vector<ParameterGroup> groups, bool compared);
-  void addToContextMenu(QMenu* menu);  // behind its own entries
+  void addToContextMenu(QMenu* menu);  // after its other entries
 
-  // As tabbedText; of a heading that is selected all rows. Empty where nothing is.
+  // Formatted by tabbedText; for a selected heading all its rows. Empty without a selection.
   QString selectedText() const;
   QString allText() const;
 
@@ -40,7 +40,7 @@ class QuantityTable : public QTreeWidget {
 
   std::vector<ParameterGroup> groups_;
   QMenu* further_ = nullptr;
-  int names_px_ = 0;  // that all of them need
+  int names_px_ = 0;  // width of the longest name
 };
 
 }  // namespace evical::ui

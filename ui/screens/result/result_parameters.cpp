@@ -17,7 +17,7 @@
 namespace evical::ui {
 namespace {
 
-// A direction has no number of its own, only how far it is from another.
+// A direction has no value, only a difference to another direction.
 const char* const kGravityKey = "gravity";
 constexpr int kMostDecimals = 8;
 const QString kAcceleration = QString("m/s") + QChar(0xb2);
@@ -43,7 +43,7 @@ QString nameOf(const ShownQuantity& quantity, const ShownNumber& number) {
 void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotation, ParameterGroup& group) {
   const bool intrinsics = quantity.info->shape == QuantityShape::Intrinsics;
   for (const ShownNumber& number : quantity.numbers) {
-    if (intrinsics && number.sigma == 0.0) continue;  // held
+    if (intrinsics && number.sigma == 0.0) continue;  // fixed
     group.rows.push_back({QString::fromStdString(number.key),
                           nameOf(quantity, number),
                           shownUnit(number.unit),
@@ -107,7 +107,7 @@ ParameterGroup gravityGroup(const NamedResult& named) {
     group.rows.push_back(
         {{}, QObject::tr("Gravity %1").arg(QChar("xyz"[axis])), kAcceleration, gravity[axis], 0.0, {}});
   group.rows.push_back({kGravityKey,
-                        QObject::tr("Direction, off by"),
+                        QObject::tr("Direction, deviation"),
                         "deg",
                         0.0,
                         kDegPerRad * named.result->uncertainty.gravity_direction_std_rad,

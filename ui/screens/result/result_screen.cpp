@@ -52,11 +52,11 @@ QString fitText(const NamedResult& named) {
     if (fit.windows_rejected > 0)
       parts.back() += QObject::tr(", %1 rejected by hand").arg(fit.windows_rejected);
   }
-  parts << QObject::tr("took %1 s with detection").arg(named.result->timing.total_s, 0, 'f', 1);
+  parts << QObject::tr("duration %1 s including detection").arg(named.result->timing.total_s, 0, 'f', 1);
   return parts.join("; ") + ".";
 }
 
-// A tab's content: text above, a picture below.
+// Content of a tab: text above, a plot below.
 QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
   auto* const page = new QWidget(parent);
   auto* const layout = new QVBoxLayout(page);
@@ -93,7 +93,7 @@ ResultScreen::ResultScreen(QWidget* parent)
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(stack_);
   against_->setAccessibleName(tr("Compare with"));
-  against_->setToolTip(tr("Another run of this session, or what was loaded, beside this result"));
+  against_->setToolTip(tr("Another run of this session, or a loaded result"));
   connect(against_, &QComboBox::activated, this, [this] {
     const QVariant chosen = against_->currentData();
     if (chosen.typeId() == QMetaType::QString) return emit keptRunRequested(chosen.toString());
@@ -128,7 +128,7 @@ QWidget* ResultScreen::makeHeader() {
   words->addWidget(repair_, 0, Qt::AlignLeft);
   for (QLabel* const line : {fit_, outdated_}) words->addWidget(line);
   connect(repair_, &RepairButton::repairRequested, this, &ResultScreen::repairRequested);
-  outdated_->setText(tr("The session has changed since: calibrate again to see what comes of it."));
+  outdated_->setText(tr("The session has changed since this result. Calibrate again to update it."));
   auto* const save = new QPushButton(icon("export"), tr("Export..."), header);
   save->setObjectName("export");
   save->setToolTip(
@@ -136,7 +136,7 @@ QWidget* ResultScreen::makeHeader() {
   connect(save, &QPushButton::clicked, this, &ResultScreen::exportRequested);
   auto* const report = new QPushButton(icon("report"), tr("Open report"), header);
   report->setObjectName("report");
-  report->setToolTip(tr("One page with plots and advice, in the browser (Ctrl+R)"));
+  report->setToolTip(tr("Page with plots and advice, in the browser (Ctrl+R)"));
   connect(report, &QPushButton::clicked, this, &ResultScreen::reportRequested);
   auto* const layout = new QHBoxLayout(header);
   layout->setContentsMargins(4, 0, 4, 0);
@@ -267,7 +267,7 @@ void ResultScreen::showVerdict() {
   const bool ok = result.status == CalibrationStatus::Ok;
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
-  reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
+  reason_->setText(ok ? tr("The recording determines every quantity with the needed accuracy.")
                       : sentence(QString::fromStdString(result.reason)));
   repair_->setRepair(result.repair);
   fit_->setText(fitText(*result_));
@@ -282,7 +282,7 @@ void ResultScreen::showParameters() {
     try {
       compare(groups, *result_, *other);
     } catch (const CalibrationError& error) {
-      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
+      remark = tr("The results cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
     }
   }
   comparison_->setText(remark);
@@ -301,7 +301,7 @@ void ResultScreen::showDetails() {
   observed_->setText(observability_->text());
   correlation_->setResult(*result_);
   const QStringList pairs = correlation_->strongestPairs(kPairs);
-  pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
+  pairs_->setText(pairs.isEmpty() ? QString() : tr("Least separable: %1.").arg(pairs.join("; ")));
   notes_->clear();
   for (const std::string& note : result_->result->notes)
     notes_->addItem(sentence(QString::fromStdString(note)));

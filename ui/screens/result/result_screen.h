@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers, how sure they are, and why they can be trusted; beside those of another run or the truth.
+// Result: numbers, their uncertainty, and the evidence for them; compared with another run or the truth.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -34,21 +34,21 @@ class ResultScreen : public QWidget {
   explicit ResultScreen(QWidget* parent = nullptr);
 
   void setResult(std::optional<NamedResult> result);
-  // Both, after a run.
+  // Sets both after a run.
   void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
-  // The session's other runs, to be compared with: title and folder.
+  // Other runs of the session for the comparison: title and folder.
   void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
-  void setCalibrating(bool calibrating);  // the first one is being made
-  void setOutdated(bool outdated);        // the session is not as it was for this result
-  QMenu* copyMenu() const;                // copies poses; the window's menus show it too
+  void setCalibrating(bool calibrating);  // during the first run
+  void setOutdated(bool outdated);        // the session has changed since this result
+  QMenu* copyMenu() const;                // copies poses; also part of the window's menus
 
  signals:
   void exportRequested();
   void reportRequested();
   void referenceRequested();
-  void keptRunRequested(const QString& folder);  // as what the result is to be compared with
+  void keptRunRequested(const QString& folder);  // for the comparison
   void calibrateRequested();
   void repairRequested(const evical::Repair& repair);
 

@@ -22,11 +22,11 @@ using Eigen::Vector3d;
 constexpr double kHomeAzimuth_rad = -0.65, kHomeElevation_rad = 0.45;
 constexpr double kTurn_rad_per_px = 0.01, kTurn_rad_per_key = 0.1;
 constexpr double kMillimetresPerMetre = 1e3;
-constexpr double kLeastExtent_m = 0.02;  // of rigs whose sensors are one chip
+constexpr double kLeastExtent_m = 0.02;  // for sensors on one chip
 
-// The four edges of the view and its far rim, `depth` away.
+// Edges and far border of the field of view, at distance `depth`.
 std::vector<Vector3d> cameraOutline(const std::optional<CameraIntrinsics>& lens, double depth_m) {
-  constexpr double kWidestHalf = 1.2;  // of fisheyes the middle
+  constexpr double kWidestHalf = 1.2;  // shows the centre of a fisheye's view
   double half_x = 0.4, half_y = 0.3;
   if (lens && lens->focal_length_px.minCoeff() > 0.0) {
     half_x = std::min(kWidestHalf, 0.5 * lens->resolution_px.width_px / lens->focal_length_px.x());
@@ -67,7 +67,7 @@ double roundedDown(double value) {
   return power * (first >= 5.0 ? 5.0 : first >= 2.0 ? 2.0 : 1.0);
 }
 
-// Around a point: below or above first, as the axes point to the other side, then beside, then further away.
+// Candidates around a point: first below or above, away from the axes, then to the sides, then farther away.
 std::vector<QPointF> around(const QPointF& point, const QSizeF& size, bool below) {
   constexpr double kGap_px = 8.0;
   const double side = below ? 1.0 : -1.0;
@@ -81,7 +81,7 @@ std::vector<QPointF> around(const QPointF& point, const QSizeF& size, bool below
   return all;
 }
 
-// Along the line, from its middle.
+// Candidates along the line, from its middle.
 std::vector<QPointF> along(const QPointF& from, const QPointF& to) {
   std::vector<QPointF> all;
   for (const double share : {0.5, 0.62, 0.38, 0.74, 0.26}) all.push_back(from + share * (to - from));
@@ -102,7 +102,7 @@ QSizeF sizeOf(const QString& text, const QFont& font) {
 
 }  // namespace
 
-// Parallel lines stay parallel: lengths along an axis compare.
+// Orthographic projection: lengths along an axis are comparable.
 struct RigDrawing::View {
   Eigen::Matrix3d screen_from_reference;
   Vector3d centre_m;
@@ -122,8 +122,8 @@ RigDrawing::RigDrawing(QWidget* parent)
       saver_(new FileSaver(this)) {
   setFocusPolicy(Qt::StrongFocus);
   setToolTip(
-      tr("The rig as calibrated: x red, y green, z blue.\nDrag or arrow keys: turn. 1, 2, 3: front, side, "
-         "top. Home: as at first. Right button: save."));
+      tr("Calibrated rig: x red, y green, z blue.\nDrag or arrow keys: rotate. 1, 2, 3: front, side, "
+         "top. Home: initial view. Right button: save."));
 }
 
 void RigDrawing::setResult(const NamedResult& named) {
@@ -179,7 +179,7 @@ RigDrawing::View RigDrawing::view(const QSizeF& size) const {
     low = low.cwiseMin(sensor.reference_from_sensor.translation_m);
     high = high.cwiseMax(sensor.reference_from_sensor.translation_m);
   }
-  // x right, y down, z away, as cameras have it.
+  // Axes of a camera: x right, y down, z away.
   const Eigen::Matrix3d turned = (Eigen::AngleAxisd(elevation_rad_, Vector3d::UnitX()) *
                                   Eigen::AngleAxisd(azimuth_rad_, Vector3d::UnitY()))
                                      .toRotationMatrix();
@@ -205,7 +205,7 @@ void RigDrawing::paint(QPainter& painter, const QSizeF& size) const {
   painter.setRenderHint(QPainter::Antialiasing);
   const View from = view(size);
   paintDistances(painter, from);
-  // What is nearer covers what is behind it.
+  // Painted from back to front.
   std::vector<const Sensor*> sensors;
   for (const Sensor& sensor : sensors_) sensors.push_back(&sensor);
   const auto depth = [&](const Sensor* sensor) {
@@ -224,7 +224,7 @@ void RigDrawing::paint(QPainter& painter, const QSizeF& size) const {
   painter.setFont(font());
 }
 
-// Where axes are too short for it, letters of all would lie over each other.
+// Letters of short axes would overlap.
 void RigDrawing::addLetters(const View& view, const Sensor& sensor, std::vector<Label>& labels) const {
   constexpr double kLeastAxis_px = 12.0, kBeyond = 1.14, kBox_px = 14.0;
   const double length_m = axisLength_m();
@@ -252,7 +252,7 @@ std::vector<RigDrawing::Label> RigDrawing::labels(const QSizeF& size) const {
   const double length_m = axisLength_m();
   for (const Sensor& sensor : sensors_) {
     const QPointF origin = from(sensor.reference_from_sensor.translation_m);
-    double tips = 0.0;  // how far down the axes point together
+    double tips = 0.0;  // positive if the axes point down on average
     for (int axis = 0; axis < 3; ++axis)
       tips += from(sensor.reference_from_sensor * Vector3d(length_m * Vector3d::Unit(axis))).y() - origin.y();
     const QString name = sensor.reference ? tr("%1 (reference)").arg(sensor.name) : sensor.name;
@@ -271,7 +271,7 @@ std::vector<RigDrawing::Label> RigDrawing::labels(const QSizeF& size) const {
       for (const QPointF& middle : around(0.5 * (origin + end), needed, below)) middles.push_back(middle);
     all.push_back({text, places.place(needed, middles), false, false, theme().text});
   }
-  // Where there is no room for both, the letter goes.
+  // If both do not fit, the letter is dropped.
   std::erase_if(all, [&](const Label& letter) {
     return letter.letter && std::any_of(all.begin(), all.end(), [&](const Label& other) {
              return !other.letter && other.place.intersects(letter.place);
@@ -362,7 +362,7 @@ void RigDrawing::contextMenuEvent(QContextMenuEvent* event) {
   menu->addAction(tr("&Front (1)"), this, [this] { look(0.0, 0.0); });
   menu->addAction(tr("&Side (2)"), this, [this] { look(M_PI_2, 0.0); });
   menu->addAction(tr("&Top (3)"), this, [this] { look(0.0, M_PI_2); });
-  menu->addAction(tr("&As at first (Home)"), this, [this] { look(kHomeAzimuth_rad, kHomeElevation_rad); });
+  menu->addAction(tr("&Initial view (Home)"), this, [this] { look(kHomeAzimuth_rad, kHomeElevation_rad); });
   menu->addSeparator();
   menu->addAction(icon("save"), tr("Save &picture (PNG, SVG, PDF)..."), this, &RigDrawing::save);
   menu->popup(event->globalPos());

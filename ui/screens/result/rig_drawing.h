@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rig as it was calibrated, drawn to scale: each sensor's axes with their letters, cameras with their view, how far
-// sensors are from the reference. Drag or arrow keys turn it, 1, 2 and 3 look from the front, the side and above, Home
-// goes back.
+// Drawing of the calibrated rig, to scale: axes with letters, fields of view, distances from the reference.
+// Drag or arrow keys rotate it; 1, 2 and 3 are the front, side and top views; Home restores the initial view.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -24,9 +23,9 @@ class RigDrawing : public QWidget {
   explicit RigDrawing(QWidget* parent = nullptr);
 
   void setResult(const NamedResult& named);
-  QString text() const;  // in words: who is how far from whom
-  void save();           // asks where
-  // Where names, lengths and the axes' letters stand in a drawing of this size.
+  QString text() const;  // the distances between sensors, as text
+  void save();           // asks for the file
+  // Positions of names, lengths and the axes' letters in a drawing of this size.
   struct Label {
     QString text;
     QRectF place;
@@ -49,7 +48,7 @@ class RigDrawing : public QWidget {
     QString name;
     RigidTransform reference_from_sensor;
     bool reference = false;
-    std::vector<Eigen::Vector3d> outline_m;  // pairs of ends, in the sensor's frame
+    std::vector<Eigen::Vector3d> outline_m;  // pairs of end points, in the sensor's frame
   };
   struct View;
 
@@ -63,7 +62,7 @@ class RigDrawing : public QWidget {
   void paintScale(QPainter& painter, const View& view, const QSizeF& size) const;
 
   std::vector<Sensor> sensors_;
-  // What is upright and in front at first: the first camera's picture.
+  // Orientation of the initial view: the first camera's image.
   Eigen::Matrix3d reference_from_world_ = Eigen::Matrix3d::Identity();
   double azimuth_rad_, elevation_rad_;
   QPointF last_at_;

@@ -67,19 +67,19 @@ RunsPanel::RunsPanel(QWidget* parent)
       delete_(new QPushButton(icon("remove"), tr("Delete..."), this)),
       place_(new QLabel(this)) {
   list_->setColumnCount(kColumns);
-  list_->setHeaderLabels(
-      {tr("Run"), tr("Made"), tr("Verdict"), tr("Rejected"), tr("Took"), tr("Differs from the run before")});
+  list_->setHeaderLabels({tr("Run"), tr("Date"), tr("Verdict"), tr("Rejected"), tr("Duration"),
+                          tr("Changes to the previous run")});
   list_->setRootIsDecorated(false);
   list_->setUniformRowHeights(true);
   list_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   list_->setEditTriggers(QAbstractItemView::NoEditTriggers);
   list_->setAccessibleName(tr("Runs of this session"));
-  list_->setToolTip(tr("Enter or a double click shows a run on all pages, F2 names it, Delete deletes it"));
-  open_->setToolTip(tr("Show this run on all pages; undo brings back the one before (Enter)"));
+  list_->setToolTip(tr("Enter or a double click opens a run on all pages, F2 renames it, Delete deletes it"));
+  open_->setToolTip(tr("Show this run on all pages; undo restores the previous one (Enter)"));
   compare_->setToolTip(
-      tr("One run: beside the run that is shown. Two: the first is shown, beside the second"));
-  rename_->setToolTip(tr("Give the run a name; runs with a name are kept longest (F2)"));
-  delete_->setToolTip(tr("Delete the run's folder, after a question (Delete)"));
+      tr("One run: compare the shown run with it. Two: show the first, compared with the second"));
+  rename_->setToolTip(tr("Rename the run; named runs are kept longest (F2)"));
+  delete_->setToolTip(tr("Delete the run's folder, after confirmation (Delete)"));
   place_->setProperty("role", "hint");
   place_->setTextInteractionFlags(Qt::TextSelectableByMouse);
   place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -112,7 +112,7 @@ void RunsPanel::setRuns(std::vector<RunSummary> runs, const std::filesystem::pat
 }
 
 void RunsPanel::setPlace(const QString& place) {
-  place_->setText(place.isEmpty() ? QString() : tr("Kept in %1").arg(place));
+  place_->setText(place.isEmpty() ? QString() : tr("Stored in %1").arg(place));
   place_->setToolTip(place_->text());
 }
 
@@ -121,7 +121,7 @@ void RunsPanel::setBusy(bool busy) {
   offer();
 }
 
-// The newest first.
+// Newest first.
 void RunsPanel::fill() {
   const QSignalBlocker quiet(list_);
   const QStringList before = chosen();
@@ -192,13 +192,13 @@ void RunsPanel::deleteChosen() {
       QMessageBox::Question, tr("Delete runs"),
       folders.size() == 1 ? tr("Delete this run?") : tr("Delete these %1 runs?").arg(folders.size()),
       QMessageBox::Yes | QMessageBox::Cancel, this);
-  question.setInformativeText(tr("Their folders go for good: %1").arg(folders.join(", ")));
+  question.setInformativeText(tr("These folders are deleted permanently: %1").arg(folders.join(", ")));
   question.setDefaultButton(QMessageBox::Cancel);
   question.button(QMessageBox::Yes)->setText(tr("Delete"));
   if (question.exec() == QMessageBox::Yes) emit deletionRequested(folders);
 }
 
-// While a name is edited its keys are the editor's.
+// While a name is edited, the editor handles the keys.
 void RunsPanel::keyPressEvent(QKeyEvent* event) {
   if (event->key() == Qt::Key_F2) return renameChosen();
   if (event->key() == Qt::Key_Delete) return deleteChosen();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of a session as a list: opened, compared, named and deleted.
+// List of a session's runs: opens, compares, renames and deletes them.
 #pragma once
 
 #include "core/pipeline/runs/saved_run.h"
@@ -17,7 +17,7 @@ class QTreeWidgetItem;
 
 namespace evical::ui {
 
-// What a person calls a run: its name, or when it was made.
+// Title of a run: its name, or its date.
 QString titleOf(const RunSummary& run);
 
 class RunsPanel : public QWidget {
@@ -26,14 +26,14 @@ class RunsPanel : public QWidget {
  public:
   explicit RunsPanel(QWidget* parent = nullptr);
 
-  // The oldest first; `shown`: the folder of the one that the pages show, empty where that is not kept.
+  // Oldest first; `shown`: the folder of the run on the pages, empty if it is not stored.
   void setRuns(std::vector<RunSummary> runs, const std::filesystem::path& shown);
-  void setPlace(const QString& place);  // where they are kept, said below the list
-  void setBusy(bool busy);              // while something runs no other run is opened
+  void setPlace(const QString& place);  // the runs' folder, shown below the list
+  void setBusy(bool busy);              // a running job blocks opening
 
  signals:
   void openRequested(const QString& folder);
-  // Two runs: the first is to be shown, beside the second. An empty first one: the one that is shown already.
+  // Shows the first run, compared with the second. An empty first one: the run already shown.
   void comparisonRequested(const QString& folder, const QString& with_folder);
   void renameRequested(const QString& folder, const QString& name);
   void deletionRequested(const QStringList& folders);

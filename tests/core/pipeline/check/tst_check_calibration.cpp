@@ -1,4 +1,4 @@
-// An old calibration against new recordings of a rig that is as it was, and of one of which something has changed.
+// An old calibration against new recordings of an unchanged rig, and of one with a change.
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
 #include "core/geometry/so3.h"
@@ -22,7 +22,7 @@ using namespace evical::test;
 
 namespace {
 
-// Moved briskly, so that a few seconds tell much.
+// Fast motion, so that a few seconds suffice.
 Scenario briskForCheckCalibration(std::uint64_t seed) {
   Scenario scenario = simulatePass(2.0).truth;
   scenario.motion.image_speed_px_s = 150.0;
@@ -44,7 +44,7 @@ class TestCheckCalibration : public QObject {
   NamedResult before_;
   Session session_;
 
-  // What has become of the camera since.
+  // Changes of the camera since the calibration.
   CheckRun check(double duration_s, const std::function<void(SimulatedCamera&)>& change = {},
                  const std::function<void(DetectionResult&)>& spoil = {}, std::uint64_t seed = 11) const {
     Scenario scenario = briskForCheckCalibration(seed);
@@ -68,7 +68,7 @@ class TestCheckCalibration : public QObject {
       QVERIFY2(std::string(error.what()).find(part) != std::string::npos, error.what());
       return;
     }
-    QFAIL("it was taken");
+    QFAIL("it was accepted");
   }
 
  private slots:
@@ -87,7 +87,7 @@ class TestCheckCalibration : public QObject {
     QVERIFY(checked.check.findings.size() >= 4);
     for (const Finding& quantity : checked.check.findings) {
       QVERIFY(quantity.smallest_detectable_change > quantity.allowed_drift && quantity.change_sigma > 0.0);
-      // Both together know more than either alone.
+      // Both together are more certain than either alone.
       for (const ComparedNumber& number : quantity.numbers)
         if (quantity.quantity == "translation") QVERIFY(number.joint.sigma < number.now.sigma);
     }
@@ -121,7 +121,7 @@ class TestCheckCalibration : public QObject {
     QVERIFY2(std::abs(changed->change - size) < 0.3 * size, qPrintable(QString::number(changed->change)));
     QVERIFY(checked.check.reason.find(changed->title) != std::string::npos);
     if (quantity == "rotation") {
-      // The focal length is 262 px, at the border of the image a turn moves more.
+      // The focal length is 262 px; at the image border a rotation has a larger effect.
       const double in_middle_px = 262.0 * kRadPerDeg * changed->change;
       QVERIFY(changed->edge_px > in_middle_px && changed->edge_px < 3.0 * in_middle_px);
     }
@@ -142,7 +142,7 @@ class TestCheckCalibration : public QObject {
     QVERIFY2(unseen.check.verdict == Verdict::CannotTell, unseen.check.reason.c_str());
   }
 
-  // The camera's clock steps within the recording: its time offset is another one, but not the rig.
+  // The camera's clock steps within the recording: its time offset changes, but not the rig.
   void spoiltRecording_isNoChange() {
     const CheckRun checked = check(8.0, {}, [](DetectionResult& pass) {
       for (BoardView& view : pass.cameras.front().views) {
@@ -152,7 +152,7 @@ class TestCheckCalibration : public QObject {
       }
     });
     QVERIFY2(checked.check.verdict == Verdict::CannotTell, checked.check.reason.c_str());
-    QVERIFY(checked.check.reason.find("not to be relied on") != std::string::npos);
+    QVERIFY(checked.check.reason.find("is not reliable") != std::string::npos);
   }
 
   void otherRig_isBadInput() {
@@ -184,7 +184,7 @@ class TestCheckCalibration : public QObject {
     QVERIFY(input.notes.back().find("the sun was in its eyes") != std::string::npos);
   }
 
-  // Results of before they had covariances.
+  // Earlier results had no covariances.
   void resultWithoutCovariance_isTaken() {
     CalibrationResult older = *before_.result;
     older.uncertainty.columns.clear();
@@ -209,7 +209,7 @@ class TestCheckCalibration : public QObject {
     } catch (const Cancelled&) {
       return;
     }
-    QFAIL("it went on");
+    QFAIL("it continued");
   }
 
   void files_sayTheSame() {

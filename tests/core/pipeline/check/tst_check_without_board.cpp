@@ -1,5 +1,5 @@
-// An old calibration where there is no board: what is said of a rig that is as it was, of one of which something has changed,
-// and of recordings that cannot tell.
+// Checks of an old calibration without a board: reports for an unchanged rig, for one with a change, and for
+// recordings without enough information.
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/check/check_without_board.h"
@@ -27,7 +27,7 @@ Scenario room(double duration_s) {
   return scenario;
 }
 
-// A small sensor, so that events are few.
+// A small sensor, for few events.
 Scenario smallRoom(double duration_s) {
   Scenario scenario = room(duration_s);
   CameraIntrinsics& lens = scenario.cameras.front().intrinsics;
@@ -56,7 +56,8 @@ BoardlessPass passOf(const Scenario& scenario, CameraRecord camera) {
   return pass;
 }
 
-// As the scenario's camera turns, with as much of its velocity; `stretch`: of all motion of its image.
+// Motion like that of the scenario's camera, with this share of its velocity; `stretch`: factor of all image
+// motion.
 struct Seen {
   double velocity = 0.0, stretch = 1.0;
   double nearest_1_m = 0.3, further_1_m = 0.5;
@@ -90,14 +91,14 @@ CameraRecord turningCamera(const Scenario& scenario, const Seen& seen = {}) {
   return record;
 }
 
-// What a recording's events tell.
+// Evidence of a recording's events.
 CameraRecord seenCamera(const Scenario& scenario) {
   CalibrationOptions options;
   options.egomotion = quickEgomotion();
   return simulatedRecord(scenario, options).record;
 }
 
-// `before`: the rig as the old result has it.
+// `before`: the rig of the old result.
 CalibrationCheck checkOf(const Scenario& before, BoardlessPass pass) {
   CheckInput input = checkInputOf(truthOf(before), sessionFor(before));
   input.session.options.egomotion = quickEgomotion();
@@ -135,7 +136,7 @@ class TestCheckWithoutBoard : public QObject {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario)));
     QVERIFY2(check.verdict == Verdict::Unchanged, check.reason.c_str());
-    QCOMPARE(check.findings.size(), std::size_t{2});  // rotation and time offset, nothing else
+    QCOMPARE(check.findings.size(), std::size_t{2});  // rotation and time offset only
     QVERIFY(assessmentJson(check).find("\"without_board\": true") != std::string::npos);
     QVERIFY(assessmentYaml(check).find("without_board: true") != std::string::npos);
   }
@@ -164,7 +165,7 @@ class TestCheckWithoutBoard : public QObject {
     QVERIFY2(std::abs(changed->change - size) < 0.2 * size, qPrintable(QString::number(changed->change)));
   }
 
-  // A hand's breadth from walls all is translation, and only the truth may be said.
+  // At a hand's breadth from walls, translation dominates, and the verdict must still be true.
   void whatHangsOnTranslation_isNotKnownBetter() {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check =
@@ -172,7 +173,7 @@ class TestCheckWithoutBoard : public QObject {
     QVERIFY2(check.verdict != Verdict::Changed, check.reason.c_str());
   }
 
-  // Not the lens: what is near moves in the image by walking.
+  // Not the lens: translation moves near objects in the image.
   void walkingNearWalls_isAdvisedAgainst() {
     const Scenario scenario = room(30.0);
     for (const Seen& seen : {Seen{5.0, 1.0, 1.5, 1.0}, Seen{8.0, 1.0, 1.0, 1.0}}) {
@@ -192,7 +193,7 @@ class TestCheckWithoutBoard : public QObject {
     QVERIFY(!check.advice.empty());
   }
 
-  // Of another scale than the gyroscope's: the lens is not this camera's.
+  // A scale that differs from the gyroscope's: the lens is not this camera's.
   void anotherLens_isSaid() {
     const Scenario scenario = room(30.0);
     const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario, {0.0, 1.3})));
@@ -200,7 +201,7 @@ class TestCheckWithoutBoard : public QObject {
     QVERIFY2(check.reason.find("times as fast") != std::string::npos, check.reason.c_str());
   }
 
-  // Nothing of the camera's motion is the gyroscope's.
+  // The camera's motion does not agree with the gyroscope's at all.
   void anotherRigsGyroscope_cannotTell() {
     const Scenario scenario = room(30.0);
     BoardlessPass pass = passOf(scenario, turningCamera(scenario));

@@ -1,4 +1,4 @@
-// Several estimates as one, against the least squares of all their measurements at once.
+// Several estimates combined into one, against the least squares of all their measurements at once.
 #include "core/pipeline/compare/combined_estimates.h"
 #include "tests/support/test_program.h"
 
@@ -18,7 +18,7 @@ constexpr Eigen::Index kUnknowns = 3;
 constexpr std::size_t kRecordings = 4;
 constexpr std::array<std::size_t, kRecordings> kAll = {0, 1, 2, 3};
 
-// Rows are measurements of three unknowns; priors are one row an unknown, the same in every recording.
+// Rows are measurements of three unknowns; priors are one row per unknown, the same in every recording.
 class Measurements {
  public:
   explicit Measurements(double error_size = 1.0) : error_size_(error_size) {}
@@ -34,7 +34,7 @@ class Measurements {
   }
   Eigen::Matrix3d prior() const { return prior_sigma_.cwiseAbs2().cwiseInverse().asDiagonal(); }
 
-  // Covariances know how large errors are, weights do not.
+  // Covariances describe the errors, weights do not.
   PartialEstimate estimate(std::size_t k, const Eigen::Vector3d& off = Eigen::Vector3d::Zero()) const {
     const Eigen::Matrix3d data = rows_[k].transpose() * rows_[k], weight = data + prior();
     const Eigen::Matrix3d inverse = weight.inverse();
@@ -77,7 +77,7 @@ class TestCombinedEstimates : public QObject {
   Q_OBJECT
 
  private slots:
-  // What all were told counts once, not four times.
+  // A prior that all share counts once, not four times.
   void combination_isTheBatch() {
     Measurements measurements;
     measurements.draw(kTruth);
@@ -107,12 +107,13 @@ class TestCombinedEstimates : public QObject {
       const EstimateDistance distance = combination.distance(0, others);
       QCOMPARE(distance.freedom, 3);
       distances += distance.chi_square / distance.freedom / kDraws;
-      // Two recordings differ by their data alone, however wrong what both were told is.
+      // Two recordings differ by their data alone, even if the prior of both is wrong.
       varying +=
           (combination.varyingSigmas(0).cwiseAbs2() + combination.varyingSigmas(1).cwiseAbs2()) / kDraws;
       scatter += (measurements.estimate(0).value - measurements.estimate(1).value).cwiseAbs2() / kDraws;
     }
-    // A mean of 2000 sums of three squares scatters by 0.018; of single ones by 0.05, drawn rows add to it.
+    // A mean of 2000 sums of three squares scatters by 0.018, of single squares by 0.05; random rows add to
+    // it.
     QVERIFY2(std::abs(squares - 1.0) < 0.08, qPrintable(QString::number(squares)));
     QVERIFY2(std::abs(distances - 1.0) < 0.08, qPrintable(QString::number(distances)));
     for (Eigen::Index i = 0; i < kUnknowns; ++i)
@@ -131,7 +132,7 @@ class TestCombinedEstimates : public QObject {
     QVERIFY(probabilityBeyond(measurements.combination(off, moving).distance(2, others)) > 0.1);
   }
 
-  // One recording tells the first unknown only, another one the other two.
+  // One recording determines only the first unknown, another one the other two.
   void unknownsThatOneDoesNotTell_comeFromTheOthers() {
     const Eigen::Matrix2d two = (Eigen::Matrix2d() << 4.0, 1.0, 1.0, 2.0).finished();
     const std::vector<PartialEstimate> estimates = {{{0},

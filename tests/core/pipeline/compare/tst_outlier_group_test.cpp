@@ -53,7 +53,7 @@ class TestSingleChanges : public QObject {
   Q_OBJECT
 
  private slots:
-  // As seldom as is said, also where everything has moved as far as it may.
+  // False alarms at the stated rate, also if everything has moved by the tolerance.
   void noChange_isSeldomOne() {
     constexpr int kDraws = 4000;
     constexpr double kFalseAlarms = 0.05;
@@ -72,7 +72,7 @@ class TestSingleChanges : public QObject {
     }
   }
 
-  // Of the size that would be noticed, in the direction that is known least.
+  // A change of detectable size, in the least certain direction.
   void changeThatWouldBeNoticed_isFound() {
     constexpr int kDraws = 1000;
     constexpr double kStability = 0.3;

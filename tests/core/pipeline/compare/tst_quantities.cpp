@@ -1,4 +1,4 @@
-// Each row of core/data/quantity.h, through all that walks them.
+// Each row of core/data/quantity.h, through all code that iterates over them.
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
 #include "core/geometry/so3.h"
@@ -16,8 +16,7 @@ using namespace evical;
 
 namespace {
 
-// Values and sigmas that are different for each row; without digits to spare, so that a
-// file must keep them all.
+// Values and sigmas that differ between rows, with all digits in use, so that a file must keep them all.
 class Filler {
  public:
   double next() {
@@ -85,7 +84,7 @@ Eigen::VectorXd priorNumbers(const KnownValue<Value>& known) {
   return quantityNumbers(known.value);
 }
 
-// A camera and an IMU besides the reference, with all that a row knows of them.
+// A camera and an IMU in addition to the reference, with all properties of a row.
 NamedResult filledResult() {
   NamedResult named;
   named.reference = "reference";
@@ -197,7 +196,7 @@ class TestQuantities : public QObject {
     });
   }
 
-  // Only an estimate knows edge leads: where two have them they are compared, against a truth they are not.
+  // Only estimates have edge leads: those of two estimates are compared, but not with a truth.
   void edgeLeads_areComparedBetweenResults() {
     const NamedResult result = filledResult();
     NamedResult other = result;

@@ -1,5 +1,5 @@
-// Intrinsics from a screen that flashes: simulated with a known truth, and real recordings; and what is said where a
-// board that blinks is not what is wanted.
+// Intrinsics from a flashing screen: simulated with a known truth, and real recordings; and the messages if a
+// blinking board is not suitable.
 #include "core/base/error.h"
 #include "core/geometry/projection_difference.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
@@ -22,7 +22,7 @@ namespace {
 
 using namespace evical;
 
-// The scenario's camera in a quarter of its pixels, and faster: what takes minutes at its size.
+// The scenario's camera with a quarter of its pixels, and faster: the full size takes minutes.
 Scenario smallScenario() {
   Scenario scenario = readScenario(test::scenarioPath("blinking"));
   scenario.duration_s = 10.0;
@@ -87,7 +87,7 @@ class TestBlinkingBoard : public QObject {
 
   void calibrationBesideAnImu_isRefusedWithTheReason() {
     const QString error = errorOf([&] { calibrate(session(), RunContext{}); }, ErrorKind::BadInput);
-    QVERIFY2(error.contains("board.blinking") && error.contains("no time offsets") &&
+    QVERIFY2(error.contains("board.blinking") && error.contains("cannot determine time offsets") &&
                  error.contains("evical intrinsics"),
              qPrintable(error));
   }
@@ -125,7 +125,7 @@ class TestBlinkingBoard : public QObject {
   void realScreen_givesItsLens_data() {
     QTest::addColumn<int>("rows");
     QTest::addColumn<int>("cols");
-    QTest::newRow("as it is") << 4 << 8;
+    QTest::newRow("the true board") << 4 << 8;
     QTest::newRow("a part of a larger one") << 5 << 9;
   }
 

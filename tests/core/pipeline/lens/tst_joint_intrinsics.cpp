@@ -1,5 +1,5 @@
-// A camera whose intrinsics were found first, and are solved for with everything else: what results, files
-// and halves make of it.
+// A camera whose intrinsics are found first and then estimated jointly with everything else: results, files
+// and halves.
 #include "core/geometry/projection_difference.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -28,7 +28,7 @@ class TestJointIntrinsics : public QObject {
   CameraIntrinsics truth_, found_;
   CalibrationRun run_;
 
-  // As a run's first stages leave it.
+  // The state after the first stages of a run.
   IntrinsicsResult foundFirst() const {
     IntrinsicsResult first;
     first.intrinsics = found_;
@@ -72,14 +72,14 @@ class TestJointIntrinsics : public QObject {
     const CameraIntrinsics solved = run_.result.state.cameras[0].lens.solved.value();
     QVERIFY(run_.intrinsics[0]->intrinsics == found_);
     QCOMPARE(QString::fromStdString(run_.intrinsics[0]->reason), QString(kDoubt));
-    // But what was doubtful then is known well now.
+    // But the quantity that was doubtful then is determined well now.
     QVERIFY2(run_.result.reason.find("intrinsics") == std::string::npos, run_.result.reason.c_str());
-    QVERIFY(!holds(run_.result.notes, "projection known to 3.000 px"));
+    QVERIFY(!holds(run_.result.notes, "projection sigma 3.000 px"));
     QVERIFY(run_.result.state.cameras[0].lens == (CameraLens{std::nullopt, found_, solved}));
     const double before_px = projectionDifference(truth_, found_).rms_px;
     const double after_px = projectionDifference(truth_, solved).rms_px;
     QVERIFY2(after_px < 0.02 && after_px < 0.2 * before_px, qPrintable(QString::number(after_px)));
-    QVERIFY(holds(run_.result.notes, "solved with everything else, which moved the projection by"));
+    QVERIFY(holds(run_.result.notes, "refined in the joint optimisation, which changed the projection by"));
     QVERIFY(columnOf({QuantityOwner::Camera, 0, QuantityId::Intrinsics, 0, solved.model},
                      run_.result.uncertainty.columns));
   }
@@ -124,8 +124,8 @@ class TestJointIntrinsics : public QObject {
     QVERIFY(read.result->state.cameras[0].lens.inUse() == solved);
     QVERIFY(read.result->uncertainty.cameras[0].intrinsics_std.has_value());
     const QString page = readFile(folder.filePath("report.html"));
-    QVERIFY(page.contains("Intrinsics as solved with everything else"));
-    QVERIFY(page.contains("found first") && page.contains("left.focal_length.x"));
+    QVERIFY(page.contains("Intrinsics refined in the joint optimisation"));
+    QVERIFY(page.contains("calibrated first") && page.contains("left.focal_length.x"));
     const QString focal = QString::number(solved.focal_length_px.x(), 'f', 6).left(9);
     int holding = 0;
     for (const auto& entry :
@@ -144,7 +144,7 @@ class TestJointIntrinsics : public QObject {
     QVERIFY(run.result.state.cameras[0].lens.found() == found_);
     QVERIFY(run.result.state.cameras[0].lens.inUse() == found_);
     QVERIFY(std::abs((*run.result.uncertainty.cameras[0].intrinsics_std)[0] - 0.05) < 1e-12);
-    QVERIFY(!holds(run.result.notes, "solved with everything else"));
+    QVERIFY(!holds(run.result.notes, "refined in the joint optimisation"));
   }
 
   void givenIntrinsics_stayAsTheyAreWhereAsked() {

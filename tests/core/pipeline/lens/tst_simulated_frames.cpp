@@ -27,7 +27,7 @@ using namespace evical;
 
 constexpr double kSimulatedFramesSigmas = 4.0;
 
-// Ten frames a second before an AprilGrid, rows 30 us after each other.
+// Ten frames per second in front of an AprilGrid, with a line delay of 30 us.
 Scenario rollingShutter() {
   Scenario scenario = readScenario(test::scenarioPath("rolling_shutter"));
   scenario.duration_s = 8.0;
@@ -47,7 +47,7 @@ class TestSimulatedFrames : public QObject {
     simulate(scenario_, path(), RunContext{});
   }
 
-  // Corners lie where the simulator's motion puts them.
+  // Corners are where the simulator's motion projects them.
   void charucoInJpegs_isFound() {
     Scenario scenario = scenario_;
     scenario.duration_s = 2.0;
@@ -103,7 +103,7 @@ class TestSimulatedFrames : public QObject {
     QVERIFY(std::abs(camera.line_delay_us - truth.frames->line_delay_us) <
             kSimulatedFramesSigmas * sigma.line_delay_std_us);
     QVERIFY2(std::abs(camera.line_delay_us - 30.0) < 0.3, QByteArray::number(camera.line_delay_us));
-    // Of 8 s a translation may be known less well than is needed, which is all there may be to say.
+    // With 8 s a translation may be less certain than required, which must be the only reason.
     QVERIFY2(run.result.status == CalibrationStatus::Ok || run.result.reason.find("translation along") == 0,
              run.result.reason.c_str());
     const double seen = static_cast<double>(run.pass.cameras[0].views.size()) /
@@ -116,10 +116,10 @@ class TestSimulatedFrames : public QObject {
     global.cameras.front().shutter = Shutter::Global;
     const CalibrationRun run = calibrate(global, RunContext{});
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
-    QVERIFY2(run.result.reason.find("its shutter rolls") != std::string::npos, run.result.reason.c_str());
+    QVERIFY2(run.result.reason.find("shutter is rolling") != std::string::npos, run.result.reason.c_str());
   }
 
-  // Rows that roll bend what they see a little, by as much as the board moves meanwhile.
+  // A rolling shutter slightly distorts the image, by the board's motion during the readout.
   void lensOfFrames_isFoundAlone() {
     const IntrinsicsRun run = calibrateIntrinsics(session(), 0, RunContext{});
     const double off_px =
@@ -146,7 +146,7 @@ class TestSimulatedFrames : public QObject {
     other.cameras.front().stream = "pictures";
     try {
       calibrate(other, RunContext{});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains("have no times"), error.what());
     }

@@ -1,4 +1,4 @@
-// What a session may say of a board that blinks, and of several recordings of it.
+// Settings of a session for a blinking board, and for several recordings of it.
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/session/session.h"
 #include "tests/core/pipeline/session/refused_session.h"
@@ -31,7 +31,7 @@ class TestBlinkingSession : public QObject {
     for (const char* name : {"first.raw", "second.raw"}) std::ofstream(folder() / name) << "x";
   }
 
-  // With IMUs and a board that looks the same upside down, for its cameras' intrinsics alone.
+  // With IMUs, and a board that looks the same upside down, which is for its cameras' intrinsics only.
   void session_isReadAndWritten() {
     const Session session = sessionWith("", "");
     QVERIFY(session.board_blinks);
@@ -64,10 +64,11 @@ class TestBlinkingSession : public QObject {
                                 << "[]" << QStringList{"recording", "is empty"};
     QTest::newRow("time range of several")
         << "cameras:"
-        << "time_range_s: [0, 1]\ncameras:" << QStringList{"time_range_s", "which of several"};
+        << "time_range_s: [0, 1]\ncameras:" << QStringList{"time_range_s", "ambiguous with several"};
     QTest::newRow("another recording beside")
         << "stream: events"
-        << "stream: events, recording: first.raw" << QStringList{"cameras.left.recording", "beside a list"};
+        << "stream: events, recording: first.raw"
+        << QStringList{"cameras.left.recording", "in addition to the list"};
     QTest::newRow("neither true nor false") << "blinking: true"
                                             << "blinking: 30" << QStringList{"board.blinking", "30"};
   }
@@ -83,7 +84,7 @@ class TestBlinkingSession : public QObject {
     }
   }
 
-  // A run may start from detections whose recording is elsewhere by now.
+  // A run may start from detections whose recording has been moved.
   void recordingThatIsGone_tellsNothing() {
     Session session;
     session.recording = folder() / "gone.bag";

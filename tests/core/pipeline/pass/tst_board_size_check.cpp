@@ -9,7 +9,7 @@ namespace {
 
 using namespace evical;
 
-// Views of a board of which only the first rows and columns are ever seen.
+// Views of a board in which only the first rows and columns are ever seen.
 BoardObservations observe(const Board& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
   BoardObservations observations;
   observations.camera = "left";
@@ -94,7 +94,7 @@ void TestBoardSizeCheck::smallerBoard_seenAtEitherEnd_isNamed() {
               "smaller than 11 x 4: its first or last row is missing in 90 % of the 80 views");
 }
 
-// A column that is missing in 39 % of the views is there in the others.
+// A column that is missing in 39 % of the views is present in the others.
 void TestBoardSizeCheck::boardWhoseReadOutLosesBursts_passes() {
   Board board;
   board.rows = 9;
@@ -108,7 +108,7 @@ void TestBoardSizeCheck::boardWhoseReadOutLosesBursts_passes() {
 
 void TestBoardSizeCheck::otherBoard_isBoth() {
   VERIFY_SAYS(failureOfBoardSizeCheck({}, 10, 4, {{80, 0, 80, 72}, {80, 79, 80, 0}}),
-              "seems other than 11 x 4: the last 1 of 11 rows was never seen in 800 views, and "
+              "seems different from 11 x 4: the last 1 of 11 rows was never seen in 800 views, and "
               "circles.*beyond its first or last column");
 }
 

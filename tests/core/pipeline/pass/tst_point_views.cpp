@@ -18,7 +18,7 @@ Board squares() {
   return board;
 }
 
-// A session with one camera, and what its points become.
+// A session with one camera, and the views of its points.
 struct Fixture {
   Session session;
   CameraLens lens;
@@ -30,7 +30,7 @@ struct Fixture {
   std::vector<RecordingFault> faults;
 };
 
-// The board's first points 2 px apart, moved by so much.
+// The board's first points 2 px apart, displaced by this.
 CameraBatch batchAt(double time_s, int points, float shift_px = 0.0F) {
   CameraBatch batch;
   batch.kind = CameraKind::Points;
@@ -69,13 +69,13 @@ class TestPointViews : public QObject {
     QVERIFY(found.kind == CameraKind::Points);
   }
 
-  // The same rays, whatever the lens: ideal pixels of a lens without distortion are the sensor's.
+  // The same rays for any lens: ideal pixels of a lens without distortion are the sensor's.
   void pointsThroughALens_areInItsIdealPixels() {
     CameraIntrinsics lens{CameraModel::PinholeRadtan, {100, 80}, {90.0, 90.0}, {49.5, 39.5}, {}};
     lens.distortion[0] = -0.3;
     Fixture test(lens);
     test.views->take(batchAt(0.0, 12));
-    QVERIFY(test.finish().views[0].circles[0].centre_px.x() < 9.0);  // barrel distortion drew it inwards
+    QVERIFY(test.finish().views[0].circles[0].centre_px.x() < 9.0);  // barrel distortion moved it inwards
   }
 
   void sigma_isWhatIsSaid_orTheOptions() {
@@ -91,8 +91,8 @@ class TestPointViews : public QObject {
   void fewStrayPoints_areLeftOutAndSaid() {
     Fixture test;
     CameraBatch batch = batchAt(0.0, 12);
-    batch.points.push_back({0, 12, 50.0F, 50.0F, 0.0F});  // the board has none
-    batch.points.push_back({0, 3, 200.0F, 50.0F, 0.0F});  // beyond the sensor
+    batch.points.push_back({0, 12, 50.0F, 50.0F, 0.0F});  // not a point of the board
+    batch.points.push_back({0, 3, 200.0F, 50.0F, 0.0F});  // outside the sensor
     batch.points.push_back({0, 5, 50.0F, 50.0F, 0.0F});   // the second one
     test.views->take(batch);
     QCOMPARE(test.finish().views[0].circles.size(), std::size_t{12});
@@ -103,7 +103,7 @@ class TestPointViews : public QObject {
     Fixture test;
     try {
       for (int k = 0; k < 100; ++k) test.views->take(batchAt(0.1 * k, 24));
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(QString(error.what()).contains("up to 23"), error.what());

@@ -1,4 +1,4 @@
-// A run that starts from an earlier run's detections gives what that run gave, without reading events or frames; and
+// A run that starts from an earlier run's detections gives the same result, without reading events or frames;
 // detections of another session are refused.
 #include "core/base/error.h"
 #include "core/pipeline/pass/saved_detections.h"
@@ -24,7 +24,7 @@ namespace {
 
 using Change = std::function<void(Session&)>;
 
-// Six seconds of an event camera and a small frame camera beside it.
+// Six seconds of an event camera and a small frame camera.
 Scenario eventsAndFrames() {
   Scenario scenario = readScenario(test::scenarioPath("hybrid_stereo"));
   scenario.duration_s = 6.0;
@@ -52,7 +52,7 @@ class TestSavedDetections : public QObject {
   Q_OBJECT
 
   QTemporaryDir folder_;
-  Session session_;  // the frame camera's lens is not known
+  Session session_;  // the frame camera's lens is unknown
   CalibrationRun run_;
 
   std::filesystem::path path() const { return folder_.path().toStdString(); }
@@ -108,7 +108,7 @@ class TestSavedDetections : public QObject {
     QVERIFY(after.intrinsics == before.intrinsics && after.covariance == before.covariance);
     QCOMPARE(after.image.rms_px, before.image.rms_px);
     QCOMPARE(after.views_used, before.views_used);
-    // And what it leaves is the same again.
+    // Its own detections are the same again.
     const std::vector<FileContent> files = detectionFiles(session_, pass, again.intrinsics);
     for (const FileContent& file : files)
       QVERIFY2(evical::test::fileContent(result() / file.path) == QByteArray::fromStdString(contentOf(file)),
@@ -134,7 +134,7 @@ class TestSavedDetections : public QObject {
     restoreDetections(result(), measured, RunContext{});
   }
 
-  // The frames have the lens of the events' camera, be it given or found first.
+  // The frames have the lens of the event camera, whether given or found first.
   void camerasOfOneSensor_areRestored() {
     QTemporaryDir folder;
     const std::filesystem::path path = folder.path().toStdString();
@@ -153,9 +153,9 @@ class TestSavedDetections : public QObject {
     other.cameras[0].intrinsics->focal_length_px *= 1.01;
     try {
       restoreDetections(path, other, RunContext{});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
-      QVERIFY2(QString(error.what()).contains("other intrinsics"), error.what());
+      QVERIFY2(QString(error.what()).contains("intrinsics other than"), error.what());
     }
   }
 
@@ -183,7 +183,7 @@ class TestSavedDetections : public QObject {
         "radius", [](Session& s) { s.board.radius_m *= 0.8; }, "board.radius_m");
     row(
         "camera", [](Session& s) { s.cameras[1].name = "third"; },
-        "camera 'third' is missing; there are: events, frames");
+        "camera 'third' is missing; existing cameras: events, frames");
     row(
         "stream", [](Session& s) { s.cameras[0].stream = "/other"; }, "cameras.events.stream");
     row(
@@ -196,12 +196,12 @@ class TestSavedDetections : public QObject {
         "cameras.frames.resolution_px");
     row(
         "lens", [](Session& s) { s.cameras[0].intrinsics->focal_length_px.x() += 1e-3; },
-        "of other intrinsics");
+        "with intrinsics other than");
     row(
         "lens not given", [](Session& s) { s.cameras[0].intrinsics.reset(); }, "the session gives none");
     row(
         "lens given", [](Session& s) { s.cameras[1].intrinsics = s.cameras[0].intrinsics; },
-        "of other intrinsics");
+        "with intrinsics other than");
   }
 
   void anotherSession_isRefused() {
@@ -211,7 +211,7 @@ class TestSavedDetections : public QObject {
     change(other);
     try {
       restoreDetections(result(), other, RunContext{});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(QString(error.what()).contains(said), error.what());
@@ -223,13 +223,13 @@ class TestSavedDetections : public QObject {
     QTest::addColumn<QByteArray>("by");
     QTest::addColumn<QString>("said");
     QTest::newRow("of a part") << QByteArray("board:") << QByteArray("time_range_s: [1, 3]\nboard:")
-                               << "the session is of all of the recording";
+                               << "the session covers the whole recording";
     QTest::newRow("of another time") << QByteArray("start_ns: 17") << QByteArray("start_ns: 16")
                                      << "another recording";
     QTest::newRow("of a later version")
         << QByteArray("evical_detections: 1") << QByteArray("evical_detections: 2") << "evical_detections";
     QTest::newRow("something else") << QByteArray("evical_detections") << QByteArray("evical_session")
-                                    << "holds no detections";
+                                    << "does not contain detections";
     QTest::newRow("without intrinsics")
         << QByteArray("detection_intrinsics") << QByteArray("lens") << "without intrinsics";
     QTest::newRow("kind") << QByteArray("kind: frames") << QByteArray("kind: film") << "film";
@@ -246,7 +246,7 @@ class TestSavedDetections : public QObject {
     replaceIn(folder / "detections.yaml", what, by);
     try {
       restoreDetections(folder, session_, RunContext{});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(QString(error.what()).contains(said), error.what());

@@ -1,4 +1,5 @@
-// Gyroscope and accelerometer with streams of their own, at rates and times of their own: as accurate as one message of both.
+// Gyroscope and accelerometer as separate streams, with different rates and times: as accurate as joint
+// messages.
 #include "core/base/error.h"
 #include "core/initialisation/agreement_check.h"
 #include "core/pipeline/maintain/imu_logs.h"
@@ -31,7 +32,7 @@ const std::string kGyroscope = "/camera/gyro/sample", kAccelerometer = "/camera/
 
 using Samples = std::vector<ImuSample>;
 
-// Of 1000 Hz: 200 Hz of rates, 62.5 Hz of forces, never at the same time.
+// From 1000 Hz: 200 Hz of rates, 62.5 Hz of specific forces, never at the same time.
 Samples ratesOf(const Samples& all) {
   Samples rates;
   for (std::size_t i = 0; i < all.size(); i += 5) rates.push_back(all[i]);
@@ -125,7 +126,7 @@ class TestSeparateImu : public QObject {
         QVERIFY(read[i].specific_force_m_s2 == expected[i].specific_force_m_s2);
       if (i > 16 && i + 16 < read.size()) furthest = std::max(furthest, gapBetween(read[i], expected[i]));
     }
-    QVERIFY2(furthest < 0.6, qPrintable(QString::number(furthest)));  // what is interpolated
+    QVERIFY2(furthest < 0.6, qPrintable(QString::number(furthest)));  // the interpolated values
   }
 
   void oneTopic_isTakenApart() {
@@ -140,7 +141,7 @@ class TestSeparateImu : public QObject {
     }
   }
 
-  // The other sensor's numbers are then the last ones, and only the covariance says so.
+  // The other sensor's values are then the last ones, and only the covariance marks them.
   void staleNumbers_areTakenApartByTheirCovariances() {
     std::vector<RawImuSample> raw(2);
     for (RawImuSample& sample : raw) {
@@ -182,14 +183,14 @@ class TestSeparateImu : public QObject {
     QCOMPARE(QString::fromStdString(session.imus[0].stream), gyroscope);
     QCOMPARE(QString::fromStdString(session.imus[0].accelerometer_stream), accelerometer);
     QCOMPARE(QString::fromStdString(session.imus[0].name), name);
-    // And a file says so.
+    // The same in a file.
     session.cameras = test::sessionFor(scenario_).cameras;
     const Session again = written(session);
     QCOMPARE(again.imus[0].stream, session.imus[0].stream);
     QCOMPARE(again.imus[0].accelerometer_stream, session.imus[0].accelerometer_stream);
   }
 
-  // Each sensor has stamps and residuals of its own: pairs of stamps 20 us apart are no batches.
+  // Each sensor has separate stamps and residuals: pairs of stamps 20 us apart are not batches.
   void equalRates_areNoBatches() {
     ImuData imu = pass_.imus.front();
     imu.samples.clear();
@@ -208,7 +209,8 @@ class TestSeparateImu : public QObject {
     }
   }
 
-  // A message's claim that a sensor did not measure counts only in sessions that name the streams: conversions keep values.
+  // A message's flag for a missing measurement counts only in sessions that name the streams: conversions
+  // keep the values.
   void conversion_keepsValuesBehindACovarianceOfMinusOne() {
     ImuSample sample = all().front();
     sample.measured_by = MeasuredBy::Gyroscope;
@@ -225,7 +227,7 @@ class TestSeparateImu : public QObject {
     QVERIFY(gapBetween(read[0], sample) == 0.0);
   }
 
-  // A log that is called like the IMU holds three streams then, of which one is the IMU.
+  // A log with the name of the IMU then has three streams, of which one is the IMU.
   void logCalledLikeTheImu_isTheJoinedStream() {
     writeTwoTopics();
     std::filesystem::rename(path("two.bag"), path("left_imu.bag"));
@@ -252,7 +254,7 @@ class TestSeparateImu : public QObject {
     QTest::addColumn<bool>("exchanged");
     QTest::addColumn<QString>("problem");
     QTest::newRow("exchanged") << true << "has no measurements of the gyroscope";
-    QTest::newRow("apart in time") << false << "share only 0.00 s";
+    QTest::newRow("apart in time") << false << "overlap for only 0.00 s";
   }
   void exchangedOrApartStreams_areSaid() {
     QFETCH(bool, exchanged);
@@ -281,7 +283,7 @@ class TestSeparateImu : public QObject {
     }
   }
 
-  // Four recordings: each error within 3.5 sigmas, and all of them as large as their sigmas say.
+  // Four recordings: each error within 3.5 sigmas, and their RMS in agreement with the sigmas.
   void calibration_isAsAccurateAsItsSigmasSay() {
     double squares = 0.0, count = 0.0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -315,7 +317,7 @@ class TestSeparateImu : public QObject {
     QVERIFY2(ratio > 0.6 && ratio < 1.4, qPrintable(QString::number(ratio)));
   }
 
-  // A session that names one stream, as for other IMUs, is told the line that it needs.
+  // A session that names one stream, as for other IMUs, is refused with the required line.
   void oneStreamOfTwo_isRefusedWithTheLine_data() {
     QTest::addColumn<bool>("rates");
     QTest::addColumn<bool>("forces");

@@ -194,7 +194,7 @@ void TestSessionRecording::clocksWithoutRelation_areRefused() {
     QVERIFY(QString(error.what()).contains("imu.bag"));
     QVERIFY2(QString(error.what()).contains("1600000000.12"), error.what());
   }
-  session_.imus[0].clock_offset_s = 1e-9 * static_cast<double>(start_ns);  // what it advised
+  session_.imus[0].clock_offset_s = 1e-9 * static_cast<double>(start_ns);  // the advised value
   std::size_t imu_sensor = 0;
   const Recording read = readSession(imu_sensor);
   QVERIFY(std::abs(read.imu_samples.front().time_ns - written_.imu_samples.front().time_ns) < 1000);
@@ -224,7 +224,7 @@ void TestSessionRecording::intrinsicsOfAnotherResolution_areRefused() {
     QFAIL("accepted");
   } catch (const CalibrationError& error) {
     QVERIFY(error.kind() == ErrorKind::BadInput);
-    QVERIFY2(QString(error.what()).contains("for 640 x 480 px, but the recording is of 346 x 260"),
+    QVERIFY2(QString(error.what()).contains("for 640 x 480 px, but the recording has 346 x 260"),
              error.what());
   }
 }
@@ -245,7 +245,7 @@ void TestSessionRecording::samplesThatAreNoMeasurements_stayOutside() {
   const RecordingFault fault = recording.faults().front();
   QVERIFY(fault.kind == FaultKind::NotFinite);
   QCOMPARE(fault.stream, std::string("/dvs/imu"));
-  QVERIFY2(fault.text.find("2 IMU samples left out") != std::string::npos, fault.text.c_str());
+  QVERIFY2(fault.text.find("2 IMU samples excluded") != std::string::npos, fault.text.c_str());
 }
 
 void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
@@ -257,7 +257,7 @@ void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
   spoilt.imu_samples.front().time_ns = 0;
   writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
   SessionRecording recording(session_);
-  // Of the sensor whose stamps are believed first.
+  // Start of the sensor whose stamps are trusted first.
   const std::int64_t late_ns = recording.start_ns() - written_.events[1].time_ns;
   QVERIFY2(late_ns >= 0 && late_ns < 10'000'000, qPrintable(QString::number(late_ns)));
   std::size_t events = 0, samples = 0;
@@ -273,7 +273,7 @@ void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
   QCOMPARE(samples, written_.imu_samples.size() - 1);
   QCOMPARE(recording.faults().size(), std::size_t{2});
   QVERIFY(recording.faults().front().kind == FaultKind::Corrupt);
-  QVERIFY2(recording.faults().front().text.find("3 events left out") != std::string::npos,
+  QVERIFY2(recording.faults().front().text.find("3 events excluded") != std::string::npos,
            recording.faults().front().text.c_str());
 }
 
@@ -282,14 +282,15 @@ void TestSessionRecording::simulatedRawFiles_haveFramesOnTheirClock() {
   scenario.duration_s = 0.5;
   const Session session =
       evical::readSession(simulate(scenario, path("frames"), RunContext{}, "raw").session);
-  SessionRecording recording(session);  // refuses clocks that have nothing to do with each other
+  SessionRecording recording(session);  // refuses unrelated clocks
   std::uint64_t frames = 0;
   SensorPacket packet;
   while (recording.read(packet)) frames += packet.frames.size();
   QVERIFY(frames > 3);
 }
 
-// Users of Prophesee cameras have these two files. Both are on one clock and hold everything that was simulated.
+// Users of Prophesee cameras have these two files. Both use one clock and contain everything that was
+// simulated.
 void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
   Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 0.5;

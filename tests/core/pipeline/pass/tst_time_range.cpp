@@ -1,4 +1,4 @@
-// A part of a recording: what lies within time_range_s, and no more of the file than it takes.
+// A part of a recording: the data within time_range_s, read from no more of the file than necessary.
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/pass/recording_pass.h"
@@ -23,7 +23,8 @@ class TestTimeRange : public QObject {
   Q_OBJECT
 
  private slots:
-  // A file that is cut off far behind the range gives the same as the whole one, and nothing is said of where it ends.
+  // A file that is truncated far beyond the range gives the same result as the complete one, without a
+  // message about its end.
   void behindTheRange_nothingIsRead() {
     QTemporaryDir folder;
     Scenario scenario = readScenario(test::scenarioPath("davis346_10s"));
@@ -44,17 +45,18 @@ class TestTimeRange : public QObject {
       QVERIFY(time_s >= 0.5 && time_s <= 1.5);
     }
     for (const RecordingFault& fault : part.faults)
-      QVERIFY2(fault.text.find("nothing behind it is read") == std::string::npos, fault.text.c_str());
+      QVERIFY2(fault.text.find("nothing after it is read") == std::string::npos, fault.text.c_str());
 
-    // It is where the range goes so far.
+    // It is reported if the range extends that far.
     session.time_range_s = {0.5, 5.0};
     const DetectionResult to_the_end = readAndDetect(session, {});
     QVERIFY(std::ranges::any_of(to_the_end.faults, [](const RecordingFault& fault) {
-      return fault.text.find("nothing behind it is read") != std::string::npos;
+      return fault.text.find("nothing after it is read") != std::string::npos;
     }));
   }
 
-  // A clock that doubles, or counts ms as us, is named with the repair; other durations are no reason.
+  // A clock that counts double, or ms as us, is reported with the repair; other differences of duration are
+  // not a reason.
   void clockRates_areNamed_data() {
     QTest::addColumn<double>("imu_s");
     QTest::addColumn<double>("rate_hz");
@@ -101,7 +103,8 @@ class TestTimeRange : public QObject {
     QVERIFY(!withClockRate(error, cut, seen, std::span(&imu, 1)).repair());
   }
 
-  // The range counts from the session's first event or sample, also where the IMU begins later and is read alone.
+  // The range counts from the session's first event or sample, also if the IMU starts later and is read
+  // alone.
   void rangeOfIMUsAlone_countsFromTheSessionsStart() {
     QTemporaryDir folder;
     const std::filesystem::path path = folder.path().toStdString();

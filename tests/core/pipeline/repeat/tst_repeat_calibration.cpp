@@ -1,4 +1,4 @@
-// Several recordings of one rig: alone, together, and one of another rig among them.
+// Several recordings of one rig: alone, jointly, and with one of another rig among them.
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
 #include "core/geometry/so3.h"
@@ -34,7 +34,7 @@ Scenario briskForRepeatCalibration(std::uint64_t seed, const std::string& name =
   return scenario;
 }
 
-// What becomes of the recordings before they are calibrated.
+// Changes of the recordings before their calibration.
 struct Spoil {
   std::function<void(std::size_t, Scenario&)> rig = {};
   std::function<void(std::size_t, DetectionResult&)> pass = {};
@@ -46,7 +46,7 @@ RepeatRun repeatOf(std::size_t count, const Spoil& spoil = {}, const std::string
   std::vector<DetectionResult> passes;
   for (std::size_t k = 0; k < count; ++k) {
     Scenario scenario = briskForRepeatCalibration(k + 1, name);
-    Session session = simulatePass(2.0, scenario).session;  // what people say of the rig
+    Session session = simulatePass(2.0, scenario).session;  // the user's session of the rig
     if (spoil.rig) spoil.rig(k, scenario);
     SimulatedPass simulated = simulatePass(kRepeatCalibrationDuration_s, scenario);
     if (spoil.pass) spoil.pass(k, simulated.pass);
@@ -95,7 +95,7 @@ class TestRepeatCalibration : public QObject {
       QVERIFY2(std::string(error.what()).find(part) != std::string::npos, error.what());
       return;
     }
-    QFAIL("it was taken");
+    QFAIL("it was accepted");
   }
 
  private slots:
@@ -106,7 +106,8 @@ class TestRepeatCalibration : public QObject {
                    "results computed with different options cannot be combined");
   }
 
-  // Found from each recording, models may differ; then numbers of the same name mean different things.
+  // If the model is selected per recording, models may differ; then parameters of the same name have
+  // different meanings.
   void otherLensModel_isNotCombined() {
     const SimulatedPass simulated = simulatePass(2.0);
     std::vector<Session> sessions;
@@ -140,7 +141,7 @@ class TestRepeatCalibration : public QObject {
       QVERIFY(recording.outcome == RepeatOutcome::Fits);
       QVERIFY(recording.freedom > 20 && recording.chi_square < recording.limit);
     }
-    // Some thirty numbers of three recordings, which hang together.
+    // Some thirty quantities of three recordings, which are correlated.
     QVERIFY2(repeat.rms_ratio > 0.5 && repeat.rms_ratio < 1.6, qPrintable(QString::number(repeat.rms_ratio)));
   }
 
@@ -164,7 +165,7 @@ class TestRepeatCalibration : public QObject {
         for (const double sigma : number.sigmas)
           QVERIFY2(number.joint_sigma < 1.02 * sigma, (quantity.sensor + "." + number.name).c_str());
       }
-      // Three times the data: sigmas are smaller by about the root of three.
+      // Three times the data: sigmas decrease by about the square root of three.
       if (quantity.name == "rotation" || quantity.name == "translation")
         for (const RepeatedNumber& number : quantity.numbers) {
           double mean = 0.0;
@@ -175,12 +176,13 @@ class TestRepeatCalibration : public QObject {
     QVERIFY(common > 20);
   }
 
-  // Not all four: the board's size is told to all of them alike, and known no better for that.
+  // Not all four: the prior on the board's size is common to all, so its sigma does not decrease.
   void priorsCountOnce() {
     for (const RepeatedQuantity& quantity : good_.repeatability.quantities) {
       if (quantity.name != "scale") continue;
       const RepeatedNumber& number = quantity.numbers.front();
-      // Told to 0.2 % (optimisation.board_spacing_sigma): three times that alone would be 0.115 %.
+      // A prior of 0.2 % (optimisation.board_spacing_sigma): divided by the root of three it would be 0.115
+      // %.
       QVERIFY(number.joint_sigma > 0.5 * number.sigmas.front());
       QVERIFY(number.mean_sigma < 0.9 * number.sigmas.front());
     }
@@ -199,7 +201,7 @@ class TestRepeatCalibration : public QObject {
     QVERIFY2(std::abs(differs.change - 1.0) < 0.1, qPrintable(QString::number(differs.change)));
     QVERIFY2(repeat.reason.find("recording2: rotation of left by ") != std::string::npos,
              repeat.reason.c_str());
-    // The solution is that of the other two.
+    // The solution equals that of the other two.
     for (const QuantityDifference& each :
          compareWithTruth(*run.joint, truthOf(briskForRepeatCalibration(3))).quantities)
       QVERIFY2(std::abs(each.normalised()) < 4.0, each.name.c_str());
@@ -209,7 +211,7 @@ class TestRepeatCalibration : public QObject {
     const RepeatRun run =
         repeatOf(2, {[](std::size_t k, Scenario& scenario) { turnCamera(1, 1.0, k, scenario); }, {}});
     QVERIFY(run.repeatability.verdict == Verdict::Changed);
-    QVERIFY2(run.repeatability.reason.find("which of them is right") != std::string::npos,
+    QVERIFY2(run.repeatability.reason.find("which is correct") != std::string::npos,
              run.repeatability.reason.c_str());
     QVERIFY(run.joint->result->status == CalibrationStatus::Doubtful);
   }
@@ -233,19 +235,19 @@ class TestRepeatCalibration : public QObject {
     QVERIFY2(run.repeatability.reason.find("1 of 2") != std::string::npos, run.repeatability.reason.c_str());
   }
 
-  // Under another name: its file cannot tell.
+  // With another name: its file does not identify it.
   void copyOfARecording_saysNothingNew() {
     const RepeatRun run = repeatOf(3, {[](std::size_t k, Scenario& scenario) {
                                          if (k == 2) scenario = briskForRepeatCalibration(1);
                                        },
                                        {}});
     QVERIFY(run.repeatability.recordings[2].outcome == RepeatOutcome::Failed);
-    QVERIFY(run.repeatability.recordings[2].reason.find("same recording as recording1") != std::string::npos);
+    QVERIFY(run.repeatability.recordings[2].reason.find("duplicates recording1") != std::string::npos);
   }
 
   void camerasAlone_andOneOfThemTurned() {
     const RepeatRun good = repeatOf(3, {}, "stereo");
-    // Event cameras among themselves have no delay of pixels in their sigmas that could be taken out.
+    // A rig of event cameras only has no pixel delay in its sigmas that could be removed.
     int offsets = 0;
     for (const RepeatedQuantity& quantity : good.repeatability.quantities)
       for (const RepeatedNumber& number : quantity.numbers) {
@@ -327,9 +329,9 @@ class TestRepeatCalibration : public QObject {
     QFile report(QString::fromStdString((path / "report.html").string()));
     QVERIFY(report.open(QIODevice::ReadOnly));
     const QString page = QString::fromUtf8(report.readAll());
-    QVERIFY(page.contains("Does the calibration come out the same from 3 recordings?"));
+    QVERIFY(page.contains("Do 3 recordings give the same calibration?"));
     QVERIFY(page.contains("<svg") && page.contains("plots/quantity1.csv"));
-    checkRepeatFolder(path);  // its own result is in nobody's way
+    checkRepeatFolder(path);  // its own earlier result is not an obstacle
     std::filesystem::remove(path / "repeat.yaml");
     QVERIFY_EXCEPTION_THROWN(checkRepeatFolder(path), CalibrationError);
   }

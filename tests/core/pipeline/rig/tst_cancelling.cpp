@@ -1,5 +1,5 @@
-// A calibration that is asked to stop does so soon, whatever it is doing. Latencies are measured in the
-// process's own computing time, which other programs on the machine do not change.
+// A calibration stops soon after a request, in any stage. Latencies are measured in the process's own
+// computing time, which other programs on the machine do not change.
 #include "core/base/progress.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -50,7 +50,7 @@ struct Stop {
   std::string stage;
 };
 
-// Asks to stop when the work has computed for `after_s`.
+// Requests a stop after `after_s` of computing time.
 Stop stopAfter(const Work& work, double after_s) {
   Stop result;
   StageRecorder recorder;
@@ -75,7 +75,7 @@ Stop stopAfter(const Work& work, double after_s) {
   return result;
 }
 
-// The shortest of a few runs: the first is slower, and so is one beside other programs.
+// The minimum of a few runs: the first is slower, and so are runs concurrent with other programs.
 double wholeTime_s(const Work& work) {
   double shortest_s = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 3; ++run) {
@@ -93,7 +93,7 @@ QStringList stopEverywhere(const Work& work) {
   QStringList stages;
   for (const double part : {0.01, 0.04, 0.1, 0.25, 0.4, 0.6, 0.75, 0.85, 0.92, 0.97}) {
     Stop stop = stopAfter(work, part * whole_s);
-    if (!stop.cancelled) {  // it was done before: other programs that slowed the measured runs have ended
+    if (!stop.cancelled) {  // it was finished before: other programs, which slowed the measured runs, have ended
       whole_s = std::min(whole_s, wholeTime_s(work));
       stop = stopAfter(work, part * whole_s);
     }
@@ -130,7 +130,7 @@ class TestCancelling : public QObject {
     QVERIFY(stages.size() >= 8);
   }
 
-  // Where rotation about one axis makes initialisation search for the turn about it.
+  // Rotation about one axis makes initialisation search for the angle about it.
   void initialising_stopsSoon() {
     Scenario scenario = readScenario(test::scenarioPath("one_axis_rotation"));
     scenario.duration_s = 10.0;

@@ -1,5 +1,5 @@
-// Recordings whose motion leaves something open: the result must say so, name it, and claim
-// no more than it knows.
+// Recordings whose motion leaves a quantity undetermined: the result must report and name it, and must not
+// overstate its accuracy.
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/truth_comparison.h"

@@ -1,6 +1,5 @@
-// Calibrations as the desktop program runs them - in a thread of their own, watched through mailboxes,
-// stopped by a token - but without Qt, so that the thread sanitizer understands every lock. Ends with 0 if
-// all is well.
+// Calibrations as in the desktop program - in a separate thread, observed through mailboxes, stopped by a
+// token - but without Qt, so that the thread sanitizer sees every lock. Exit code 0 on success.
 #include "core/base/error.h"
 #include "core/data/calibration_observer.h"
 #include "core/frontend/board_tracker.h"
@@ -29,8 +28,7 @@ namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(5);
 
-// Everything that core says while it works, the newest of each kind; written by its
-// threads, read by the main.
+// The latest observation of each kind during a run; written by core's threads, read by the main thread.
 class Mailbox : public ProgressSink, public CalibrationObserver {
  public:
   struct Contents {
@@ -85,7 +83,7 @@ class Mailbox : public ProgressSink, public CalibrationObserver {
   Contents contents_;
 };
 
-// Reads the tracker in the front end's thread, as the live view does.
+// Reads the tracker in the front end's thread, like the live view.
 class Watcher final : public FrontEndObserver {
  public:
   Watcher(Mailbox& box, const BoardTracker& tracker) : box_(box), tracker_(tracker) {}
@@ -103,7 +101,7 @@ class Watcher final : public FrontEndObserver {
   std::vector<WindowReport> reports_;
 };
 
-// What a run's observer gives to each camera's front end lives as long as the run.
+// A run's observer gives each camera's front end an object that lives as long as the run.
 class WatchedMailbox final : public Mailbox {
  public:
   FrontEndObserver* windowObserver(std::size_t, const BoardTracker& tracker) override {
@@ -120,7 +118,7 @@ struct Ending {
   double after_stop_s = 0.0;
 };
 
-// Looks into the mailbox until the job has ended; stops it as soon as `enough` of what it saw.
+// Polls the mailbox until the job has ended; stops it as soon as `enough` is true for an observation.
 Ending runJob(const Session& session, const std::function<bool(const Mailbox::Contents&)>& enough,
               WatchedMailbox& box) {
   Ending ending;
@@ -186,7 +184,7 @@ void fail(Session session) {
   const Ending ending = runJob(
       session, [](const auto&) { return false; }, box);
   check(ending.outcome.status == RunStatus::Failed && ending.outcome.error && !ending.outcome.run,
-        "a failure half-way arrives as one");
+        "a failure during the run is reported as a failure");
   check(!ending.outcome.pass.cameras.at(0).views.empty(), "with what was detected before it");
 }
 

@@ -1,5 +1,5 @@
-// Files that parse but lie: whatever times and values say, the whole way from file to verdict ends in a result or in
-// words, soon and in bounded memory. The fuzz target `calibrate` looks further.
+// Valid files with false contents: for any times and values, the whole pipeline ends in a result or an error
+// message, soon and in bounded memory. The fuzz target `calibrate` covers more of them.
 #include "core/base/error.h"
 #include "core/base/process_memory.h"
 #include "core/pipeline/rig/calibration_pipeline.h"

@@ -1,4 +1,5 @@
-// Recordings that parse but lie: whatever times and values say, a calibration ends in a result or in words.
+// Valid recordings with false contents: for any times and values, a calibration ends in a result or an error
+// message.
 #include "core/base/error.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -15,7 +16,7 @@ namespace {
 
 using namespace evical;
 
-// Two or three lies, of any size.
+// Two or three disturbances of any size.
 class Liar {
  public:
   explicit Liar(unsigned seed) : random_(seed) {}
@@ -63,7 +64,7 @@ class Liar {
       case 3:
         for (std::size_t i = begin; i < end; ++i)
           samples[i].specific_force_m_s2 = samples[begin].specific_force_m_s2;
-        return "forces held";
+        return "constant forces";
       case 4:
         for (std::size_t i = begin; i < samples.size(); ++i)
           samples[i].time_ns += static_cast<std::int64_t>(1e9 * std::clamp(by, -100.0, 100.0));
@@ -127,7 +128,7 @@ void TestLyingRecordings::everything_endsInAResultOrInWords() {
     }
     QVERIFY2(timer.elapsed() < kPatience_ms, qPrintable(QString("%1: %2 ms").arg(told).arg(timer.elapsed())));
   }
-  QVERIFY2(results > 3, qPrintable(QString::number(results)));  // else nothing went far
+  QVERIFY2(results > 3, qPrintable(QString::number(results)));  // otherwise no run got far
 }
 
 }  // namespace

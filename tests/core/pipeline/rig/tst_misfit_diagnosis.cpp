@@ -1,5 +1,5 @@
-// One thing at a time that is not as the session says: the result is not wrong and called ok, and the first reason
-// names what was spoilt. Circles are those of a perfect front end, so that a case takes a second or two.
+// One deviation from the session at a time: the result is not called ok if it is wrong, and the first reason
+// names the deviation. Circles are those of an ideal front end, so that a case takes a second or two.
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/rig/residual_consistency.h"
@@ -23,14 +23,14 @@ class TestCauses : public QObject {
   void initTestCase() {
     base_.scenario = readScenario(test::scenarioPath("davis346_10s"));
     base_.session = test::sessionFor(base_.scenario);
-    base_.session.options.report.edit().split_half_check = false;  // half of the time, and no part of this
+    base_.session.options.report.edit().split_half_check = false;  // half of the time, and not tested here
     base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);
   }
 
   void firstReason_namesTheCause_data() {
     QTest::addColumn<QString>("name");
     QTest::addColumn<double>("size");
-    QTest::addColumn<bool>("fails");  // else it is doubtful
+    QTest::addColumn<bool>("fails");  // otherwise it is doubtful
     const auto row = [](const char* name, double size, bool fails) {
       QTest::addRow("%s %g", name, size) << QString(name) << size << fails;
     };
@@ -80,7 +80,8 @@ class TestCauses : public QObject {
     QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
   }
 
-  // Seed 3 turns more about one axis than about the others, and a mirrored gyroscope leaves a third unexplained.
+  // Seed 3 rotates more about one axis than about the others, and a mirrored gyroscope leaves a third
+  // unexplained.
   void leftHandedAxes_areNamedWhereOneAxisOutweighs() {
     test::Recorded other = base_;
     other.scenario.seed = 3;
@@ -98,7 +99,7 @@ class TestCauses : public QObject {
     }
   }
 
-  // The first look at the board takes accelerations for those of their stamps: in seed 5 it seems 3 % smaller.
+  // The initial board scale uses accelerations at their stamps: in seed 5 the board seems 3 % smaller.
   void lateAccelerometer_isNoWrongBoard() {
     test::Recorded recorded = base_;
     recorded.scenario.seed = 5;
@@ -109,7 +110,7 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
-  // What is an unknown with a sigma is found instead of complained about.
+  // Deviations that are estimated with a sigma are corrected instead of reported.
   void whatIsAnUnknown_isRepaired_data() {
     QTest::addColumn<QString>("name");
     QTest::addColumn<double>("size");
@@ -140,7 +141,7 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
-  // What comes with a reason as data is set, and is right.
+  // A repair that is given as data is applied, and is correct.
   void repair_mendsIt_data() {
     QTest::addColumn<QString>("name");
     QTest::addColumn<double>("size");
@@ -167,7 +168,7 @@ class TestCauses : public QObject {
     QTEST(QString::fromStdString(repair->text()), "repair");
     setInSession(recorded.session, repair->key, repair->value);
     const SessionImu& imu = recorded.session.imus[0];
-    for (ImuSample& sample : recorded.pass.imus[0].samples) {  // which were read as the session had it before
+    for (ImuSample& sample : recorded.pass.imus[0].samples) {  // which were converted by the session before
       sample.angular_rate_rad_s =
           readAs(imu.gyroscope_axes, sample.angular_rate_rad_s) *
           radiansPerSecond(imu.angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond));
@@ -180,7 +181,7 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
-  // Clocks that are seconds apart are found, and all the rest is as ever.
+  // Clock offsets of several seconds are found, and everything else is unchanged.
   void timeOffsetBeyondTheSearch_isFound() {
     test::Recorded recorded = base_;
     test::perturbation("time offset").apply(recorded, 5.0);
@@ -189,7 +190,7 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
-  // The part that the repair keeps is ok or too short to be, and right.
+  // The part that the repair keeps is ok or too short to be ok, and correct.
   void cameraThatMoved_isRightInTheLargerPart() {
     test::Recorded recorded = base_;
     test::perturbation("camera moved").apply(recorded, 1.0);
@@ -204,7 +205,7 @@ class TestCauses : public QObject {
     expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
   }
 
-  // A hundred times as fast as what they are taken for: what is left is told by the sigmas.
+  // A hundred times as fast as assumed: the sigmas account for the rest.
   void walkingBiases_areRepaired() {
     test::Recorded recorded = base_;
     test::perturbation("walking biases").apply(recorded, 1e-3);
@@ -218,14 +219,14 @@ class TestCauses : public QObject {
     QVERIFY2(sigmas < 2.5, qPrintable(QString::number(sigmas)));
   }
 
-  // Of a clock that steps the larger part is used, and is right.
+  // If a clock steps, the larger part is used, and the result is correct.
   void clockThatSteps_isRightInTheLargerPart() {
     test::Recorded recorded = base_;
     test::perturbation("clock step").apply(recorded, 50.0);
     expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
   }
 
-  // Of a board that is taken for flat, by the score test and, of the larger misfit, by a trial.
+  // A bow of a board that is assumed flat is found by the score test and, for the larger bow, by a trial.
   void bentBoardTakenForFlat_isTheFirstReason() {
     for (const double height_mm : {0.5, 2.0}) {
       test::Recorded recorded = base_;

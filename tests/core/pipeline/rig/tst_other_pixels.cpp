@@ -1,5 +1,5 @@
-// Recordings from other people's pixel models, in the folder that EVICAL_DATA names: the same scene, motion and IMU, seen by fast
-// pixels and by slow ones. Their manifest tells the delays of their pixels, each measured in two ways.
+// Recordings from other simulators of pixels, in the folder EVICAL_DATA: the same scene, motion and IMU, seen
+// by fast and by slow pixels. Their manifest lists the delays of the pixels, each measured in two ways.
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/rig/calibration_pipeline.h"

@@ -1,5 +1,5 @@
-// Real cameras and a real IMU, through points that other programs have measured: in the folder that EVICAL_DATA names. Its
-// manifest tells what is known of each.
+// Real cameras and a real IMU, through points measured by other programs, in the folder EVICAL_DATA. Its
+// manifest lists the known values of each.
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
@@ -52,7 +52,7 @@ class TestRealPoints : public QObject {
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   }
 
-  // The same points by their places alone.
+  // The same points, identified by position only.
   void givenPoints_areAsTheGridThatTheyAre() {
     const QTemporaryDir work;
     Session session = test::eurocImuApril(folder_, QDir(work.path()));
@@ -67,7 +67,8 @@ class TestRealPoints : public QObject {
     QVERIFY(grid.result.status == points.result.status);
   }
 
-  // Both cameras' clocks are stamped at other moments of a message than their authors took: 42 ms less half of 12 ms.
+  // Both cameras' clocks are stamped at other times of a message than their authors assumed: 42 ms minus half
+  // of 12 ms.
   void hybridRigWithoutImu_isAsPublished() {
     const QTemporaryDir work;
     const CalibrationRun run = calibrate(test::efcalib(folder_, QDir(work.path())), RunContext{});

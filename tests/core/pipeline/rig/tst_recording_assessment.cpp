@@ -1,5 +1,5 @@
-// What is said of a recording before it is calibrated: lights and advice that fit it, and sigmas that the calibration
-// bears out.
+// Assessment of a recording before its calibration: lights and advice that match it, and sigmas that the
+// calibration confirms.
 #include "core/pipeline/rig/recording_assessment.h"
 
 #include "core/base/error.h"
@@ -55,10 +55,10 @@ QString adviceOf(const RecordingAssessment& assessment, AssessedThing thing) {
   return found == nullptr ? QString() : QString::fromStdString(found->advice);
 }
 
-// Circles as a perfect front end sees them.
+// Circles of an ideal front end.
 RecordingAssessment assess(const QString& name, double duration_s) {
   SimulatedPass simulated = simulatePass(duration_s, scenario(name, duration_s));
-  // It lists each window twice, one list behind the other.
+  // It lists each window twice, in two consecutive lists.
   for (BoardObservations& camera : simulated.pass.cameras) {
     const auto later = [](const WindowReport& one, const WindowReport& next) {
       return next.time_s < one.time_s;
@@ -159,7 +159,7 @@ class TestRecordingAssessment : public QObject {
     QVERIFY(!assessment.board_seen && !assessment.can_be_calibrated);
     QVERIFY(assessment.sigmas.empty() && find(assessment, AssessedThing::Obstacle) == nullptr);
     QCOMPARE(assessment.light, Light::Poor);
-    // Motion is said all the same.
+    // The motion is reported nevertheless.
     QVERIFY(find(assessment, AssessedThing::Turns) != nullptr);
   }
 
@@ -168,7 +168,7 @@ class TestRecordingAssessment : public QObject {
     for (ImuSample& sample : simulated.pass.imus.front().samples) sample.specific_force_m_s2 /= 9.81;
     const RecordingAssessment assessment = assessRecording(simulated.session, {simulated.pass, {}}, {});
     const Assessed* const obstacle = find(assessment, AssessedThing::Obstacle);
-    QVERIFY2(obstacle != nullptr && obstacle->measured.find("look like g") != std::string::npos,
+    QVERIFY2(obstacle != nullptr && obstacle->measured.find("seems to be g") != std::string::npos,
              qPrintable(textOf(assessment)));
     QVERIFY(!assessment.can_be_calibrated);
   }

@@ -28,7 +28,7 @@ NamedResult truthOf(const Scenario& scenario, const std::filesystem::path& folde
   return readResultYaml(file);
 }
 
-// Of quantities that the recording tells; `of`: a part of their names.
+// Quantities that the recording determines; `of`: part of their names.
 double worstNormalised(const TruthComparison& comparison, const std::string& of) {
   double worst = -1.0;
   for (const QuantityDifference& each : comparison.quantities)
@@ -107,7 +107,7 @@ class TestSeveralBoards : public QObject {
     keepViews(0.0, 0.45 * kSeveralBoardsDuration_s, apart.pass.cameras[0]);
     keepViews(0.55 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, apart.pass.cameras[1]);
     const QString said = failureOfSeveralBoards(apart);
-    QVERIFY2(said.contains("tags: fewer than") && said.contains("nobody knows where one stands"),
+    QVERIFY2(said.contains("tags: fewer than") && said.contains("their relative pose is unknown"),
              qPrintable(said));
   }
 
@@ -121,7 +121,7 @@ class TestSeveralBoards : public QObject {
     std::vector<BoardView>& views = moved.pass.cameras[1].views;
     views.insert(views.end(), other.pass.cameras[1].views.begin(), other.pass.cameras[1].views.end());
     const QString said = failureOfSeveralBoards(moved);
-    QVERIFY2(said.contains("of its views agree on where it stands"), qPrintable(said));
+    QVERIFY2(said.contains("of its views agree on its pose relative to"), qPrintable(said));
   }
 
   void detectionsOfAnotherBoard_areRefused() {
@@ -133,10 +133,10 @@ class TestSeveralBoards : public QObject {
     other.further_boards[0].board.cols += 1;
     try {
       restoreDetections(saved, other, {});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       const QString said = error.what();
-      QVERIFY2(said.contains("cameras.frames.board.cols") && said.contains("a board whose columns are"),
+      QVERIFY2(said.contains("cameras.frames.board.cols") && said.contains("a board with columns:"),
                qPrintable(said));
     }
   }

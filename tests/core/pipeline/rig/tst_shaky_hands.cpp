@@ -1,4 +1,4 @@
-// Hands that shake: splines follow, and sigmas hold the errors.
+// Shaky hands: splines follow the motion, and errors agree with the sigmas.
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/report_options.h"
@@ -24,7 +24,7 @@ class TestShakyHands : public QObject {
     QTest::addColumn<double>("rate_hz");
     QTest::addColumn<double>("largest_scale");
     for (const int seed : {1, 2, 3}) QTest::addRow("seed %d", seed) << seed << 1000.0 << 1.3;
-    // Knots cannot be so close: what splines miss is in the weights.
+    // The knot spacing cannot be so small: the weights account for the splines' error.
     for (const int seed : {1, 2, 3}) QTest::addRow("200 Hz, seed %d", seed) << seed << 200.0 << 20.0;
   }
   void shakyHands_haveHonestSigmas() {

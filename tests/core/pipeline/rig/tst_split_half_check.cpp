@@ -45,7 +45,7 @@ class TestSplitHalfCheck : public QObject {
     const std::array halves = {halfOf(all, run_.result.state, 1.0, 0),
                                halfOf(all, run_.result.state, 1.0, 1)};
     const std::size_t samples = all.imus[0].samples.size();
-    // But for those at a border whose force belongs to one half and whose rate to the other.
+    // Except samples at a border, whose specific force belongs to one half and whose rate to the other.
     const std::size_t taken = halves[0].imus[0].samples.size() + halves[1].imus[0].samples.size();
     QVERIFY2(taken <= samples && 1000 * taken > 998 * samples, qPrintable(QString::number(taken)));
     const auto timesOf = [&](const CalibrationInput& half) {
@@ -112,7 +112,7 @@ class TestSplitHalfCheck : public QObject {
              qPrintable(QString::number(validation.rms_sigmas)));
   }
 
-  // Both halves hold what is given; it differs by nothing, and says nothing of the sigmas.
+  // Given quantities are the same in both halves; their difference is zero and says nothing about the sigmas.
   void givenValues_areHeldInBothHalves() {
     Session session = simulated_.session;
     const CameraState& found = run_.result.state.cameras[0];
@@ -151,8 +151,8 @@ class TestSplitHalfCheck : public QObject {
   }
 
   void cameraThatSlipped_isSeen() {
-    // From the third block on, every other block, the camera sees the board 1 px aside: no single pose fits both,
-    // or no single lens.
+    // In every second block from the third on, the camera sees the board with an offset of 1 px: no single
+    // pose fits both halves, nor a single lens.
     const CalibrationInput all = input();
     CalibrationInput slipped = all;
     const double block_s = run_.result.split_half_check->block_s;
@@ -189,7 +189,7 @@ class TestSplitHalfCheck : public QObject {
     std::erase_if(views, [&](const BoardView& view) { return view.time_s > start_s + 0.8 * block_s; });
     const SplitHalfCheck validation =
         checkHalves(half, run_.result.state, *simulated_.session.options.optimisation, block_s, {});
-    QVERIFY(QString::fromStdString(validation.failure).contains("does not show the board"));
+    QVERIFY(QString::fromStdString(validation.failure).contains("is not visible in one half"));
     QVERIFY(validation.quantities.empty());
   }
 };

@@ -1,4 +1,4 @@
-// IMU samples that lie cost no accuracy, and are named.
+// Implausible IMU samples do not reduce the accuracy, and are reported.
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/report_options.h"
@@ -59,14 +59,14 @@ namespace {
 void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed_data() {
   QTest::addColumn<Spoil>("spoil");
   QTest::addColumn<QString>("note");
-  const QString neighbours = "contradict those beside them";
+  const QString neighbours = "contradict their neighbours";
   QTest::newRow("one spike") << spikes(1) << "1 of \\d+ samples of the gyroscope " + neighbours;
   QTest::newRow("three spikes") << spikes(3) << "3 of \\d+ samples of the accelerometer " + neighbours;
   QTest::newRow("fifty spikes") << spikes(50) << "\\d\\d of \\d+ samples of the accelerometer " + neighbours;
   QTest::newRow("one of the accelerometer")
       << Spoil([](Samples& samples) { samples[samples.size() / 2].specific_force_m_s2.x() += 40.0; })
       << "1 of \\d+ samples of the accelerometer " + neighbours + " \\(at 5\\.\\d+ s\\)";
-  // So small among the motion, and so long, that only the batch can tell.
+  // A disturbance so small and so long that only the batch can detect it.
   QTest::newRow("a step of six samples") << Spoil([](Samples& samples) {
     for (std::size_t k = 0; k < 6; ++k) {
       const double ramp = std::sin((static_cast<double>(k) + 1.0) / 7.0 * 3.14159);
@@ -76,10 +76,10 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed_data() {
   QTest::newRow("accelerometer at its limit")
       << Spoil([](Samples& samples) { clip(samples, &ImuSample::specific_force_m_s2, 11.0); })
       << "specific force . is at its limit of 11 ";
-  QTest::newRow("accelerometer held by the driver") << Spoil([](Samples& samples) {
+  QTest::newRow("accelerometer values repeated by the driver") << Spoil([](Samples& samples) {
     for (std::size_t k = 0; k < samples.size(); ++k)
       samples[k].specific_force_m_s2 = samples[k - k % 4].specific_force_m_s2;
-  }) << "The accelerometer measures at .* and its samples are repeated";
+  }) << "The accelerometer measures at .* but its samples are repeated";
   QTest::newRow("gyroscope at its limit") << Spoil([](Samples& samples) {
     clip(samples, &ImuSample::angular_rate_rad_s, 0.8 * peakOf(samples, &ImuSample::angular_rate_rad_s));
   }) << "angular rate . is at its limit of ";

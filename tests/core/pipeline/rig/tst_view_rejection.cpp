@@ -41,7 +41,7 @@ class TestViewRejection : public QObject {
     const DetectionResult without = withoutViews(simulated_.pass, 0, std::vector{5, 2, 9});
     QCOMPARE(rejectedTimes_s(without)[0],
              (std::vector{before[2].time_s, before[5].time_s, before[9].time_s}));
-    // One of them back, and another one left out.
+    // One of them is included again, and another one excluded.
     const DetectionResult changed =
         withRejected(without, {{before[2].time_s, before[3].time_s, before[9].time_s}});
     QCOMPARE(rejectedTimes_s(changed)[0],
@@ -56,8 +56,8 @@ class TestViewRejection : public QObject {
   }
 
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
-    // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier
-    // test to drop the window.
+    // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier test to drop
+    // the window.
     DetectionResult spoilt = simulated_.pass;
     std::vector<int> bad;
     for (int view = 20; view < 60; view += 2) {

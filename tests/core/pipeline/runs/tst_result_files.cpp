@@ -24,7 +24,7 @@ QString readFileForResultFiles(const QString& path) {
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
 }
 
-// Well formed, and without words that are no numbers; returns the text between the tags.
+// Well formed, and without NaN or infinity as text; returns the text between the tags.
 QString checkedText(const QString& page) {
   QXmlStreamReader reader(page);
   QString text;
@@ -126,7 +126,7 @@ class TestResultFiles : public QObject {
   }
 
   void csvFiles_areWhatIsPlotted() {
-    // As many dots as lines, and the first dot where the first line puts it.
+    // There are as many dots as lines, and the first dot at the position of the first line.
     const QStringList lines =
         readFileForResultFiles(folder_.filePath("plots/camera1_centres.csv")).trimmed().split('\n');
     const auto begin = page_.indexOf("aria-label=\"circle centres over the image\"");
@@ -222,7 +222,7 @@ class TestResultFiles : public QObject {
 
   void calibratedIntrinsics_haveTheirSection() {
     QVERIFY(!page_.contains("<section id=\"intrinsics\">") &&
-            text_.contains("Intrinsics as solved with everything else"));
+            text_.contains("Intrinsics refined in the joint optimisation"));
     CalibrationRun run = run_;
     IntrinsicsResult& found = run.intrinsics.emplace_back().emplace();
     found.intrinsics = *simulated_.session.cameras[0].intrinsics;
@@ -241,7 +241,7 @@ class TestResultFiles : public QObject {
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString page = readFileForResultFiles(folder.filePath("report.html")), text = checkedText(page);
     QVERIFY2(page.contains("<section id=\"intrinsics\">"), qPrintable(text.left(400)));
-    for (const char* said : {"Intrinsics as calibrated first", "no views reach the <left> side",
+    for (const char* said : {"Intrinsics calibrated first", "no views reach the <left> side",
                              "No views in the left edge", "1234"})
       QVERIFY2(text.contains(said), said);
     QVERIFY(page.contains("correlation of the intrinsics"));
@@ -261,7 +261,7 @@ class TestResultFiles : public QObject {
     QVERIFY2(text.contains("--set 'imus.imu.acceleration_unit=<g> 1'"), qPrintable(text.left(600)));
   }
 
-  // Data sets' layouts have places of their own for either.
+  // Layouts of data sets store each of them in a separate place.
   void frameCamera_isNamedAsOne() {
     QVERIFY(!readFileForResultFiles(path("result.yaml")).contains("kind:"));
     CalibrationRun run = run_;
@@ -298,7 +298,7 @@ class TestResultFiles : public QObject {
   }
 
   void advice_isGivenOnlyWhereTheDataSaySo() {
-    QVERIFY(!text_.contains("without losses"));
+    QVERIFY(!text_.contains("Avoid data loss"));
     CalibrationRun run = run_;
     run.pass.faults.push_back({"imu", FaultKind::Gap, 1.0, "gap of 0.3 s at 1.0 s"});
     for (ImuSample& sample : run.pass.imus[0].samples) sample.angular_rate_rad_s.z() *= 0.01;
@@ -307,7 +307,7 @@ class TestResultFiles : public QObject {
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
-    for (const char* said : {"gap of 0.3 s", "without losses", "Turn about the z axis", "top right"})
+    for (const char* said : {"gap of 0.3 s", "Avoid data loss", "Turn about the z axis", "top right"})
       QVERIFY2(text.contains(said), said);
   }
 };

@@ -1,5 +1,5 @@
-// A run that was written opens again with all that was in it; a folder that is damaged or of an older version shows
-// what it has, and says what it lacks.
+// A saved run opens again completely; a folder that is damaged or of an older version shows its available
+// data and lists what is missing.
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/frontend/front_end_options.h"
@@ -73,7 +73,7 @@ class TestSavedRun : public QObject {
     const SavedRun saved = readSavedRun(result());
     QVERIFY2(saved.missing.empty(), qPrintable(missingIn(saved)));
     QVERIFY(runData(*saved.run) == runData(*run_));
-    QCOMPARE(static_cast<int>(saved.run->pass.rejected_views.at(0).size()), kRejected);  // to be taken back
+    QCOMPARE(static_cast<int>(saved.run->pass.rejected_views.at(0).size()), kRejected);  // can be undone
     const CalibrationResult& result = saved.run->result;
     QVERIFY(result.circle_residuals.size() > 1000);
     QVERIFY(result.iterations.size() > 3 && !result.state.imu_in_world_m.control_points.empty());
@@ -85,7 +85,7 @@ class TestSavedRun : public QObject {
     QCOMPARE(resultYaml(after), resultYaml(before));
   }
 
-  // What a struct of today has and that of an older version had not.
+  // A field of today's struct that an older version did not have.
   void runWithoutAField_hasTheOthers_data() {
     QTest::addColumn<QString>("field");
     QTest::newRow("number") << "result/memory_peak_mb";
@@ -137,7 +137,7 @@ class TestSavedRun : public QObject {
     QVERIFY(read.pass.imus[0].samples.back().time_ns == kLatestTime_ns);
   }
 
-  // Whatever byte it is: parts are as they were, or missing.
+  // For any changed byte, each part is unchanged or missing.
   void damagedData_isNeverMisread() {
     const std::string content = runData(*run_);
     std::set<std::string> parts;
@@ -168,7 +168,7 @@ class TestSavedRun : public QObject {
     QVERIFY(runData(*readSavedRun(result() / "result.yaml").run) == runData(*run_));
   }
 
-  // The log of a run says the same; it is the caller's.
+  // The log of a run has the same content; it is the caller's.
   void rejectedWindows_areCountedAndNamedAlike() {
     const CameraFit& fit = run_->result.cameras[0];
     QCOMPARE(fit.windows_rejected, kRejected);
@@ -196,11 +196,12 @@ class TestSavedRun : public QObject {
       QCOMPARE(window.time_s, times[k].toDouble());
     }
     const auto says = [](const std::string& note) {
-      return QString::fromStdString(note).contains("a person rejected 5 windows with the board, at");
+      return QString::fromStdString(note).contains("5 windows with the board rejected by hand, at");
     };
     QVERIFY(std::any_of(read.result->notes.begin(), read.result->notes.end(), says));
     const QByteArray report = evical::test::fileContent(result() / "report.html");
-    QVERIFY(report.contains("rejected by hand") && report.contains("a person rejected 5 windows"));
+    QVERIFY(report.contains("rejected by hand") &&
+            report.contains("5 windows with the board rejected by hand"));
   }
 
   void durations_areOfThisRun() {
@@ -219,8 +220,8 @@ class TestSavedRun : public QObject {
     QTest::addColumn<bool>("has_trajectory");
     QTest::addColumn<bool>("has_samples");
     QTest::newRow("flipped early") << 10 << false << "trajectory, convergence and residuals" << false << true;
-    QTest::newRow("flipped late") << 95 << false << "what was found of the board" << true << false;
-    QTest::newRow("cut off") << 90 << true << "what was found of the board" << true << false;
+    QTest::newRow("flipped late") << 95 << false << "detections of the board" << true << false;
+    QTest::newRow("cut off") << 90 << true << "detections of the board" << true << false;
     QTest::newRow("empty") << 0 << true << "run.data is not there" << false << false;
   }
 
@@ -248,7 +249,7 @@ class TestSavedRun : public QObject {
                             run_->result.state.cameras[0].reference_from_camera.translation_m)
                                .norm();
     QVERIFY(moved_m < 1e-9);
-    // Views come from the tables where the data lacks them.
+    // Views are read from the tables if the data lacks them.
     QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());
     QCOMPARE(saved.run->pass.cameras[0].windows.size(), run_->pass.cameras[0].windows.size());
     for (const CircleResidual& r : result.circle_residuals)
@@ -287,9 +288,9 @@ class TestSavedRun : public QObject {
     writeForSavedRun(folder / "run_session.yaml", QByteArray::fromStdString(sessionYaml(other, folder)));
     try {
       readSavedRun(folder);
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
-      QVERIFY2(QString(error.what()).contains("another run"), error.what());
+      QVERIFY2(QString(error.what()).contains("not the session of the result"), error.what());
     }
   }
 

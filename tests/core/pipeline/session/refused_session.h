@@ -1,4 +1,4 @@
-// What is said of a session file with a mistake in it.
+// Error messages for a session file with a mistake in it.
 #pragma once
 
 #include "core/base/error.h"
@@ -8,7 +8,7 @@
 
 namespace evical::test {
 
-// A mistake of the user's, in session.yaml, with all these words.
+// A user's mistake in session.yaml, and the texts that the message must contain.
 inline void verifyRefusal(const CalibrationError& error, const QStringList& said) {
   QVERIFY(error.kind() == ErrorKind::BadInput);
   QVERIFY2(QString(error.what()).contains("session.yaml"), error.what());

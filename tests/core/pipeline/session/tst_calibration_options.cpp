@@ -102,7 +102,7 @@ class TestCalibrationOptions : public QObject {
 
   void tuning_isSetByItsPrefixOnly() {
     CalibrationOptions options;
-    setOption(options, "tuning.optimisation.max_rounds", "3");  // a middle part left out
+    setOption(options, "tuning.optimisation.max_rounds", "3");  // without the middle part
     QCOMPARE(options.optimisation->max_rounds, 3);
     QCOMPARE(differingOptions(options)[0].name, std::string("tuning.optimisation.solver.max_rounds"));
     for (const auto& [name, other] : {std::pair("grid.least_sine", "tuning.grid.least_sine"),

@@ -1,4 +1,4 @@
-// Boards of type points: any target whose points another program finds.
+// Boards of type points: any target whose points are detected by another program.
 #include "core/pipeline/session/given_points.h"
 
 #include "core/base/error.h"
@@ -18,7 +18,7 @@ namespace {
 
 using namespace evical;
 
-// Where no grid of ours has points; its first one is not at the origin.
+// Points that none of our grids has; the first one is not at the origin.
 std::vector<Eigen::Vector2d> scattered_m() {
   std::vector<Eigen::Vector2d> points_m;
   for (int i = 0; i < 40; ++i)
@@ -41,7 +41,7 @@ QString asTable(const std::vector<Eigen::Vector2d>& points_m) {
   return text;
 }
 
-// The points through a camera of 400 px that looks at them from all sides.
+// The points through a camera of 400 px, seen from all sides.
 QString asSeen(const std::vector<Eigen::Vector2d>& points_m) {
   QString text = "time_s,point,x_px,y_px\n";
   for (int view = 0; view < 60; ++view) {
@@ -96,18 +96,18 @@ class TestGivenPoints : public QObject {
     QTest::addColumn<QString>("text");
     QTest::addColumn<QStringList>("said");
     QTest::newRow("gap") << "0,0,0\n2,1,0\n3,1,1\n" << QStringList{"board.csv", "point 1 is missing"};
-    QTest::newRow("twice") << "0,0,0\n0,1,0\n" << QStringList{"line 2", "second time"};
-    QTest::newRow("no number") << "0,0,0\n1,one,0\n" << QStringList{"line 2", "is no point"};
-    QTest::newRow("too few columns") << "0,0,0\n1,1\n" << QStringList{"line 2", "is no point"};
+    QTest::newRow("twice") << "0,0,0\n0,1,0\n" << QStringList{"line 2", "listed twice"};
+    QTest::newRow("no number") << "0,0,0\n1,one,0\n" << QStringList{"line 2", "is not a point"};
+    QTest::newRow("too few columns") << "0,0,0\n1,1\n" << QStringList{"line 2", "is not a point"};
     QTest::newRow("no column") << "point,x,y\n0,0,0\n" << QStringList{"line 1", "has no column x_m"};
-    QTest::newRow("negative") << "-1,0,0\n" << QStringList{"line 1", "no index"};
-    QTest::newRow("huge") << "1e9,0,0\n" << QStringList{"line 1", "no index"};
+    QTest::newRow("negative") << "-1,0,0\n" << QStringList{"line 1", "not a valid point index"};
+    QTest::newRow("huge") << "1e9,0,0\n" << QStringList{"line 1", "not a valid point index"};
     QTest::newRow("not flat") << "0,0,0,0\n1,1,0,0.1\n" << QStringList{"line 2", "one plane"};
     QTest::newRow("empty") << "" << QStringList{"session.yaml", "has no points"};
     QTest::newRow("three points") << "0,0,0\n1,1,0\n2,0,1\n" << QStringList{"session.yaml", "too few"};
     QTest::newRow("on a line") << "0,0,0\n1,1,1\n2,2,2\n3,3,3\n" << QStringList{"session.yaml", "one line"};
     QTest::newRow("in one place") << "0,0,0\n1,1,1\n2,1,1\n3,3,0\n"
-                                  << QStringList{"session.yaml", "another one is"};
+                                  << QStringList{"session.yaml", "as another one"};
   }
   void whatIsNoTable_isRefused() {
     QFETCH(QString, text);
@@ -116,7 +116,7 @@ class TestGivenPoints : public QObject {
     writeForGivenPoints(folder.filePath("board.csv"), text);
     try {
       sessionWith(folder, "board.csv");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       for (const QString& part : said) QVERIFY2(QString(error.what()).contains(part), error.what());
@@ -127,7 +127,7 @@ class TestGivenPoints : public QObject {
     const QTemporaryDir folder;
     try {
       sessionWith(folder, "[[0, 0], [1, 0], [0, 1], [1, 1]], rows: 3");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       test::verifyRefusal(error, {"rows"});
     }

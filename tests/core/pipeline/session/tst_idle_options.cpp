@@ -26,10 +26,10 @@ class TestIdleOptions : public QObject {
   void searches_areIdle_whereTheOtherOneIsUsed() {
     Session session = test::simulatePass(0.5).session;
     QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
-             std::string("ring votes are used only where normal flow finds no board"));
+             std::string("ring votes are used only if normal flow does not find the board"));
     session.options.front_end.edit().detection.try_both = false;
     QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
-             std::string("circles are looked for by normal flow alone"));
+             std::string("circles are detected only by normal flow"));
     QVERIFY(whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
     session.options.front_end.edit().detection.method = CandidateSource::RingVote;
     QVERIFY(whyIdle(session, "tuning.ring_vote.least_score").empty());
@@ -60,9 +60,9 @@ class TestIdleOptions : public QObject {
     const std::string stream = session.cameras.front().stream;
     QVERIFY(whyIdle(session, "frames.rate_hz").empty() && whyIdle(session, "grid.least_circles").empty());
     const StreamTypes events{{stream, StreamType::Events}}, frames{{stream, StreamType::Frames}};
-    QCOMPARE(whyIdle(session, "frames.rate_hz", events), std::string("no camera gives frames"));
+    QCOMPARE(whyIdle(session, "frames.rate_hz", events), std::string("no camera records frames"));
     QVERIFY(whyIdle(session, "grid.least_circles", events).empty());
-    QCOMPARE(whyIdle(session, "grid.least_circles", frames), std::string("no camera gives events"));
+    QCOMPARE(whyIdle(session, "grid.least_circles", frames), std::string("no camera records events"));
     QVERIFY(whyIdle(session, "frames.rate_hz", frames).empty());
   }
 
@@ -76,7 +76,7 @@ class TestIdleOptions : public QObject {
     QVERIFY(whyIdle(session, "optimisation.priors.smooth_position_m_s2").empty());
   }
 
-  // A rule whose option has another name by now would never be said.
+  // A rule whose option has been renamed would never apply.
   void everyRule_isOfAnOption() {
     Session session = test::simulatePass(0.5).session;
     int idle = 0;

@@ -87,7 +87,7 @@ class TestImportSession : public QObject {
     std::ofstream(path) << text;
     return path;
   }
-  // The session as `evical import` writes it and `evical calibrate` reads it.
+  // The session as written by `evical import` and read by `evical calibrate`.
   Session written(const ImportRequest& request, std::vector<std::string>& notes) const {
     const std::filesystem::path output =
         std::filesystem::path(scratch_.path().toStdString()) / "session.yaml";
@@ -106,7 +106,7 @@ class TestImportSession : public QObject {
   }
 
  private slots:
-  // MVSEC's and DM-VIO's camchains hold more than cameras.
+  // Camchains of MVSEC and DM-VIO contain more than cameras.
   void furtherKeysOfACamchain_areSaid() {
     ImportRequest request = kalibr();
     std::string chain = kCamchain;
@@ -120,7 +120,7 @@ class TestImportSession : public QObject {
     QVERIFY(has(notes, "cam0: left out: T_imu_cam"));
   }
 
-  // A chain of the second and third camera alone.
+  // A chain of the second and the third camera only.
   void camchainWithoutCam0_isOne() {
     std::string chain = kCamchain;
     chain.replace(chain.find("cam0"), 4, "cam2");
@@ -130,7 +130,7 @@ class TestImportSession : public QObject {
     QVERIFY(imported.files[0].content.find("pinhole_equidistant") != std::string::npos);
   }
 
-  // Before Kalibr has run there is no camchain.
+  // Without a Kalibr run there is no camchain.
   void withoutCamchain_camerasAreThoseOfTheRecording() {
     ImportRequest request = kalibr();
     request.files.erase(request.files.begin() + 1);
@@ -152,7 +152,7 @@ class TestImportSession : public QObject {
     }
   }
 
-  // Files as people report them: imported with these numbers, or refused by what they are.
+  // Files from users' reports: imported with these numbers, or refused by their kind.
   void reportedFiles_areImportedOrNamed_data() {
     QTest::addColumn<QString>("file");
     QTest::addColumn<double>("focal_length_px");  // of the first camera; 0: refused
@@ -240,7 +240,7 @@ class TestImportSession : public QObject {
          "ekalibr",
          {},
          std::nullopt});
-    QVERIFY(has(imported.notes, "/else/where.bag does not exist here"));
+    QVERIFY(has(imported.notes, "/else/where.bag does not exist"));
   }
 
   void kalibr_inAnyOrder_becomesASession() {
@@ -255,7 +255,8 @@ class TestImportSession : public QObject {
       QCOMPARE(session.imus[0].stream, std::string("/davis/imu"));
       QCOMPARE(session.imus[0].noise.gyroscope_random_walk, 2e-5);
       QCOMPARE(session.board.radius_m, 0.02);
-      QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "under prior"));
+      QVERIFY(has(notes, "--radius-m") && has(notes, "seems to be an image topic") &&
+              has(notes, "under prior"));
       texts.push_back(sessionYaml(session, scratch_.path().toStdString()));
       QCOMPARE(texts.back(), texts.front());
     } while (std::next_permutation(request.files.begin(), request.files.end()));
@@ -272,7 +273,7 @@ class TestImportSession : public QObject {
     QCOMPARE(imported.files[1].path.string(), std::string("lens-cam1.yaml"));
     const CameraIntrinsics read = readIntrinsics(YamlNode::parse(imported.files[0].content, "lens"));
     QCOMPARE(read.focal_length_px.y(), 261.0);
-    QVERIFY(has(imported.notes, "cam0: its pose and time offset are left out"));
+    QVERIFY(has(imported.notes, "cam0: its pose and time offset are not imported"));
   }
 
   void camchain_ofADoubleSphere_becomesIntrinsics() {
@@ -309,7 +310,7 @@ class TestImportSession : public QObject {
     QTest::newRow("target") << "target.yaml"
                             << "circlegrid"
                             << "dots"
-                            << "'dots' is no target that Evical knows";
+                            << "'dots' is not a known target type";
     QTest::newRow("aprilgrid without tags") << "target.yaml"
                                             << "circlegrid"
                                             << "aprilgrid"
@@ -322,7 +323,7 @@ class TestImportSession : public QObject {
                            << "gyroscope_noise_density: 0.0003"
                            << "gyroscope_noise_density: -1"
                            << "gyroscope_noise_density";
-    QTest::newRow("no target") << "target.yaml" << kTarget << kImu << "Give Kalibr's target file too";
+    QTest::newRow("no target") << "target.yaml" << kTarget << kImu << "Give Kalibr's target file, too";
     QTest::newRow("two camchains") << "target.yaml" << kTarget << kCamchain << "is the second camchain file";
     QTest::newRow("something else") << "target.yaml" << kTarget << "a: b\n"
                                     << "no layout that can be imported";
@@ -338,7 +339,7 @@ class TestImportSession : public QObject {
     write(file.toUtf8().constData(), QString(before).replace(from, to).toStdString());
     try {
       importFiles(request, "session.yaml");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(QString(error.what()).contains(said), error.what());
@@ -350,7 +351,7 @@ class TestImportSession : public QObject {
     request.recording.clear();
     try {
       importFiles(request, "session.yaml");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains("--recording FILE"), error.what());
     }
@@ -360,7 +361,7 @@ class TestImportSession : public QObject {
     const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "ANOTHER_IMU").toStdString();
     try {
       importSession({{write("config.yaml", text)}, "", {}, std::nullopt});
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains("ANOTHER_IMU"), error.what());
     }

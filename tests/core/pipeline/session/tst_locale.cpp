@@ -1,4 +1,4 @@
-// Where the desktop's numbers have decimal commas, files are read and written as everywhere.
+// If the desktop's numbers have decimal commas, files are read and written with decimal points.
 #include "core/pipeline/maintain/trajectory_file.h"
 #include "core/pipeline/session/session.h"
 #include "core/recording/recording_reader.h"
@@ -30,7 +30,7 @@ class TestLocale : public QObject {
     const Session session = test::simulatePass(2.0).session;
     const std::string yaml = sessionYaml(session, ".");
     const test::GermanLocale german;
-    if (!german.isThere()) QSKIP("localedef made no locale de_DE: the package locales is missing");
+    if (!german.isThere()) QSKIP("localedef cannot create the locale de_DE: the package locales is missing");
 
     QCOMPARE(sessionYaml(session, "."), yaml);
     QVERIFY(readScenario(test::scenarioPath("davis346_10s")).board.spacing_m > 0.01);

@@ -206,7 +206,7 @@ class TestSession : public QObject {
                                  << "tag_size_m";
     QTest::newRow("twice") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08, tag_spacing: 0.25, "
                               "spacing_m: 0.1"
-                           << "says the same as spacing_m";
+                           << "duplicates spacing_m";
     QTest::newRow("tags that touch") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.1, spacing_m: 0.1"
                                      << "less than the distance from one tag to the next";
     QTest::newRow("half turn") << "type: checkerboard, rows: 6, cols: 8, spacing_m: 0.03"
@@ -219,7 +219,7 @@ class TestSession : public QObject {
     QFETCH(QString, said);
     try {
       sessionWith(kCircles, "board: {" + board + "}\n");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains(said), error.what());
     }
@@ -250,23 +250,23 @@ class TestSession : public QObject {
     QTest::addColumn<QStringList>("said");
     const QString frames = "  frames:\n    stream: /left/image_raw\n    same_sensor_as: ";
     QTest::newRow("unknown") << frames + "lift\n" << QStringList{"cameras.frames.same_sensor_as", "'left'"};
-    QTest::newRow("itself") << frames + "frames\n" << QStringList{"no other camera", "left"};
+    QTest::newRow("itself") << frames + "frames\n" << QStringList{"not another camera", "left"};
     QTest::newRow("of one that has none")
         << frames + "left\n  more:\n    stream: /more\n    same_sensor_as: frames\n"
-        << QStringList{"cameras.more.same_sensor_as", "with a sensor of its own"};
+        << QStringList{"cameras.more.same_sensor_as", "with its own sensor"};
     QTest::newRow("two lenses")
         << frames +
                "left\n    resolution_px: [346, 260]\n    intrinsics: {model: pinhole_radtan, "
                "focal_length_px: "
                "[260, 260], principal_point_px: [170, 130], distortion: [0, 0, 0, 0]}\n"
-        << QStringList{"cameras.frames.intrinsics", "Give intrinsics of 'left' only"};
+        << QStringList{"cameras.frames.intrinsics", "Give intrinsics only for 'left'"};
   }
   void camerasOfNoSensor_areRefused() {
     QFETCH(QString, camera);
     QFETCH(QStringList, said);
     try {
       sessionWith("imus:\n", camera + "imus:\n");
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       test::verifyRefusal(error, said);
     }
@@ -319,7 +319,7 @@ class TestSession : public QObject {
                                  << "board: left_imu"
                                  << QStringList{"boards.left_imu", "is also a sensor's name"};
     QTest::newRow("both") << kCircles + "boards:\n" + plate << "board: plate"
-                          << QStringList{"boards", "is there beside board"};
+                          << QStringList{"boards", "in addition to board"};
     QTest::newRow("symmetric") << "boards:\n" + QString(plate).replace("11", "10") << "board: plate"
                                << QStringList{"boards.plate.rows", "turned by 180 degrees"};
   }
@@ -334,7 +334,7 @@ class TestSession : public QObject {
             .replace(resolution, resolution + (of_left.isEmpty() ? "" : "    " + of_left + "\n"));
     try {
       readSession(write("session.yaml", text.toStdString()));
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       test::verifyRefusal(error, said);
     }
@@ -494,7 +494,7 @@ correlation:
       QVERIFY_EXCEPTION_THROWN(setInSession(session, key, value), CalibrationError);
   }
 
-  // What was read as -x,-y,-z already, and is to be read so again, is as it came.
+  // If -x,-y,-z was applied and is applied again, the original axes result.
   void repairOfAxes_isOfWhatTheSensorGives() {
     Session session = sessionWith("", "");
     const Repair negate{"imus.left_imu.accelerometer_axes", "-x,-y,-z"};
@@ -568,7 +568,8 @@ correlation:
     };
     row("no session", "evical_session: 1", "nothing: 1", {"evical_session"});
     row("points and a stream", "    stream: /left/events\n",
-        "    points: recording.bag\n    stream: /left/events\n", {"cameras.left.stream", "beside points"});
+        "    points: recording.bag\n    stream: /left/events\n",
+        {"cameras.left.stream", "cannot be combined with points"});
     row("points that are not there", "    stream: /left/events\n", "    points: gone.csv\n",
         {"cameras.left.points", "gone.csv' does not exist"});
     row("check of no sensor", "    stream: /left/events\n",
@@ -582,21 +583,21 @@ correlation:
     row("missing key", "  rows: 11\n", "", {"board.rows", "missing"});
     row("missing recording", "recording.bag", "other.bag",
         {"recording (line 2)", "other.bag", "does not exist"});
-    row("backward range", "[1, 30]", "[30, 1]", {"time_range_s (line 3)", "no range"});
+    row("backward range", "[1, 30]", "[30, 1]", {"time_range_s (line 3)", "is not a range"});
     row("text for a number", "0.05", "5cm", {"board.spacing_m (line 8)", "'5cm'"});
     row("number out of range", "0.05", "50", {"board.spacing_m (line 8)", "50 m", "10 m"});
     row("spacing's sigma", "radius_m: 0.02", "radius_m: 0.02\n  spacing_std: -0.001",
         {"board.spacing_std", "below"});
     row("length that contradicts the spacing", "spacing_m: 0.05",
         "spacing_m: 0.05\n  measured: {spacings: 11, length_m: 0.5}",
-        {"board.spacing_m (line 8)", "contradicts board.measured", "0.0454545", "spacing less than circles"});
+        {"board.spacing_m (line 8)", "contradicts board.measured", "0.0454545", "n - 1 spacings"});
     row("sigma said twice", "radius_m: 0.02",
         "radius_m: 0.02\n  spacing_std: 0.001\n  measured: {spacings: 10, length_m: 0.5}",
         {"board.spacing_std", "std_m", "Remove one"});
     row("longer than the board", "spacing_m: 0.05", "measured: {spacings: 11, length_m: 0.55}",
-        {"board.measured.spacings (line 8)", "up to 10"});
+        {"board.measured.spacings (line 8)", "which has 10"});
     row("millimetres for metres", "spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.5, std_m: 0.5}",
-        {"board.measured.std_m (line 8)", "no sigma"});
+        {"board.measured.std_m (line 8)", "a sigma of"});
     row("measured by nothing", "spacing_m: 0.05", "measured: {spacings: 10}",
         {"board.measured.length_m", "missing"});
     row("sigmas of no lens",
@@ -604,7 +605,7 @@ correlation:
         "      principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n",
         "    intrinsics_std: {focal_length_px: [1, 1], principal_point_px: [1, 1], "
         "distortion: [0, 0, 0, 0]}\n",
-        {"cameras.left.intrinsics_std", "not given"});
+        {"cameras.left.intrinsics_std", "without intrinsics"});
     row("axes", "angular_rate_unit: deg/s", "gyroscope_axes: x,x,z",
         {"imus.left_imu.gyroscope_axes", "'x,x,z'"});
     row("latitude", "reference: left_imu", "reference: left_imu\ngravity: {latitude_deg: 91}",
@@ -631,7 +632,7 @@ correlation:
     row("option", "least_circles: 7", "least_circle: 7",
         {"options.grid.least_circle (line 31)", "least_circles"});
     row("option's value", "least_circles: 7", "least_circles: 1",
-        {"options.grid.least_circles", "least of 4"});
+        {"options.grid.least_circles", "minimum of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
     row("part of a group", "tuning.bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
         {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
@@ -642,7 +643,7 @@ correlation:
         {"options (line 30)", "detection.shortest_window_s (0.1 s) is above", "longest_window_s (0.05 s)"});
     row("prior", "time_offset_search_s: 0.5", "time_offset_search_s: 90",
         {"prior.time_offset_search_s", "60 s"});
-    row("no YAML", "[346, 260]", "[346, 260", {"session.yaml (line", "no valid YAML"});
+    row("no YAML", "[346, 260]", "[346, 260", {"session.yaml (line", "not valid YAML"});
   }
   void mistake_isRefusedWithItsPlace() {
     QFETCH(QString, from);

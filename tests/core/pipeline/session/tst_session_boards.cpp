@@ -58,7 +58,7 @@ class TestSessionBoards : public QObject {
     QCOMPARE(seen(session), (Names{"plate", "tags", "wall"}));
   }
 
-  // Where there was one, no camera said which it sees.
+  // With a single board, no camera names its board.
   void secondBoard_leavesTheCamerasAtTheFirst_andGoesWithoutATrace() {
     Session session = threeBoards();
     session.further_boards.clear();
@@ -99,7 +99,7 @@ class TestSessionBoards : public QObject {
     renameBoard(2, "left wall", session);
     QCOMPARE(boardNames(session), (Names{"sheet", "tags", "left wall"}));
     QCOMPARE(seen(session), (Names{"sheet", "tags", "left wall"}));
-    renameBoard(1, "tags", session);  // which it is
+    renameBoard(1, "tags", session);  // its current name
     validateBoards(session, "session");
   }
 
@@ -123,7 +123,7 @@ class TestSessionBoards : public QObject {
     Session session = threeBoards();
     try {
       renameBoard(1, name.toStdString(), session);
-      QFAIL("taken");
+      QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QCOMPARE(error.place(), std::string("boards.tags"));
       QVERIFY2(QString::fromStdString(error.problem()).contains(said), error.problem().c_str());
@@ -131,7 +131,7 @@ class TestSessionBoards : public QObject {
     QCOMPARE(boardNames(session), (Names{"plate", "tags", "wall"}));
   }
 
-  // Each board is as well known as before, whichever of them the options speak of.
+  // The accuracy of each board is unchanged, whichever of them the options refer to.
   void worldCameraThatSeesAnother_makesThatTheWorlds() {
     Session session = threeBoards();
     const double of_plate = session.options.optimisation->board_spacing_sigma;
@@ -168,7 +168,7 @@ class TestSessionBoards : public QObject {
     QVERIFY(!session.further_boards[0].spacing_std && boardAt(session, 1).spacing_m == 0.0502);
   }
 
-  // As a file says it, and as it says it again.
+  // Read from a file and written to it again.
   void editedBoards_areWrittenAndReadAgain() {
     const QTemporaryDir folder;
     const std::filesystem::path root = folder.path().toStdString();

@@ -126,7 +126,7 @@ class TestSessionGuess : public QObject {
     QVERIFY(guessedImu(imuStream("/imu", "g"), {}, {}).acceleration_unit == AccelerationUnit::Gravity);
     QVERIFY(!guessedImu(imuStream("/imu", "m/s^2"), {}, {}).acceleration_unit);
     StreamSummary said = imuStream("/imu", "g");
-    said.info.acceleration_unit = AccelerationUnit::Gravity;  // as the format says: nothing to be guessed
+    said.info.acceleration_unit = AccelerationUnit::Gravity;  // the format states it: no guess is needed
     QVERIFY(!guessedImu(said, {}, {}).acceleration_unit);
   }
 
@@ -150,7 +150,7 @@ class TestSessionGuess : public QObject {
     QCOMPARE(session.reference, std::string("a_imu"));
   }
 
-  // Beside events they are for who asks for them.
+  // In addition to events they are included only on request.
   void resolution_thatNobodySaysIsThatOfTheEvents_data() {
     QTest::addColumn<int>("seen_width_px");
     QTest::addColumn<int>("seen_height_px");
@@ -172,7 +172,7 @@ class TestSessionGuess : public QObject {
     QVERIFY(!session.cameras[0].resolution_px.known());
     QVERIFY((withSeenResolutions(session, "a.bag", inspection).cameras[0].resolution_px ==
              Resolution{width_px, height_px}));
-    // Not by another file's stream of this name, and not where somebody has said it.
+    // Not by another file's stream of this name, and not if the user has set it.
     QVERIFY(!withSeenResolutions(session, "b.bag", inspection).cameras[0].resolution_px.known());
     session.cameras[0].resolution_px = {640, 480};
     QVERIFY(
@@ -199,7 +199,7 @@ class TestSessionGuess : public QObject {
     const auto error = whyUseless("r.bag", inspection);
     QVERIFY(error && error->kind() == ErrorKind::BadInput);
     QCOMPARE(error->place(), std::string("r.bag"));
-    QCOMPARE(error->problem(), std::string("it holds neither events, frames, points nor IMU samples. The "
+    QCOMPARE(error->problem(), std::string("it has neither events, frames, points nor IMU samples. The "
                                            "file ends in the middle of a chunk"));
     inspection.streams.push_back(imuStream("/imu"));
     QVERIFY(!whyUseless("r.bag", inspection));
@@ -214,7 +214,7 @@ class TestSessionGuess : public QObject {
     const Session guessed = guessedSession(recording, inspection);
     QCOMPARE(sessionYaml(draft.session, folder.path().toStdString()),
              sessionYaml(guessed, folder.path().toStdString()));
-    QCOMPARE(draft.notes, std::vector<std::string>{"board: fill it in"});
+    QCOMPARE(draft.notes, std::vector<std::string>{"board: complete its entry"});
 
     const std::filesystem::path file = folder.filePath("session.yaml").toStdString();
     writeFileWhole(file, draft.yaml);

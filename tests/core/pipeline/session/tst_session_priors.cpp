@@ -45,7 +45,7 @@ const char* const kPriors = R"(  time_offset_search_s: 0.5
       accelerometer: {bias_m_s2: [0.1, 0.05, -0.08], mapping: [[1, 0, 0], [0, 1, 0], [0, 0, 1.002]]}
 )";
 
-// Sensors as a result writes them, the reference among them.
+// Sensors as written in a result, including the reference.
 const char* const kPasted = R"(  cameras:
     left:
       stream: /left/events
@@ -163,7 +163,7 @@ class TestSessionPriors : public QObject {
     QVERIFY(session.imus[0].prior.gyroscope_bias->sigma.has_value());
   }
 
-  // What nobody estimated is no prior; a turn that is known is one, with sigmas or without.
+  // A quantity that was not estimated is not a prior; a known misalignment is one, with or without sigmas.
   void gyroscopesRotationOfAResult_isAPrior() {
     const QString none = QString(kPasted) +
                          "        gyroscope_from_accelerometer_xyzw: [0, 0, 0, 1]\n"

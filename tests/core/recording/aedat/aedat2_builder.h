@@ -1,4 +1,4 @@
-// AEDAT 2.0 files, with none of the product's code.
+// AEDAT 2.0 files, built without the product's code.
 #pragma once
 
 #include "core/data/event.h"

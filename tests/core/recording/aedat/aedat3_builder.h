@@ -1,4 +1,4 @@
-// AEDAT 3.1 files, with none of the product's code.
+// AEDAT 3.1 files, built without the product's code.
 #pragma once
 
 #include "core/data/event.h"
@@ -23,7 +23,7 @@ inline std::string aedat3Packet(std::int16_t type, std::int32_t size, const std:
          bytesOf(count) + bytesOf(count) + bytesOf(count) + events;
 }
 
-// Times are us behind the overflow's.
+// Times are in us since the overflow's time.
 inline std::string aedat3Events(const std::vector<Event>& events, std::int32_t overflow = 0,
                                 std::int16_t source = 1) {
   std::string bytes;
@@ -47,7 +47,7 @@ struct Aedat3Frame {
   std::int32_t exposure_begin_us = 0, exposure_end_us = 0, width = 3, height = 2, left = 0, top = 0;
 };
 
-// Each value of a pixel is 256 times its place from 1, plus 7.
+// Each value of a pixel is 256 times its index from 1, plus 7.
 inline std::string aedat3FramePacket(const Aedat3Frame& frame) {
   std::string bytes = bytesOf(1U | frame.channels << 1) + bytesOf(std::int32_t{1}) +
                       bytesOf(std::int32_t{2}) + bytesOf(frame.exposure_begin_us) +

@@ -1,4 +1,4 @@
-// AEDAT4's packets of frames, laid out by hand; what is 0 is absent, as flatbuffers have it.
+// AEDAT4's packets of frames, encoded by hand; fields of 0 are absent, as in flatbuffers.
 #pragma once
 
 #include "tests/core/recording/bag_builder.h"
@@ -24,10 +24,10 @@ inline std::string framePacket(const TestFrame& frame) {
   vtable += at(frame.time_us, 8) + at(1, 16) + at(1, 24) + at(frame.exposure_begin_us, 32);
   vtable += at(frame.exposure_end_us, 40) + at(frame.format, 64) + at(frame.width, 56) + at(frame.height, 58);
   vtable += at(frame.left, 60) + at(frame.top, 62) + at(1, 4) + at(frame.exposure_us, 48);
-  const std::size_t table = 8 + vtable.size();  // from behind the size
+  const std::size_t table = 8 + vtable.size();  // from the end of the size field
   std::string bytes = bytesOf(static_cast<std::uint32_t>(table)) + "FRME" + vtable;
   bytes += bytesOf(static_cast<std::int32_t>(vtable.size()));
-  bytes += bytesOf(std::uint32_t{kTable_bytes - 4});  // to the pixels, behind the table
+  bytes += bytesOf(std::uint32_t{kTable_bytes - 4});  // to the pixels, after the table
   bytes += bytesOf(frame.time_us) + bytesOf(frame.time_us) + bytesOf(frame.time_us);
   bytes += bytesOf(frame.exposure_begin_us) + bytesOf(frame.exposure_end_us) + bytesOf(frame.exposure_us);
   bytes += bytesOf(frame.width) + bytesOf(frame.height) + bytesOf(frame.left) + bytesOf(frame.top);

@@ -1,4 +1,4 @@
-// AEDAT 2.0: addresses of each chip, the IMU between them, times that wrap, and nine real recordings.
+// AEDAT 2.0: addresses of each chip, interleaved IMU samples, times that wrap, and nine real recordings.
 #include "core/base/error.h"
 #include "core/numerics/angles.h"
 #include "tests/core/recording/aedat/aedat2_builder.h"
@@ -125,7 +125,7 @@ void TestAedat2::imuSamples_standBetweenTheEvents() {
   QCOMPARE(contents.sampleCount(), 10u);
 }
 
-// jAER sets 8 g and 1000 deg/s for some: at the usual ranges gravity is 0.50 g then.
+// jAER sets 8 g and 1000 deg/s for some: with the default ranges gravity would be 0.50 g.
 void TestAedat2::rangesOfTheImu_areThoseThatGravitySupports() {
   for (const double ranges : {1.0, 2.0}) {
     std::string bytes = aedat2Header("DAVIS240C");
@@ -173,7 +173,7 @@ void TestAedat2::pixelValuesAndEdges_areNoEvents() {
 
 namespace {
 
-constexpr int kWidth = 208, kHeight = 192;  // of the smallest that has frames
+constexpr int kWidth = 208, kHeight = 192;  // of the smallest sensor with frames
 constexpr std::int32_t kReadOut_us = 1000, kExposure_us = 5000;
 
 int brightnessAt(int x_px, int y_px) {
@@ -232,7 +232,7 @@ void TestAedat2::pixelValues_makeFrames() {
   }
 }
 
-// Each column is read for its exposure while later ones are still reset.
+// Each column's exposure is read while later columns are still reset.
 void TestAedat2::rollingShutter_isToldOf() {
   std::string bytes = aedat2Header("DAVIS208");
   constexpr int kBehind = 100;
@@ -251,7 +251,7 @@ void TestAedat2::rollingShutter_isToldOf() {
   QVERIFY(reader->faults()[0].kind == FaultKind::Metadata && reader->faults()[0].stream == "frames");
 }
 
-// A recording begins and ends anywhere; what is lost between is lost alone.
+// A recording starts and ends anywhere; only the lost data in between are missing.
 void TestAedat2::partsOfFrames_areLeftOut() {
   const std::string frame = globalFrame(5000), header = aedat2Header("DAVIS208");
   for (const std::string& bytes : {frame.substr(8000) + frame, frame.substr(0, frame.size() - 8) + frame,
@@ -271,7 +271,7 @@ void TestAedat2::time_goesOnWhereItsCounterWraps() {
   const Contents contents = read(bytes);
   const std::int64_t last_ns = std::int64_t{kLast} * 1000;
   QCOMPARE(contents.eventCount(), 5u);
-  const std::vector<Event>& events = contents.events.at(0);  // a late one is put in order
+  const std::vector<Event>& events = contents.events.at(0);  // a late event is sorted in
   QCOMPARE(events[0].time_ns, last_ns - 1000);
   QCOMPARE(events[1].time_ns, last_ns);
   QCOMPARE(events[2].time_ns, last_ns);
@@ -280,11 +280,11 @@ void TestAedat2::time_goesOnWhereItsCounterWraps() {
   QVERIFY(contents.hasFault(FaultKind::TimeWrap));
 }
 
-// An event whose address begins with '#', which its bytes may well.
+// An event whose address begins with '#', which is a valid byte.
 void TestAedat2::headerEndsAtItsMark_andAtBytesThatAreNoText() {
   const std::string event = aedat2Record(0x2300'0000U, 5000);
   QCOMPARE(read(aedat2Header("Davis640") + event).eventCount(), 1u);
-  const std::string like_text = aedat2Record(0x2320'2020U, 0x2020'200A);  // but for what it is
+  const std::string like_text = aedat2Record(0x2320'2020U, 0x2020'200A);  // except for its kind
   QCOMPARE(read(aedat2Header("Davis640") + "#End Of ASCII Header\r\n" + like_text).eventCount(), 1u);
 }
 
@@ -321,13 +321,13 @@ void TestAedat2::damageAnywhere_neverCrashes() {
       try {
         read(damaged);
       } catch (const CalibrationError&) {
-        // what bad files are answered with
+        // Bad files cause this error.
       }
     }
   }
 }
 
-// Counts and sums by a decoder of ten lines in another language.
+// Counts and sums from a decoder of ten lines in another language.
 void TestAedat2::realRecordings_matchAnotherDecoder_data() {
   QTest::addColumn<QString>("number");
   QTest::addColumn<quint64>("events");
@@ -356,7 +356,7 @@ void TestAedat2::realRecordings_matchAnotherDecoder() {
   if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
   QFETCH(QString, number);
   const QString path = QString("%1/real/dvs128_blinking/calibration_%2.aedat").arg(folder, number);
-  if (!std::filesystem::exists(path.toStdString())) QSKIP("the recordings are not there");
+  if (!std::filesystem::exists(path.toStdString())) QSKIP("the recordings are missing");
   const Contents contents = readAll(std::filesystem::path(path.toStdString()));
   const std::vector<Event>& events = contents.events.at(0);
   quint64 on = 0, sum_x = 0, sum_y = 0;

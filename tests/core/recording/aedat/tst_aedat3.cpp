@@ -1,4 +1,4 @@
-// AEDAT 3.1: its packets, several cameras, and what damage leaves.
+// AEDAT 3.1: its packets, several cameras, and the data that remain after damage.
 #include "core/base/error.h"
 #include "tests/core/recording/aedat/aedat3_builder.h"
 #include "tests/core/recording/recording_contents.h"
@@ -145,7 +145,7 @@ void TestAedat3::severalCameras_areToldApart() {
   QCOMPARE(QString::fromStdString(contents.streams[1].name), QString("source 2/events"));
   QCOMPARE(contents.events.at(0).size(), std::size_t{20});
   QCOMPARE(contents.events.at(1).size(), std::size_t{1});
-  QVERIFY(contents.hasFault(FaultKind::NoResolution));  // of the one that the header does not name
+  QVERIFY(contents.hasFault(FaultKind::NoResolution));  // of the camera that is missing in the header
 }
 
 void TestAedat3::triggers_areCounted() {
@@ -209,7 +209,7 @@ void TestAedat3::damageAnywhere_neverCrashes() {
       try {
         QVERIFY(read(damaged).eventCount() <= 40);
       } catch (const CalibrationError&) {
-        // what bad files are answered with
+        // Bad files cause this error.
       }
     }
   }

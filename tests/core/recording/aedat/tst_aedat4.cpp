@@ -21,7 +21,7 @@ std::vector<Event> eventsAt(std::int64_t start_ns, std::size_t count) {
   return someEvents(count, start_ns);
 }
 
-// A file made packet by packet, without a table.
+// A file built packet by packet, without a table.
 class FileBuilder {
  public:
   FileBuilder(aedat::Compression compression, const std::vector<aedat::StreamDescription>& streams)
@@ -55,7 +55,7 @@ std::vector<aedat::StreamDescription> cameraAndImu(const std::string& source = "
   return {{first_id, "events", "EVTS", source, {64, 48}}, {first_id + 1, "imu", "IMUS", source, {}}};
 }
 
-// As the format has them: in g and deg/s.
+// In the format's units: g and deg/s.
 std::vector<RawImuSample> rawSamples(std::size_t count, std::int64_t start_ns) {
   std::vector<RawImuSample> samples;
   for (const ImuSample& sample : someSamples(count, start_ns))
@@ -63,7 +63,7 @@ std::vector<RawImuSample> rawSamples(std::size_t count, std::int64_t start_ns) {
   return samples;
 }
 
-// The first sample of the file's IMU, in the file's own numbers.
+// The first sample of the file's IMU, in the file's units.
 RawImuSample firstRawSample(const std::filesystem::path& path) {
   const std::unique_ptr<RecordingReader> reader = openRecording(path);
   Packet packet;
@@ -137,12 +137,12 @@ void TestAedat4::roundTrip_keepsEventsAndSamples() {
   const Contents contents = readAll(path);
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.streams.size(), 2u);
-  // As dv-processing looks for them, of the one camera there is.
+  // Names that dv-processing expects for a single camera.
   QCOMPARE(contents.streams[0].name, std::string("events"));
   QCOMPARE(contents.streams[1].name, std::string("imu"));
   for (const StreamInfo& stream : contents.streams) QCOMPARE(stream.source, std::string("left <1>"));
   QCOMPARE(contents.streams[0].resolution_px.width_px, 64);
-  QCOMPARE(contents.streams[0].messages, 50'000u);  // by the table
+  QCOMPARE(contents.streams[0].messages, 50'000u);  // according to the table
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1000});
   QVERIFY(sameEvents(contents.events.at(0), events));
   const std::vector<ImuSample>& read = contents.imu.at(1);
@@ -153,7 +153,7 @@ void TestAedat4::roundTrip_keepsEventsAndSamples() {
     QVERIFY((read[i].angular_rate_rad_s - samples[i].angular_rate_rad_s).norm() < 1e-6);
   }
   const RawImuSample raw = firstRawSample(path);
-  QVERIFY(std::abs(raw.specific_force.norm() - 9.81 / 9.80665) < 0.02);  // in g, as the file has it
+  QVERIFY(std::abs(raw.specific_force.norm() - 9.81 / 9.80665) < 0.02);  // in g, the file's unit
   QVERIFY(std::abs(raw.angular_rate.norm() - 180.0 / M_PI) < 1e-4);      // of 1 rad/s
 }
 
@@ -192,7 +192,7 @@ void TestAedat4::twoCameras_haveTheirSourceInTheName() {
 
 void TestAedat4::namesOfDevices_areKept_data() {
   using Names = QStringList;
-  QTest::addColumn<QStringList>("topics");  // events, but for those that end with imu
+  QTest::addColumn<QStringList>("topics");  // of events, except those that end with imu
   QTest::addColumn<QString>("source");      // of all of them
   QTest::addColumn<QStringList>("read");
   QTest::newRow("a camera") << Names{"/davis/events", "/davis/imu"} << ""
@@ -203,8 +203,8 @@ void TestAedat4::namesOfDevices_areKept_data() {
                                         "right: right/imu"};
   QTest::newRow("two IMUs") << Names{"/davis/events", "/davis/imu", "/board/imu"} << ""
                             << Names{"davis: events", "davis: /davis/imu", "davis: /board/imu"};
-  QTest::newRow("as it was") << Names{"DAVIS346_2/accumulated"} << "DAVIS346_2"
-                             << Names{"DAVIS346_2: events"};
+  QTest::newRow("original name") << Names{"DAVIS346_2/accumulated"} << "DAVIS346_2"
+                                 << Names{"DAVIS346_2: events"};
 }
 
 void TestAedat4::namesOfDevices_areKept() {
@@ -240,7 +240,7 @@ void TestAedat4::withoutXml_packetsTellTheType() {
   QCOMPARE(contents.eventCount(), 11u);
 }
 
-// Every length: what is whole is read, the rest is stated.
+// Any truncation: complete packets are read, and the rest is reported.
 void TestAedat4::cutAnywhere_readsWhatIsWhole() {
   FileBuilder file = smallFile(aedat::Compression::Lz4);
   const std::string whole = file.bytes();
@@ -310,12 +310,12 @@ void TestAedat4::lyingCounts_loseThePacketOnly() {
   FileBuilder file(aedat::Compression::None, cameraAndImu());
   std::string events = aedat::encodeEvents(eventsAt(0, 10));
   file.add(0, events);
-  events.replace(28, 4, bytesOfAedat4(11));  // one more than there are
+  events.replace(28, 4, bytesOfAedat4(11));  // one more than existing
   file.add(0, events);
   events.replace(28, 4, bytesOfAedat4(-1));
   file.add(0, events);
   std::string samples = aedat::encodeImu(rawSamples(4, 0));
-  samples.replace(32, 4, bytesOfAedat4(2'000'000'000));  // where the first sample is
+  samples.replace(32, 4, bytesOfAedat4(2'000'000'000));  // position of the first sample
   file.add(1, samples);
   file.add(0, aedat::encodeEvents(eventsAt(1'000'000, 10)));
   const Contents contents = readAll(folder_.write("counts.aedat4", file.bytes()));

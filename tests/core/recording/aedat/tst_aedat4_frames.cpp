@@ -1,4 +1,4 @@
-// Frames in AEDAT4, in packets laid out by hand after dv-processing's frame.fbs.
+// Frames in AEDAT4, in packets encoded by hand after dv-processing's frame.fbs.
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
@@ -71,7 +71,7 @@ void TestAedat4Frames::frames_haveTheMiddleOfTheExposure() {
   QVERIFY(contents.faults.empty());
 }
 
-// An odd length: the middle is kept to the half microsecond.
+// An odd length: the middle is exact to half a microsecond.
 void TestAedat4Frames::exposureAsALength_isUsedWithoutItsEnds() {
   TestFrame frame = grayFrame(0, 0);
   frame.time_us = 1'000'000;

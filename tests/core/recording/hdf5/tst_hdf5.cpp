@@ -1,5 +1,5 @@
-// Files of data sets are made by h5py, which also reads what we write; without it
-// (python3-h5py) those tests are skipped.
+// h5py creates files of data sets and reads the files that we write; without it (python3-h5py) those tests
+// are skipped.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kPython = "/usr/bin/python3";
 
-// What a script prints; empty if it fails.
+// A script's output; empty if it fails.
 QString runPython(const std::string& script, const std::filesystem::path& folder) {
   QProcess python;
   python.setWorkingDirectory(QString::fromStdString(folder.string()));
@@ -166,7 +166,7 @@ void TestHdf5::roundTrip_keepsEventsAndSamples() {
 void TestHdf5::dsecWriter_isReadByH5py() {
   if (!hasH5py()) QSKIP("python3-h5py is not installed");
   writeSample(10'000);
-  // Blosc is not in h5py: the layout, the filter and what is not packed.
+  // h5py has no Blosc: only the layout, the filter and unpacked data are tested.
   const QString printed = runPython(R"(
 f = h5py.File('sample.h5', 'r')
 e = f['events']
@@ -250,7 +250,8 @@ void TestHdf5::layouts_areFound() {
   QVERIFY((samples[3].specific_force_m_s2 == Eigen::Vector3d(4, 5, 7.5)));
 }
 
-// A sensor of 54045 pixels has no one: what no event can be is refused, and other values of p are no events.
+// No sensor has 54045 pixels in a row: impossible coordinates are refused, and with other values of p it is
+// not an event table.
 void TestHdf5::columnsThatAreNoEvents_areRefused() {
   if (!hasH5py()) QSKIP("python3-h5py is not installed");
   QVERIFY(!runPython(kArrays + std::string(R"(
@@ -264,7 +265,7 @@ f['events/x'] = x; f['events/y'] = y; f['events/t'] = t; f['events/p'] = (np.ara
   QVERIFY(contents.eventCount() > 0);
   for (const auto& [stream, events] : contents.events)
     for (std::size_t i = 0; i < events.size(); ++i) QCOMPARE(events[i].brighter, i % 2 == 1);
-  QVERIFY(contents.faults.at(0).text.find("polarity that is none of 1, 0 and -1") != std::string::npos);
+  QVERIFY(contents.faults.at(0).text.find("polarity other than 1, 0 and -1") != std::string::npos);
 }
 
 void TestHdf5::tumVieFolder_isOneRecording() {
@@ -323,7 +324,7 @@ void TestHdf5::missingDatasets_areBadInput() {
 
 void TestHdf5::unknownFilter_isNamed() {
   std::string bytes = fileBytes(writeSample(1'000));
-  // The filter's number stands in the description of every dataset, as the id 32001 before the name "blosc".
+  // The filter's number is in the description of every dataset, as the id 32001 before the name "blosc".
   const std::string id("\x01\x7D", 2);
   for (std::size_t at = bytes.find(id); at != std::string::npos; at = bytes.find(id, at + 1))
     bytes[at] = '\x0F';
@@ -377,7 +378,7 @@ void TestHdf5::foundByTheFuzzer_isRefused_data() {
   QTest::addColumn<QString>("problem");
   QTest::newRow("a table as large as the address space") << "table_of_all_memory.h5"
                                                          << "damaged";
-  // HDF5 1.14 reads zeros there, which are no events.
+  // HDF5 1.14 reads zeros there, which are not events.
   QTest::newRow("rows that are not there") << "rows_of_nothing.h5"
                                            << "stores|is left out";
 }
@@ -408,7 +409,7 @@ void TestHdf5::damageAnywhere_neverCrashes() {
   }
 }
 
-// The library looked for what it had lost, and said so, when the program ended.
+// At program end, HDF5's library used to complain about objects that were lost.
 void TestHdf5::programsEnd_isQuietAfterDamage() {
   QProcess program;
   program.start(QCoreApplication::applicationFilePath(), {"tst_hdf5", "damageAnywhere_neverCrashes"});

@@ -1,5 +1,5 @@
-// Pictures in HDF5 in the layouts of M3ED and MVSEC, in files that h5py makes; without it (python3-h5py) they
-// are skipped.
+// Images in HDF5 in the layouts of M3ED and MVSEC, in files that h5py creates; skipped without it
+// (python3-h5py).
 #include "core/base/error.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/test_program.h"
@@ -34,7 +34,7 @@ class TestHdf5Frames : public QObject {
   ScratchFolder folder_;
 };
 
-// Events of one camera, and `pictures` of 6 x 4 pixels whose values count on.
+// Events of one camera, and `pictures` of 6 x 4 pixels whose values increase by one.
 bool TestHdf5Frames::write(const std::string& script) const {
   const std::string start = R"(
 import h5py, numpy as np
@@ -54,7 +54,7 @@ pictures = np.arange(5 * 4 * 6).astype('u1').reshape(5, 4, 6, 1); ts = 100 + 40 
 void TestHdf5Frames::initTestCase() {
   QProcess python;
   python.start("/usr/bin/python3", {"-c", "import h5py"});
-  if (!python.waitForFinished(120'000) || python.exitCode() != 0) QSKIP("python3-h5py is not there");
+  if (!python.waitForFinished(120'000) || python.exitCode() != 0) QSKIP("python3-h5py is not installed");
 }
 
 void TestHdf5Frames::m3edsPictures_comeWithTheirTimes_data() {
@@ -116,7 +116,7 @@ void TestHdf5Frames::otherPictures_areListedOnly() {
     QVERIFY(stream.type == StreamType::Frames);
     QVERIFY(!stream.readable);
   }
-  QVERIFY(contents.hasFault(FaultKind::Corrupt));  // that the first is of 16 bit
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));  // states that the first one has 16 bits
 }
 
 void TestHdf5Frames::differentNumbers_areSaid() {
@@ -140,7 +140,7 @@ file = open('a.h5', 'r+b'); file.seek(place); file.write(b'\xff' * 8); file.clos
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
-// It says that no filter was used, and has fewer bytes than a chunk.
+// It states that no filter was used, but has fewer bytes than a chunk.
 void TestHdf5Frames::shortUnpackedChunk_losesItsPicturesOnly() {
   QVERIFY(write(R"(
 f['ovc/ts'] = ts

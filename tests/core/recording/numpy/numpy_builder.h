@@ -1,4 +1,5 @@
-// Writes .npy and .npz files as NumPy does, or with lies in them: for tests, the benchmark of formats, and fuzzing.
+// Writes .npy and .npz files like NumPy, or with false headers: for tests, the benchmark of formats, and
+// fuzzing.
 #pragma once
 
 #include <zlib.h>
@@ -16,7 +17,7 @@ std::string numberBytes(Number number, bool big_endian = false) {
   return big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
 
-// `header` is the dictionary's text; version 1 has its length in two bytes, 2 and 3 in four.
+// `header` is the text of the dictionary; version 1 has its length in two bytes, 2 and 3 in four.
 inline std::string npyFile(const std::string& header, const std::string& data, int version = 1) {
   const std::size_t length_bytes = version == 1 ? 2 : 4, start = 8 + length_bytes;
   const std::size_t size = (start + header.size() + 1 + 63) / 64 * 64 - start;
@@ -27,7 +28,7 @@ inline std::string npyFile(const std::string& header, const std::string& data, i
   return bytes + header + std::string(size - header.size() - 1, ' ') + '\n' + data;
 }
 
-// `descr` in Python's spelling: "'<u2'" or "[('x', '<u2'), ...]".
+// `descr` in Python's notation: "'<u2'" or "[('x', '<u2'), ...]".
 inline std::string npyHeader(const std::string& descr, const std::string& shape, bool by_columns = false) {
   return "{'descr': " + descr + ", 'fortran_order': " + (by_columns ? "True" : "False") +
          ", 'shape': " + shape + ", }";
@@ -41,10 +42,10 @@ inline std::string npyArray(const std::string& descr, const std::string& shape, 
 struct ZipFile {
   std::string name, content;
   bool deflated = false, in_64 = false;  // sizes in zip64's fields
-  // What the archive claims; as it is where 0.
+  // Sizes stated in the archive; 0: the true ones.
   std::uint64_t claimed_bytes = 0;
   std::uint32_t claimed_checksum = 0;
-  std::size_t left_out_bytes = 0;  // of the packed ones, at the end
+  std::size_t left_out_bytes = 0;  // of the packed bytes, at the end
 };
 
 inline std::string deflated(const std::string& content) {

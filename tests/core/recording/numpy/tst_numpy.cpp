@@ -31,7 +31,7 @@ std::vector<Event> theEvents() {
   return someEvents(kCount, kNumpyStart_ns);
 }
 
-// A number of an event in some type of NumPy's: "<i8"; times in `unit_ns`.
+// A field of an event in a type of NumPy's: "<i8"; times in `unit_ns`.
 std::string value(double number, const std::string& type) {
   const bool swap = type[0] == '>';
   const std::string kind = type.substr(1);
@@ -90,7 +90,7 @@ std::string column(char part, const std::string& type, double unit_ns = 1000.0, 
   return npyArray("'" + type + "'", shape(), rowsForNumpy({{part, type}}, unit_ns, off));
 }
 
-// x, y, t, p, each an array, with something before and behind their names.
+// x, y, t, p, each as an array, with a prefix and a suffix to their names.
 std::vector<ZipFile> fourArrays(bool deflate, const std::string& before = "",
                                 const std::string& behind_t = "", double unit_ns = 1000.0) {
   return {{before + "x.npy", column('x', "<u2"), deflate},
@@ -204,8 +204,8 @@ void addTables() {
   addRow("x y t p in us", npyArray("'<i8'", n_by_4, rowsForNumpy(xytp, 1e3)), "x,y,t,p, t in us");
   addRow("x y p t, whole reals", npyArray("'<f8'", n_by_4, rowsForNumpy(xypt, 1e3)), "x,y,p,t, t in us");
   addRow("in columns", npyArray("'<i8'", n_by_4, columns(xytp, 1e3), true), "x,y,t,p, t in us");
-  addRow("lying", npyArray("'<i8'", four_by_n, columns(xytp, 1e3)), "x,y,t,p, t in us");
-  addRow("lying, in columns", npyArray("'<i8'", four_by_n, rowsForNumpy(xytp, 1e3), true),
+  addRow("transposed", npyArray("'<i8'", four_by_n, columns(xytp, 1e3)), "x,y,t,p, t in us");
+  addRow("transposed, in columns", npyArray("'<i8'", four_by_n, rowsForNumpy(xytp, 1e3), true),
          "x,y,t,p, t in us");
   addRow("EVIMO",
          zipArchive({{"events.npy", npyArray("'<f8'", n_by_4, rowsForNumpy(txyp, 1e9)), true},
@@ -250,13 +250,13 @@ void addArchives() {
     row("comment", zipArchive(fourArrays(deflate), false, "written by PK\5\6 somebody"));
     images.insert(images.begin(),
                   {"timestamps.npy", npyArray("'<f8'", "(3,)", std::string(24, '\0')), deflate});
-    row("times of images beside", zipArchive(images));
+    row("times of images in addition", zipArchive(images));
   }
 }
 
 void TestNumpy::layouts_areRead_data() {
   QTest::addColumn<QByteArray>("bytes");
-  QTest::addColumn<QString>("guess");  // what of the remark; empty: none
+  QTest::addColumn<QString>("guess");  // part of the remark; empty: no remark
   addStructured();
   addTables();
   addArchives();
@@ -360,7 +360,7 @@ void TestNumpy::folderOfArrays_isOneRecording() {
   QVERIFY2(said.find("give the folder") != std::string::npos, said.c_str());
 }
 
-// Named by numbers that nobody padded; the third is no archive, the second has no events.
+// Files numbered without leading zeros; the third is not an archive, the second has no events.
 void TestNumpy::numberedFiles_areReadOneAfterAnother() {
   const std::vector<Event> events = theEvents();
   std::size_t begin = 0;
@@ -391,7 +391,8 @@ void TestNumpy::numberedFiles_areReadOneAfterAnother() {
 void TestNumpy::objects_areNeverUnpickled() {
   const std::string pickle = npyArray("'|O'", "(1,)", "\x80\x04}q.");
   const std::string said = errorOf([&] { read(pickle); });
-  QVERIFY2(said.find("Python objects, which are never unpickled") != std::string::npos, said.c_str());
+  QVERIFY2(said.find("Python objects, not events, and are never unpickled") != std::string::npos,
+           said.c_str());
   std::vector<ZipFile> files = fourArrays(true);
   files.push_back({"meta.npy", pickle, true});
   const Contents contents = read(zipArchive(files));
@@ -415,7 +416,7 @@ void TestNumpy::whatIsNotRead_isSaid() {
   QVERIFY(!contents.streams[1].readable);
   files.erase(files.begin() + 3);
   const std::string said = errorOf([&] { read(zipArchive(files)); });
-  QVERIFY2(said.find("x, y, t are no events without p") != std::string::npos, said.c_str());
+  QVERIFY2(said.find("x, y, t are not events without p") != std::string::npos, said.c_str());
 }
 
 void TestNumpy::rowsThatAreNoEvents_areLeftOut() {
@@ -501,23 +502,22 @@ void TestNumpy::lies_areRefused_data() {
   const std::string good = npyHeader(kTonicDescr, shape());
   row("shape beyond all numbers", npyFile(npyHeader(kTonicDescr, "(4611686018427387904, 4)"), ""),
       "impossible shape");
-  row("negative shape", npyFile(npyHeader(kTonicDescr, "(-3,)"), ""), "header of the array is damaged");
-  row("no shape", npyFile("{'descr': '<u2', 'fortran_order': False}", ""), "does not say its type");
-  row("no dictionary", npyFile("import os", ""), "header of the array is damaged");
-  row("not closed", npyFile("{'descr': '<u2", ""), "header of the array is damaged");
-  row("brackets without end", npyFile(std::string(9000, '['), ""), "header of the array is damaged");
+  row("negative shape", npyFile(npyHeader(kTonicDescr, "(-3,)"), ""), "array's header is damaged");
+  row("no shape", npyFile("{'descr': '<u2', 'fortran_order': False}", ""), "does not state type");
+  row("no dictionary", npyFile("import os", ""), "array's header is damaged");
+  row("not closed", npyFile("{'descr': '<u2", ""), "array's header is damaged");
+  row("brackets without end", npyFile(std::string(9000, '['), ""), "array's header is damaged");
   std::string nested = "'<u2'";
   for (int i = 0; i < 14; ++i) nested = "[('x', " + nested + ")]";
   row("types within types", npyFile(npyHeader(nested, shape()), ""), "nested too deeply");
   row("version", npyFile(good, "", 9), "format 9");
   row("header of 4 GB", "\x93NUMPY\2" + std::string(1, '\0') + "\xF0\xFF\xFF\xFF" + good,
       "claims 4294967280 bytes");
-  row("header cut", npyFile(good, "").substr(0, 40), "header of the array is cut off");
+  row("header cut", npyFile(good, "").substr(0, 40), "array's header is cut off");
   row("unknown type", npyFile(npyHeader("'<q2'", shape()), ""), "no events");
-  row("huge element", npyFile(npyHeader("'|V99999999999999999999'", shape()), ""), "not understood");
+  row("huge element", npyFile(npyHeader("'|V99999999999999999999'", shape()), ""), "is unknown");
   row("huge elements", npyFile(npyHeader("[('x', '|V65536'), ('y', '|V65536')]", shape()), ""), "too large");
-  row("huge list", npyFile(npyHeader("[('x', '<u2', (4294967296, 4294967296))]", shape()), ""),
-      "not understood");
+  row("huge list", npyFile(npyHeader("[('x', '<u2', (4294967296, 4294967296))]", shape()), ""), "is unknown");
   row("nothing", npyFile(npyHeader("'|V0'", shape()), ""), "no bytes");
   row("one column", npyArray("'<u2'", shape(), rowsForNumpy({{'x', "<u2"}}, 1.0)), "give the folder");
   row("boxes", npyArray("[('t', '<u8'), ('x', '<f4'), ('y', '<f4'), ('w', '<f4')]", "(0,)", ""), "no events");
@@ -554,7 +554,7 @@ void TestNumpy::damage_isSaid_data() {
                         << said;
   };
   row("a million million rows", tonic(1'000'000'000'000), kCount, FaultKind::Truncated,
-      "claims 1000000000000 rows and has 3000");
+      "states 1000000000000 rows and has 3000");
   std::vector<ZipFile> files = fourArrays(false);
   files[3].content = npyArray("'|i1'", "(10,)", std::string(10, '\1'));
   row("one is shorter", zipArchive(files), 10, FaultKind::Truncated, "the first 10 are read");
@@ -562,12 +562,12 @@ void TestNumpy::damage_isSaid_data() {
     files = fourArrays(deflate);
     files[1].claimed_checksum = 1;
     row(deflate ? "checksum, deflated" : "checksum, stored", zipArchive(files), kCount, FaultKind::Corrupt,
-        "y: the checksum is not right");
+        "y: the checksum is wrong");
   }
   files = {{"events.npy", tonic(2 * kCount), true}};
   files[0].claimed_bytes = std::uint64_t{1} << 31;
   row("fewer bytes than claimed", zipArchive(files), kCount, FaultKind::Truncated,
-      "fewer rows than it claims");
+      "fewer rows than it states");
   files = {{"events.npy", tonic(), true}};
   files[0].left_out_bytes = 500;
   QTest::newRow("packed bytes end early")
@@ -582,7 +582,7 @@ void TestNumpy::damage_isSaid_data() {
   for (std::size_t i = 0; i < kCount; ++i) types += static_cast<char>(i % 4);
   files[3].content = npyArray("'|i1'", shape(kCount), types);
   row("types for polarities", zipArchive(files), kCount / 2, FaultKind::Corrupt,
-      "polarity that is none of 1, 0 and -1");
+      "polarity other than 1, 0 and -1");
   files = fourArrays(false);
   files.push_back({"frames.npy", "\x93NUMPY\1"});
   row("another array", zipArchive(files), kCount, FaultKind::Corrupt, "frames.npy is left out");
@@ -613,7 +613,7 @@ std::size_t residentBytes() {
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// 130 MB that are 130 kB when deflated; and the same plain, and with its columns far apart.
+// 130 MB that deflate to 130 kB; the same uncompressed, and with its columns far apart.
 void TestNumpy::memory_doesNotGrow() {
   constexpr std::size_t kRows = 10'000'000, kMost_bytes = std::size_t{16} << 20;
   std::vector<std::filesystem::path> paths;
@@ -654,10 +654,10 @@ void TestNumpy::conversion_keepsEvents() {
   QCOMPARE(convertRecording(request, RunContext{silence}).events, std::uint64_t{kCount});
   const Contents contents = readAll(request.output);
   QVERIFY(sameEvents(contents.events.at(0), theEvents()));
-  QCOMPARE(contents.streams[0].resolution_px, (Resolution{64, 46}));  // what they reach
+  QCOMPARE(contents.streams[0].resolution_px, (Resolution{64, 46}));  // their range
 }
 
-// The real one where it is installed (python3-h5py brings it).
+// The real one, if installed (python3-h5py includes it).
 void TestNumpy::filesOfNumpyItself_areRead() {
   constexpr const char* kScript = R"(
 import numpy as np

@@ -1,4 +1,4 @@
-// Folders of pictures in the layouts of data sets and without one: which streams they give, with which times.
+// Folders of images in the layouts of data sets and without one: their streams and times.
 #include "core/base/error.h"
 #include "core/format/picture_header.h"
 #include "core/recording/conversion.h"
@@ -234,7 +234,7 @@ void TestPictureFolders::names_areSortedNaturally() {
   QVERIFY(naturallyBefore("a09.png", "a10.png"));
   QVERIFY(naturallyBefore("a1b2", "a1b10"));
   QVERIFY(naturallyBefore("a", "a1"));
-  QVERIFY(naturallyBefore("a1", "a01") != naturallyBefore("a01", "a1"));  // some order, and always the same
+  QVERIFY(naturallyBefore("a1", "a01") != naturallyBefore("a01", "a1"));  // any order, but always the same
   QVERIFY(!naturallyBefore("a1", "a1"));
   for (const char* name : {"left10.png", "left9.png", "left1.png"})
     scratch_->write(name, pngBytes(8, 6) + name);
@@ -398,7 +398,7 @@ void TestPictureFolders::sizes_ofCutFiles_areUnknown() {
   QVERIFY(!pictureSize("no picture").known());
 }
 
-// A pipe would be waited for.
+// Opening a pipe would block.
 void TestPictureFolders::specialFiles_areNotOpened() {
   addEurocCamera("cam0", 2);
   const std::filesystem::path path = *scratch_ / ("cam0/data/" + nameAt(kPictureFoldersStart_ns));

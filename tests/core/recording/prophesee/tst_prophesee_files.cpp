@@ -16,7 +16,7 @@ namespace {
 
 const std::string kEvt2Header = "% evt 2.0\n% format EVT2;height=480;width=640\n% geometry 640x480\n% end\n";
 
-// Rows of neighbours, some apart, over blocks of many sizes; whole us.
+// Rows of neighbours, some separate, over blocks of many sizes; whole us.
 std::vector<Event> rowsForPropheseeFiles(std::size_t count, std::int64_t start_ns) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < count; ++i) {
@@ -95,7 +95,7 @@ void TestPropheseeFiles::roundTrip_isExact() {
   QCOMPARE(contents.faults.size(), format == "DAT bare" ? 1u : 0u);
 }
 
-// Over three turns of EVT3's counter; from a late beginning on, times count from the first event.
+// Over three wraps of EVT3's counter; with a late beginning, times count from the first event.
 void TestPropheseeFiles::whatIsWritten_isReadBack_data() {
   QTest::addColumn<QString>("format");
   QTest::addColumn<qint64>("start_ns");
@@ -150,7 +150,8 @@ void TestPropheseeFiles::strayStamps_areLeftOut_data() {
   for (const char* const format : {"raw", "dat"}) QTest::newRow(format) << QString(format);
 }
 
-// A first event stamped 0 before those of a host's clock, and one of next year: neither fills the file with counter words.
+// A first event stamped 0 before those of a host's clock, and one of next year: neither fills the file with
+// counter words.
 void TestPropheseeFiles::strayStamps_areLeftOut() {
   QFETCH(QString, format);
   constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000, kYear_ns = 31'536'000'000'000'000;
@@ -175,7 +176,7 @@ void TestPropheseeFiles::strayStamps_areLeftOut() {
   QVERIFY2(log.said.find("clock_offset_s: 17000000") != std::string::npos, log.said.c_str());
   QCOMPARE(readAll(path).events.at(0).size(), std::size_t{20'000 - 2});
   QVERIFY(std::filesystem::file_size(path) < 1'000'000);
-  // Whoever writes without that filter is told.
+  // Writing without that filter is refused.
   const auto direct = createRecording(scratch_ / "direct", format.toStdString(), {stream});
   QVERIFY_EXCEPTION_THROWN(direct->write(0, EventSpan(events)), CalibrationError);
 }

@@ -1,4 +1,4 @@
-// Messages of pictures byte by byte, for ROS 1 or as CDR, with none of the product's code.
+// Image messages byte by byte, for ROS 1 or as CDR, without the product's code.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Makes what ROS 2 records byte by byte, with none of the product's code: CDR messages, MCAP files without
-// chunks or summary, sqlite3 bags.
+// Builds ROS 2 recordings byte by byte, without the product's code: CDR messages, MCAP files without chunks
+// or summary, sqlite3 bags.
 #pragma once
 
 #include "core/data/recording.h"
@@ -26,7 +26,7 @@ struct RosTopic {
 };
 
 std::string mcapRecord(std::uint8_t op, std::string_view content);
-// Each message on its own; `chunk_messages` of them in a chunk each if not 0. Without indexes.
+// Each message separately; if `chunk_messages` is not 0, that many per chunk. Without indexes.
 std::string mcapFile(const std::vector<RosTopic>& topics, const std::vector<RosMessage>& messages,
                      std::size_t chunk_messages = 0);
 

@@ -1,4 +1,4 @@
-// event_camera_msgs/EventPacket in a bag: every encoding, and what goes wrong with them.
+// event_camera_msgs/EventPacket in a bag: every encoding, and faults of messages.
 #include "core/base/error.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
@@ -147,7 +147,7 @@ void TestEventPackets::libcaerCmp_isDecodedAndWarnedOf() {
   QVERIFY(sameForEventPackets(events[2], kEventPacketsStart_ns + 4'098'000, 63, 15, false));
   QVERIFY(sameForEventPackets(events[3], kEventPacketsStart_ns + 4'098'000, 63, 16, false));
   QVERIFY(
-      sameForEventPackets(events[4], kEventPacketsStart_ns + 10'000'000, 1, 2, false));  // time starts anew
+      sameForEventPackets(events[4], kEventPacketsStart_ns + 10'000'000, 1, 2, false));  // time starts again
   QVERIFY(faultOf(contents, FaultKind::Encoding) != nullptr);
 }
 
@@ -199,7 +199,7 @@ void TestEventPackets::triggers_areListed() {
   QCOMPARE(contents.streams[1].messages, std::uint64_t{3});
 }
 
-// Far behind the messages that are looked into when a recording is opened.
+// Far after the messages that are read when a recording is opened.
 void TestEventPackets::triggers_areListedWhereverTheyOccur() {
   constexpr std::uint64_t kMessages = 200;
   for (const std::uint64_t triggers : {0, 2}) {

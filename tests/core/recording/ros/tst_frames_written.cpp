@@ -1,4 +1,4 @@
-// Frames that we write into ROS recordings: read back as they were, by us and by ROS's own library.
+// Frames that Evical writes into ROS recordings: read back unchanged, by Evical and by ROS's own library.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/picture_samples.h"

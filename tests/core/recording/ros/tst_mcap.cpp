@@ -1,4 +1,4 @@
-// MCAP: what is written comes back, what others write is read, and damage costs no more than it must.
+// MCAP: written data are read back, other programs' files are read, and damage loses no more than necessary.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
@@ -21,7 +21,7 @@ constexpr Resolution kMcapSize_px = {64, 48};
 const std::vector<RosTopic> kMcapTopics = {{"/events", "dvs_msgs/msg/EventArray"},
                                            {"/imu", "sensor_msgs/msg/Imu"}};
 
-// 30 messages of 100 events, and as many samples.
+// 30 messages of 100 events each, and as many samples.
 std::vector<RosMessage> someMessages() {
   std::vector<RosMessage> messages;
   const std::vector<ImuSample> samples = someSamples(30);
@@ -32,7 +32,7 @@ std::vector<RosMessage> someMessages() {
   return messages;
 }
 
-// Those of the one stream that has some: without a summary, streams come in the order of their messages.
+// Events of the only stream with events: without a summary, streams are in the order of their messages.
 std::vector<Event> eventsOf(const Contents& contents) {
   for (const auto& [stream, events] : contents.events)
     if (!events.empty()) return events;
@@ -221,7 +221,7 @@ void TestMcap::bytesMissingFromTheBeginning_areSaid_data() {
   QTest::newRow("chunks") << 20;
 }
 
-// Of the first records: everything comes out, or there is a fault.
+// Damage of the first records: everything is read, or there is a fault.
 void TestMcap::bytesMissingFromTheBeginning_areSaid() {
   QFETCH(int, chunk_messages);
   const std::string whole = mcapFile(kMcapTopics, someMessages(), static_cast<std::size_t>(chunk_messages));
@@ -238,7 +238,7 @@ void TestMcap::bytesMissingFromTheBeginning_areSaid() {
 
 void TestMcap::missingSchema_isSaid() {
   std::string bytes = mcapFile(kMcapTopics, someMessages());
-  std::size_t second = bytes.find('\3');  // the record's kind; its id stands behind the length
+  std::size_t second = bytes.find('\3');  // the record's kind; its id follows the length
   while (bytes.compare(second + 9, 2, std::string("\2\0", 2)) != 0) second = bytes.find('\3', second + 1);
   bytes[second] = '\x0C';  // metadata, which readers pass over
   const Contents contents = readAll(folder_.write("schema.mcap", bytes));
@@ -256,7 +256,7 @@ void TestMcap::corruptChunk_losesNoOther() {
   QVERIFY(contents.eventCount() >= events.size() * 6 / 10);
 }
 
-// A chunk that says it holds 2^60 bytes.
+// A chunk with a stated size of 2^60 bytes.
 void TestMcap::lyingSizes_takeNoMemory() {
   for (const std::string_view name : {"lz4", "zstd"}) {
     std::string bytes = fileBytes(write(name == "lz4" ? McapCompression::Lz4 : McapCompression::Zstd,

@@ -1,4 +1,4 @@
-// Frames in ROS recordings: what is readable comes out as it is stored, what is not is refused by name.
+// Frames in ROS recordings: readable ones are read as stored, others are refused with their encoding.
 #include "core/base/error.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/picture_samples.h"

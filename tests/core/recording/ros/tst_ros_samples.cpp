@@ -1,4 +1,4 @@
-// Recordings of other people come out as an independent decoder found them.
+// Recordings from other sources are read with the same result as by an independent decoder.
 #include "core/recording/inspection.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"

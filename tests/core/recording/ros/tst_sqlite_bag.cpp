@@ -1,5 +1,5 @@
-// sqlite3 files and folders of ROS 2: several files are one recording, packed ones are unpacked, damaged ones
-// are read as far as they go.
+// sqlite3 files and folders of ROS 2: several files are one recording, compressed ones are decompressed,
+// damaged ones are read as far as possible.
 #include "core/base/error.h"
 #include "core/recording/ros/compression.h"
 #include "tests/core/recording/recording_contents.h"
@@ -21,7 +21,7 @@ const std::vector<RosTopic> kSqliteBagTopics = {{"/events", "dvs_msgs/msg/EventA
                                                 {"/imu", "sensor_msgs/msg/Imu"},
                                                 {"/text", "std_msgs/msg/String"}};
 
-// Messages `first` to `first + count` of a recording with one event message and one sample each ms.
+// Messages `first` to `first + count` of a recording with one event message and one sample per ms.
 std::vector<RosMessage> messagesFrom(std::size_t first, std::size_t count) {
   std::vector<RosMessage> messages;
   const std::vector<ImuSample> samples = someSamples(first + count);
@@ -198,8 +198,8 @@ void TestSqliteBag::corruption_isSurvived() {
   QVERIFY(read > 0);
 }
 
-// A page that stands twice moves all that follow: the tree leads to messages that were read before, and to
-// damage behind them, again and again.
+// A duplicated page shifts all later ones: the tree leads to messages that were read before, and to damage
+// after them, repeatedly.
 void TestSqliteBag::pageOutOfPlace_endsTheReading() {
   constexpr std::size_t kPage_bytes = 4096, kEvents = 200 * 100;
   std::vector<RosMessage> messages = messagesFrom(0, 200);

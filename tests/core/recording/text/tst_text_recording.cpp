@@ -49,7 +49,7 @@ class TestTextRecording : public QObject {
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
-  // Packs what is written; returns the packed file's path.
+  // Compresses the written file; returns the compressed file's path.
   std::filesystem::path pack(const char* name, const QByteArray& content) const {
     QFile file(folder_.filePath(name));
     if (!file.open(QIODevice::WriteOnly)) qFatal("%s cannot be written", name);
@@ -61,7 +61,7 @@ class TestTextRecording : public QObject {
   QTemporaryDir folder_;
 };
 
-// More lines than a buffer holds, so that unpacking goes on between them.
+// More lines than a buffer can store, so that decompression continues between them.
 QByteArray manyEvents() {
   QByteArray text;
   for (int i = 0; i < 40'000; ++i)
@@ -116,7 +116,7 @@ void TestTextRecording::packedOthers_areRefused() {
   }
 }
 
-// A packet holds what was measured at one time.
+// A packet has the measurements of one time.
 void TestTextRecording::points_areReadByTheirHeader() {
   QFile file(QString::fromStdString(path("points.csv").string()));
   QVERIFY(file.open(QIODevice::WriteOnly));
@@ -361,7 +361,7 @@ void TestTextRecording::columnsThatMakeNoSense_areRefused() {
   }
 }
 
-// Each table holds one sample: acceleration (1, 2, 9.5) m/s^2, rate (0.1, 0.2, 0.3) rad/s.
+// Each table has one sample: acceleration (1, 2, 9.5) m/s^2, rate (0.1, 0.2, 0.3) rad/s.
 void TestTextRecording::imuColumns_areToldByName_data() {
   QTest::addColumn<QByteArray>("header");
   QTest::addColumn<QByteArray>("row");
@@ -439,7 +439,7 @@ void TestTextRecording::eventColumns_areToldByName_data() {
   row("extra columns", "x,y,x_flow,t_us,confidence,p\n300,200,0.5,5,1,1\n301,7,0.5,6,1,0\n");
   row("types of OpenMV", "type,sec,ms,us,x,y\n1,0,0,5,300,200\n2,0,0,5,0,0\n0,0,0,6,301,7\n4,0,0,9,0,0\n");
   row("words", "event_type;pos_x;pos_y;time [us]\n1;300;200;5\n0;301;7;6\n");
-  row("text beside", "t_us,source,x,y,pol\n5,left,300,200,1\n6,left,301,7,-1\n");
+  row("text next to numbers", "t_us,source,x,y,pol\n5,left,300,200,1\n6,left,301,7,-1\n");
 }
 
 void TestTextRecording::eventColumns_areToldByName() {
@@ -470,7 +470,7 @@ void TestTextRecording::namesThatDoNotTell_areRefused_data() {
       "more than one accelerometer: low_acc_x, high_acc_x", "t_us,ax,ay,az,-,-,-,gx,gy,gz");
   row("an axis twice", "t_us,ax,ax,az,gx,gy,gz\n7,1,2,9.5,1,2,3\n",
       "three columns x, y and z of the accelerometer", "");
-  row("an unknown unit", "t_us,ax [lsb],ay [lsb],az [lsb],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "not known: lsb", "");
+  row("an unknown unit", "t_us,ax [lsb],ay [lsb],az [lsb],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "meter: lsb", "");
   row("different units", "t_us,ax [g],ay [g],az [mg],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "different units", "");
   row("a name too few", "t_us,ax,ay,az,gx,gy\n7,1,2,9.5,1,2,3\n", "6 names, but its lines have 7", "");
   row("no polarity", "t_us,x,y,z\n7,1,2,9\n", "neither polarity (events) nor point", "t_us,x,y,?");
@@ -510,7 +510,7 @@ void TestTextRecording::doubtfulUnitOfTime_isSaid() {
   writeFile(path("ms.csv"), text);
   const auto reader = openRecording(path("ms.csv"));
   QCOMPARE(reader->faults().size(), std::size_t{1});
-  QVERIFY2(reader->faults()[0].text.find("In ms there would be 200") != std::string::npos,
+  QVERIFY2(reader->faults()[0].text.find("ms would give 200") != std::string::npos,
            reader->faults()[0].text.c_str());
 }
 
