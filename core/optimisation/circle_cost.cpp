@@ -4,8 +4,11 @@
 #include "core/geometry/so3.h"
 #include "core/optimisation/jacobian_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -166,6 +169,24 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     jacobianRows<2, 1>(jacobians, kSlowEdgeLead, row) = by_px * circle.lead.of_slow;
 }
 
+// One for each view whose circles have a displacement in common.
+std::vector<CommonDisplacement> commonDisplacements(const std::vector<CircleMeasurement>& circles) {
+  std::map<int, std::vector<Eigen::Index>> rows_by_view;
+  for (std::size_t i = 0; i < circles.size(); ++i)
+    if (circles[i].common_px > 0.0) rows_by_view[circles[i].view].push_back(2 * static_cast<Eigen::Index>(i));
+  std::vector<CommonDisplacement> all;
+  std::vector<Eigen::Matrix2d> roots;
+  for (auto& [view, rows] : rows_by_view) {
+    roots.clear();
+    for (const Eigen::Index row : rows) {
+      const CircleMeasurement& circle = circles[static_cast<std::size_t>(row / 2)];
+      roots.push_back(circle.common_px * circle.whitening_px);
+    }
+    all.emplace_back(std::move(rows), roots);
+  }
+  return all;
+}
+
 }  // namespace
 
 Eigen::Matrix2d shortenByHuber(double threshold, Vector2d& residual) {
@@ -184,6 +205,7 @@ CircleCost::CircleCost(const CircleModel& model, const SegmentTimes& segment,
   mutable_parameter_block_sizes()->assign(
       kBlockSizes.begin(), kBlockSizes.begin() + (model.free_intrinsics ? kBlocks : kIntrinsics));
   set_num_residuals(2 * static_cast<int>(circles_.size()));
+  common_ = commonDisplacements(circles_);
   if (!model.free_intrinsics) return;
   for (const CircleMeasurement& circle : circles_)
     seen_.push_back(seenCentre(model.camera, circle.centre_px));
@@ -221,15 +243,42 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
       continue;
     }
     const Vector2d lead_px = mount.lead.times(circle.lead);
-    Vector2d error = circle.whitening_px * (projected->centre_px + lead_px - circle.centre_px);
-    const Eigen::Matrix2d by_error = shortenByHuber(model_.huber_sigma, error);
-    residual = error;
+    residual = circle.whitening_px * (projected->centre_px + lead_px - circle.centre_px);
     if (!jacobians) continue;
-    const Eigen::Matrix2d by_px = by_error * circle.whitening_px;
-    writeJacobians(mount, placed, *projected, by_px, circle, row, jacobians);
-    if (by_camera) jacobianRows<2, 9>(jacobians, kIntrinsics, row) = by_px * by_intrinsics;
+    writeJacobians(mount, placed, *projected, circle.whitening_px, circle, row, jacobians);
+    if (by_camera) jacobianRows<2, 9>(jacobians, kIntrinsics, row) = circle.whitening_px * by_intrinsics;
   }
+  whitenViews(residuals, jacobians);
+  shorten(residuals, jacobians);
   return true;
+}
+
+void CircleCost::whitenViews(double* residuals, double** jacobians) const {
+  for (const CommonDisplacement& common : common_) {
+    const auto is_behind = [&](Eigen::Index row) { return residuals[row] == kBehindCamera_sigma; };
+    if (std::ranges::any_of(common.rows(), is_behind)) continue;
+    common.whiten(residuals, 1);
+    if (!jacobians) continue;
+    for (std::size_t block = 0; block < parameter_block_sizes().size(); ++block)
+      if (jacobians[block]) common.whiten(jacobians[block], parameter_block_sizes()[block]);
+  }
+}
+
+void CircleCost::shorten(double* residuals, double** jacobians) const {
+  using Rows = Eigen::Map<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>>;
+  for (Eigen::Index row = 0; row < num_residuals(); row += 2) {
+    Vector2d error(residuals[row], residuals[row + 1]);
+    if (error.norm() <= model_.huber_sigma || error.x() == kBehindCamera_sigma) continue;
+    const Eigen::Matrix2d by_error = shortenByHuber(model_.huber_sigma, error);
+    Eigen::Map<Vector2d>(residuals + row) = error;
+    if (!jacobians) continue;
+    for (std::size_t block = 0; block < parameter_block_sizes().size(); ++block) {
+      if (!jacobians[block]) continue;
+      const Eigen::Index columns = parameter_block_sizes()[block];
+      Rows rows(jacobians[block] + row * columns, 2, columns);
+      rows = (by_error * rows).eval();
+    }
+  }
 }
 
 }  // namespace evical

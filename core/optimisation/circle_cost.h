@@ -4,12 +4,13 @@
 //   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
 //     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
-// L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that
-// its square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
+// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of a view are then whitened for the
+// displacement that its circles have in common (common_displacement.h), and each circle's residual is shortened so that its
+// square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
 // spline segment: they share parameter blocks, and a block per circle would leave Ceres with bookkeeping
 // only.
 //
-// Where intrinsics are free, the prediction is that of free_intrinsics.h.
+// With free intrinsics, the prediction is that of free_intrinsics.h.
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
 // rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge lead [px] and
@@ -25,6 +26,7 @@
 
 #include "core/data/calibration_state.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/optimisation/common_displacement.h"
 #include "core/optimisation/edge_lead.h"
 #include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/spline_segment.h"
@@ -45,10 +47,12 @@ struct CircleMeasurement {
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLeadEffect lead;
   Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
+  double common_px = 0.0;                                    // commonDisplacement_px
   int view = 0, circle = 0;                                  // circle: position in the view's list
+  int point = 0, place = 0;  // index on the board; cell of the image (placeOf)
 };
 
-// What circles of one camera share.
+// Data that all circles of one camera share.
 struct CircleModel {
   CameraIntrinsics camera;  // that was seen with
   double radius_m = 0.0;
@@ -63,12 +67,18 @@ class CircleCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
   const std::vector<CircleMeasurement>& circles() const { return circles_; }
+  // Removes the common displacement of each view from errors over sigmas: two for each circle.
+  void whitenViews(double* errors) const { whitenViews(errors, nullptr); }
 
  private:
+  void whitenViews(double* residuals, double** jacobians) const;
+  void shorten(double* residuals, double** jacobians) const;
+
   const CircleModel& model_;
   SegmentTimes segment_;
   std::vector<CircleMeasurement> circles_;
-  std::vector<SeenCentre> seen_;  // of the circles, where intrinsics are free
+  std::vector<SeenCentre> seen_;            // of the circles, where intrinsics are free
+  std::vector<CommonDisplacement> common_;  // by view
 };
 
 // Shortens r so that |result|^2 is Huber's loss of |r|^2 (r^2 up to the threshold d, 2 d |r| - d^2 beyond)

@@ -1,17 +1,21 @@
 #include "core/optimisation/circle_errors.h"
 
 #include "core/numerics/robust.h"
+#include "core/optimisation/common_displacement.h"
 #include "core/optimisation/edge_lead.h"
 #include "core/optimisation/free_intrinsics.h"
 
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/trajectory.h"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -31,6 +35,53 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
   return projected ? std::optional(projected->centre_px) : std::nullopt;
 }
 
+// Errors over sigmas of one view, whitened for the displacement that its circles have in common. Circles far from the
+// median take no part in the displacement.
+void normalise(const BoardObservations& observations, const OptimisationOptions& options,
+               std::span<CircleError> view) {
+  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  std::vector<double> x_px, y_px;
+  for (const CircleError& error : view) {
+    if (!std::isfinite(error.normalised2)) continue;
+    x_px.push_back(error.error_px.x());
+    y_px.push_back(error.error_px.y());
+  }
+  if (x_px.empty()) return;
+  const Eigen::Vector2d median_px(medianOf(std::move(x_px)), medianOf(std::move(y_px)));
+  std::vector<Eigen::Matrix2d> factors, roots;
+  std::vector<double> deviations2, whitened;
+  for (const CircleError& error : view) {
+    const CircleObservation& circle = observations.views[error.view].circles[error.index];
+    const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
+    factors.emplace_back(covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity()));
+    if (std::isfinite(error.normalised2))
+      deviations2.push_back((factors.back() * (error.error_px - median_px)).squaredNorm());
+  }
+  const double scale = std::max(1.0, scaleOfPoints(deviations2));
+  const double bound2 = std::pow(options.outlier_sigma * scale, 2);
+  std::vector<Eigen::Index> rows;
+  std::vector<std::size_t> common;
+  for (std::size_t i = 0, k = 0; i < view.size(); ++i) {
+    if (!std::isfinite(view[i].normalised2)) continue;
+    const double deviation2 = deviations2[k++];
+    if (deviation2 > bound2) {
+      view[i].normalised2 = (factors[i] * view[i].error_px).squaredNorm();
+      continue;
+    }
+    const CircleObservation& circle = observations.views[view[i].view].circles[view[i].index];
+    const Eigen::Vector2d in_sigmas = factors[i] * view[i].error_px;
+    common.push_back(i);
+    rows.push_back(static_cast<Eigen::Index>(whitened.size()));
+    roots.emplace_back(commonDisplacement_px(observations.kind, circle, options) * factors[i]);
+    whitened.insert(whitened.end(), {in_sigmas.x(), in_sigmas.y()});
+  }
+  if (rows.empty()) return;
+  CommonDisplacement(std::move(rows), roots).whiten(whitened.data(), 1);
+  for (std::size_t k = 0; k < common.size(); ++k)
+    view[common[k]].normalised2 =
+        whitened[2 * k] * whitened[2 * k] + whitened[2 * k + 1] * whitened[2 * k + 1];
+}
+
 }  // namespace
 
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
@@ -38,12 +89,12 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
   std::vector<CircleError> errors;
   const So3Spline& rotation = state.world_from_imu_rotation;
   const VectorSpline& position = state.imu_in_world_m;
-  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
   for (std::size_t c = 0; c < input.cameras.size(); ++c) {
     const CameraData& camera = input.cameras[c];
     const CameraState& camera_state = state.cameras[c];
     for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
       const auto& circles = camera.observations.views[v].circles;
+      const std::size_t first = errors.size();
       for (std::size_t i = 0; i < circles.size(); ++i) {
         const CircleObservation& circle = circles[i];
         const double time_s = circleTime_s(camera_state, circle);
@@ -58,11 +109,11 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
           const EdgeLeadEffect lead =
               edgeLeadEffect(*camera.lens.detection_intrinsics, circle, options.slow_edge_speed_px_s);
           error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
-          const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
-          error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);
+          error.normalised2 = 0.0;
         }
         errors.push_back(error);
       }
+      normalise(camera.observations, options, std::span(errors).subspan(first));
     }
   }
   return errors;

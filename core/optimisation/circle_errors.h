@@ -1,4 +1,4 @@
-// How far every measured circle lies from where the state puts it, and which of them to trust.
+// Reprojection errors of all measured circles, and the selection of inliers.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -20,7 +20,8 @@ inline double circleTime_s(const CameraState& camera, const CircleObservation& c
 struct CircleError {
   std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list
   Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - measured, edge lead included
-  double normalised2 = 0.0;  // error^T covariance^-1 error; infinite behind the camera
+  double normalised2 =
+      0.0;  // squared, over sigmas, without the common displacement of the view; infinite behind the camera
 };
 
 // All circles whose times lie in both splines' range, in order of camera, view and list.

@@ -17,10 +17,20 @@
 namespace evical {
 namespace {
 
-// How far each ppm of drift moves a time.
+// Shift of a time by each ppm of drift.
 template <class Sensor>
 double byDrift_s(const Sensor& sensor, double time_s) {
   return 1e-6 * (time_s - sensor.time_offset_at_s);
+}
+
+// Index of the image's cell, of 16 x 10.
+int placeOf(const Eigen::Vector2d& centre_px, const Resolution& resolution_px) {
+  constexpr int kColumns = 16, kRows = 10;
+  const auto cell = [](double at, int size_px, int cells) {
+    return std::clamp(static_cast<int>(std::floor(at * cells / std::max(1, size_px))), 0, cells - 1);
+  };
+  return cell(centre_px.y(), resolution_px.height_px, kRows) * kColumns +
+         cell(centre_px.x(), resolution_px.width_px, kColumns);
 }
 
 CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, std::size_t view,
@@ -41,8 +51,11 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   m.lead = edgeLeadEffect(*data.lens.detection_intrinsics, observed, builder.options.slow_edge_speed_px_s);
   m.pixel_error_px = pixel_errors.at(observed);
+  m.common_px = scale * commonDisplacement_px(data.observations.kind, observed, builder.options);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
+  m.point = observed.circle;
+  m.place = placeOf(observed.centre_px, data.lens.detection_intrinsics->resolution_px);
   return m;
 }
 

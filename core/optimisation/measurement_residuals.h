@@ -1,5 +1,5 @@
-// What cameras and IMUs measured, as residual blocks: every measurement goes to the spline segment where the
-// time offsets put it now.
+// Residual blocks of the measurements of cameras and IMUs. Each measurement belongs to the spline segment at its time with
+// the current time offsets.
 #pragma once
 
 #include "core/optimisation/circle_cost.h"

@@ -2,8 +2,12 @@
 
 #include "core/base/option_table.h"
 
+#include <array>
+
 namespace evical {
 namespace {
+
+constexpr std::array kEstimated{"auto", "false", "true"};
 
 constexpr std::tuple kModelFields{
     Switch{"free_time_offsets", &ModelOptions::free_time_offsets, true,
@@ -29,9 +33,9 @@ constexpr std::tuple kModelFields{
            "Estimate the board's bow along rows and columns, and its twist. A board assumed flat is still "
            "tested for a bow.",
            Level::Public},
-    Switch{"line_delay", &ModelOptions::line_delay, false,
-           "Estimate every frame camera's line delay, also of cameras declared global-shutter. Otherwise "
-           "these are only tested for a rolling shutter.",
+    Choice{"line_delay", &ModelOptions::line_delay, Estimated::Auto, kEstimated,
+           "Estimate line delays of frame cameras declared global-shutter. Auto: if a test shows a rolling "
+           "shutter.",
            Level::Expert, Applies::WithFrames},
     Switch{"share_sensors", &ModelOptions::share_sensors, true,
            "Cameras with same_sensor_as share pose, lens and clock with the named camera; false: each has "
@@ -42,15 +46,16 @@ constexpr std::tuple kModelFields{
            "Free: estimate camera intrinsics in the last stage, also given ones. Fixed: keep them, and test "
            "whether they agree with the data.",
            Level::Public},
-    Switch{"gyroscope_rotation", &ModelOptions::gyroscope_rotation, false,
-           "Estimate each gyroscope's rotation relative to its accelerometer, whose frame is the IMU "
-           "frame. Always estimated with a prior that has a sigma.",
+    Choice{"gyroscope_rotation", &ModelOptions::gyroscope_rotation, Estimated::Auto, kEstimated,
+           "Estimate each gyroscope's rotation relative to its accelerometer. Auto: if a test shows a "
+           "misalignment. Always estimated with a prior that has a sigma.",
            Level::Public, Applies::WithImu},
     Field{"delay_misfit", &ModelOptions::delay_misfit, 1.3, within(1.0, 1000.0), "",
           "Accelerometer delays are fixed if acceleration errors exceed the noise by this factor, since "
           "splines that do not follow the motion bias them."},
-    Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Constant, std::array{"constant", "linear"},
-           "Biases over a recording: constant, or straight lines between knots with a random-walk prior.",
+    Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Auto, std::array{"auto", "constant", "linear"},
+           "Biases: constant, or linear between knots with a random-walk prior. Auto: linear if a test shows "
+           "that they change.",
            Level::Public, Applies::WithImu},
     Field{"bias_knot_spacing_s", &ModelOptions::bias_knot_spacing_s, 5.0, within(0.1, 1e4), "s",
           "Linear biases: largest knot spacing; a strong random walk makes it smaller.", Level::Expert,
@@ -69,6 +74,10 @@ constexpr std::tuple kModelFields{
           "Image speed at which the additional lead of slow edges has decayed to 1/e."},
     Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
           "Sigma added in quadrature to the covariance of each measured centre."},
+    Field{"common_displacement_px", &ModelOptions::common_displacement_px, 0.008, within(0.0, 10.0), "px",
+          "Event cameras: sigma of a displacement that all circles of a window have in common, fast motion."},
+    Field{"common_displacement_px2_s", &ModelOptions::common_displacement_px2_s, 2.0, within(0.0, 1000.0),
+          "px^2/s", "Event cameras: product of the same sigma and the image speed, slow motion."},
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Threshold of Huber's loss for circle residuals."},
     Field{

@@ -1,4 +1,4 @@
-// Errors of edges that repeat wherever an edge crosses the same pixel again: no residual shows them and
+// Errors of edges that repeat whenever an edge crosses the same pixel again: no residual shows them and
 // no number of views averages them. Circles that cross few pixels show a wrong amplitude by them: a
 // change in proportion to the centre's distance from its mean place, of pixel_error / a^1.5 with a the
 // RMS of these distances in pixels, as many independent errors as pixels. Not estimated, only allowed
@@ -17,7 +17,7 @@ class PixelErrors {
  public:
   PixelErrors(const CameraData& camera, const Board& board, double pixel_error_px);
 
-  // What one sigma changes in the circle's centre; ideal pixels.
+  // Change of the circle's centre by one sigma; ideal pixels.
   Eigen::Vector2d at(const CircleObservation& circle) const;
 
  private:
