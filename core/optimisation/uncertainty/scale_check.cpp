@@ -19,21 +19,22 @@ std::optional<Eigen::Index> boardColumn(const QuantityCovariance& covariance, Qu
   return columnOf({QuantityOwner::Board, board, id}, covariance.quantities, covariance.first_column);
 }
 
-// Of gravity's norm, behind its two tilts.
+// Column of gravity's norm, behind its two tilts.
 std::optional<Eigen::Index> gravityNormColumn(const QuantityCovariance& covariance) {
   return columnOf({QuantityOwner::Rig, 0, QuantityId::Gravity, 2}, covariance.quantities,
                   covariance.first_column);
 }
 
-// What is known of a number, and what the solution made of it.
+// Prior of a number, and its estimate.
 struct Weighed {
   double prior_sigma, found, found_sigma;  // the prior's mean is 0
 
-  // Of the recording against the prior; 0 where the recording says nothing of its own.
+  // Disagreement between the recording and the prior; 0 if the recording adds little to the prior, since the estimate
+  // then says nothing about the prior's error.
   double sigmas() const {
-    const double moved2 = prior_sigma * prior_sigma - found_sigma * found_sigma;
-    constexpr double kLeastShare = 0.05;  // of the prior's variance
-    return moved2 > kLeastShare * prior_sigma * prior_sigma ? found / std::sqrt(moved2) : 0.0;
+    constexpr double kLargestShare = 0.8;  // of the prior's sigma
+    if (found_sigma > kLargestShare * prior_sigma) return 0.0;
+    return found / std::sqrt(prior_sigma * prior_sigma - found_sigma * found_sigma);
   }
 };
 
@@ -57,7 +58,8 @@ struct Combination {
   }
 };
 
-// How much larger the board is than said, by accelerations in units of gravity: either may be what is wrong.
+// Relative excess of the board's size over its given value, from accelerations in units of gravity. Either value may be
+// wrong.
 Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& state,
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination excess(covariance);
@@ -68,7 +70,7 @@ Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& sta
   return excess.weighed(covariance);
 }
 
-// How much larger a further board is than said, by what the world's is said to be.
+// Relative excess of a further board's size over its given value, measured by the world's board.
 Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& state, std::size_t board,
                      const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination ratio(covariance);
@@ -88,7 +90,7 @@ std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
       input.boardKey(0), input.board.sizeKey());
 }
 
-// Of two boards' sizes, one must be wrong where they contradict each other.
+// If two boards' sizes contradict each other, one of them is wrong.
 std::string ratioDoubt(const CalibrationInput& input, std::size_t board, const Weighed& ratio) {
   return fmt::format(
       "{} and {} contradict each other: measured against the first, the second is {:.2g} % {} than its "
@@ -101,7 +103,7 @@ std::string ratioDoubt(const CalibrationInput& input, std::size_t board, const W
 std::string stretchDoubt(const std::string& board, const Weighed& stretch) {
   return fmt::format(
       "the {} is stretched: {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
-      "board.spacing_std allows: measure it in both directions, and see that it lies flat",
+      "board.spacing_std allows: measure it in both directions, and mount it flat",
       board, 100.0 * std::abs(stretch.found), stretch.found > 0.0 ? "longer" : "shorter",
       std::abs(stretch.sigmas()));
 }
@@ -119,7 +121,7 @@ BoardState certainBow(std::size_t board, const BoardState& found, const Quantity
   return bent;
 }
 
-// What is bent a little is estimated, and right; what is bent a lot is no longer what was modelled.
+// A small bow is estimated correctly. A large one exceeds the model.
 void checkBow(const CalibrationInput& input, std::size_t index, const BoardState& bent,
               const OptimisationOptions& options, ScaleCheck& check) {
   const Board& board = input.boardAt(index);
