@@ -23,7 +23,30 @@ Eigen::Index LocalSums::localOf(const Column& column) {
   return count - 1;
 }
 
-void LocalSums::add(const BlockJacobian& block, const Eigen::VectorXd& pixel_errors) {
+void LocalSums::addClusters(const BlockJacobian& block, const std::vector<Eigen::Index>& local,
+                            const std::vector<std::array<ResidualCluster, 2>>& clusters) {
+  const Eigen::Index stride = block.stride();
+  const double* row = block.data();
+  for (const std::array<ResidualCluster, 2>& of_circle : clusters) {
+    const double x = row[stride - 1], y = row[2 * stride - 1];
+    for (const ResidualCluster& cluster : of_circle) {
+      const auto found = std::ranges::find(clusters_, cluster);
+      const auto at = static_cast<std::size_t>(found - clusters_.begin());
+      if (found == clusters_.end()) {
+        clusters_.push_back(cluster);
+        by_cluster_.emplace_back(Eigen::VectorXd::Zero(products_.rows()));
+      }
+      Eigen::VectorXd& sum = by_cluster_[at];
+      if (sum.size() < products_.rows()) sum.conservativeResizeLike(Eigen::VectorXd::Zero(products_.rows()));
+      for (std::size_t i = 0; i < local.size(); ++i)
+        sum[local[i]] += x * row[i] + y * row[static_cast<std::size_t>(stride) + i];
+    }
+    row += 2 * stride;
+  }
+}
+
+void LocalSums::add(const BlockJacobian& block, const Eigen::VectorXd& pixel_errors,
+                    const std::vector<std::array<ResidualCluster, 2>>& clusters) {
   std::vector<Eigen::Index> local;
   for (const Eigen::Index column : block.splineColumns()) local.push_back(localOf({true, column}));
   for (const Eigen::Index column : block.borderColumns()) local.push_back(localOf({false, column}));
@@ -34,6 +57,7 @@ void LocalSums::add(const BlockJacobian& block, const Eigen::VectorXd& pixel_err
       products_(std::max(local[i], local[k]), std::min(local[i], local[k])) += row[k];
   for (std::size_t i = 0; i < local.size(); ++i) gradient_[local[i]] += row[i];
   squared_residuals_ += row[local.size()];
+  addClusters(block, local, clusters);
   if (pixel_errors.size() == 0) return;
   has_errors_ = true;
   const double* of_residual = block.data();
@@ -62,6 +86,11 @@ ProjectedSums LocalSums::projected(const UnknownColumns& columns,
   sums.information = lower.selfadjointView<Eigen::Lower>();  // to the last digit
   sums.score.noalias() = by_quantities.transpose() * gradient_.head(count);
   sums.squared_residuals = squared_residuals_;
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    const Eigen::Index known = std::min(count, by_cluster_[k].size());
+    sums.clusters.emplace_back(clusters_[k],
+                               by_quantities.topRows(known).transpose() * by_cluster_[k].head(known));
+  }
   if (has_errors_) sums.pixel_errors.noalias() = by_quantities.transpose() * with_errors_.head(count);
   return sums;
 }

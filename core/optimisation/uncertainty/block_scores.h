@@ -7,12 +7,23 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <compare>
+#include <utility>
 #include <vector>
 
 namespace evical {
 
+// Circles whose errors may have a part in common: those of one point of the board, or of one place in the image.
+struct ResidualCluster {
+  enum class Kind { Point, Place } kind = Kind::Point;
+  int index = 0;
+  auto operator<=>(const ResidualCluster&) const = default;
+};
+
 // [P r]^T [P r]: information, score and squared residuals.
 struct ProjectedSums {
+  std::vector<std::pair<ResidualCluster, Eigen::VectorXd>> clusters;  // P^T r of each
   Eigen::MatrixXd information;
   Eigen::VectorXd score;
   double squared_residuals = 0.0;
@@ -21,8 +32,9 @@ struct ProjectedSums {
 
 class LocalSums {
  public:
-  // `pixel_errors`: d, by residual; empty where there is none.
-  void add(const BlockJacobian& block, const Eigen::VectorXd& pixel_errors);
+  // `pixel_errors`: d, by residual; empty if absent. `clusters`: of each pair of residuals; empty if absent.
+  void add(const BlockJacobian& block, const Eigen::VectorXd& pixel_errors,
+           const std::vector<std::array<ResidualCluster, 2>>& clusters);
   Eigen::Index columnCount() const { return static_cast<Eigen::Index>(columns_.size()); }
 
   ProjectedSums projected(const UnknownColumns& columns, const SplineElimination& elimination) const;
@@ -35,6 +47,8 @@ class LocalSums {
   };
 
   Eigen::Index localOf(const Column& column);
+  void addClusters(const BlockJacobian& block, const std::vector<Eigen::Index>& local,
+                   const std::vector<std::array<ResidualCluster, 2>>& clusters);
 
   std::vector<Column> columns_;
   Eigen::MatrixXd products_;                // lower triangle; at least as large as there are columns
@@ -42,6 +56,8 @@ class LocalSums {
   double squared_residuals_ = 0.0;
   bool has_errors_ = false;
   std::vector<double> of_block_;
+  std::vector<ResidualCluster> clusters_;
+  std::vector<Eigen::VectorXd> by_cluster_;  // J^T r of each
 };
 
 }  // namespace evical

@@ -56,6 +56,7 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
   for (Eigen::VectorXd& score : information.scores) score = (keep * score).eval();
   for (Eigen::MatrixXd& share : information.information_by_stretch) share = congruence(keep, share);
   for (Eigen::VectorXd& effect : information.pixel_errors) effect = (keep * effect).eval();
+  for (ClusterScatter& each : information.clusters) each.scatter = congruence(keep, each.scatter);
   return information;
 }
 

@@ -12,6 +12,7 @@
 #include <ceres/cost_function.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -44,7 +45,7 @@ Groups groupsOf(const std::vector<BlockInfo>& blocks) {
   return groups;
 }
 
-// By residual block, as many of them as it has residuals, always the same.
+// A fixed random sign for each residual of each block.
 class RandomSigns {
  public:
   explicit RandomSigns(const UnknownColumns& columns) {
@@ -75,13 +76,14 @@ struct StretchSums {
         scores(groups, Eigen::VectorXd::Zero(quantities)) {}
 };
 
-// What the blocks of one part sum up to (UnknownColumns::Part), and then the parts.
+// Sums over the blocks of one part (UnknownColumns::Part), and over the parts.
 struct Sums {
   std::vector<MeasurementGroup> groups;
   Eigen::VectorXd gradient;
   std::map<std::int64_t, StretchSums> stretches;
   std::vector<Eigen::VectorXd> pixel_errors;  // by camera; as many as have any
-  Eigen::Index first_row = 0;                 // of the band
+  std::map<std::pair<std::size_t, ResidualCluster>, Eigen::VectorXd> clusters;  // by group
+  Eigen::Index first_row = 0;                                                   // of the band
   RowMajorMatrix signed_rows;  // J_x^T times random signs: rows of the band from there on, by group
 
   void add(Sums&& other);
@@ -106,11 +108,13 @@ void Sums::add(Sums&& other) {
     ours.information += theirs.information;
     for (std::size_t g = 0; g < groups.size(); ++g) ours.scores[g] += theirs.scores[g];
   }
+  clusters.merge(other.clusters);
+  for (const auto& [cluster, theirs] : other.clusters) clusters.at(cluster) += theirs;  // those of both
   for (std::size_t i = 0; i < other.pixel_errors.size(); ++i) addTo(pixel_errors, i, other.pixel_errors[i]);
   signed_rows.middleRows(other.first_row - first_row, other.signed_rows.rows()) += other.signed_rows;
 }
 
-// Of one group, not projected yet: all in one stretch of time.
+// Sums of one group over one stretch of time, before their projection.
 struct Pending {
   std::int64_t stretch = 0;
   LocalSums sums;
@@ -144,6 +148,7 @@ class Projection {
   void project(std::size_t group, Pending& pending, Sums& sums) const;
   void countAbsorbed(Sums& sums) const;
   void reportStretches(Sums& sums, ProjectedInformation& result) const;
+  void reportClusters(const Sums& sums, ProjectedInformation& result) const;
 
   CalibrationProblem& problem_;
   double stretch_s_;
@@ -177,7 +182,7 @@ void Projection::addSigns(std::size_t index, const BlockJacobian& block, Sums& s
   }
 }
 
-// What one sigma of the pixels' repeated errors changes in a block's residuals.
+// Change of a block's residuals by one sigma of the pixels' repeated errors.
 Eigen::VectorXd pixelErrorsOf(const BlockInfo& info) {
   if (info.circles == nullptr) return {};
   Eigen::VectorXd change(info.circles->num_residuals());
@@ -186,7 +191,17 @@ Eigen::VectorXd pixelErrorsOf(const BlockInfo& info) {
     change.segment<2>(row) = circle.whitening_px * circle.pixel_error_px;
     row += 2;
   }
+  info.circles->whitenViews(change.data());
   return change;
+}
+
+std::vector<std::array<ResidualCluster, 2>> clustersOf(const BlockInfo& info) {
+  std::vector<std::array<ResidualCluster, 2>> clusters;
+  if (info.circles == nullptr) return clusters;
+  for (const CircleMeasurement& circle : info.circles->circles())
+    clusters.push_back({ResidualCluster{ResidualCluster::Kind::Point, circle.point},
+                        ResidualCluster{ResidualCluster::Kind::Place, circle.place}});
+  return clusters;
 }
 
 void Projection::add(std::size_t index, const BlockJacobian& block, Pending& pending, Sums& sums) const {
@@ -196,7 +211,7 @@ void Projection::add(std::size_t index, const BlockJacobian& block, Pending& pen
   const auto stretch = static_cast<std::int64_t>(std::floor(info.time_s / stretch_s_));
   if (stretch != pending.stretch || pending.sums.columnCount() > kMostColumns) project(group, pending, sums);
   pending.stretch = stretch;
-  pending.sums.add(block, pixelErrorsOf(info));
+  pending.sums.add(block, pixelErrorsOf(info), clustersOf(info));
   sums.groups[group].residuals += static_cast<double>(block.rows());
   addSigns(index, block, sums);
 }
@@ -211,6 +226,10 @@ void Projection::project(std::size_t group, Pending& pending, Sums& sums) const 
   sums.gradient += projected.score;
   if (of_group.kind == SensorKind::Prior) return;
   addTo(sums.pixel_errors, of_group.sensor, projected.pixel_errors);
+  for (const auto& [cluster, score] : projected.clusters) {
+    const auto [at, is_new] = sums.clusters.try_emplace({group, cluster}, score);
+    if (!is_new) at->second += score;
+  }
   StretchSums& at =
       sums.stretches.try_emplace(pending.stretch, sums.gradient.size(), sums.groups.size()).first->second;
   at.information += projected.information;
@@ -243,7 +262,7 @@ Sums Projection::sumOfAll() const {
   return all;
 }
 
-// How many residuals of each group the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
+// Number of residuals of each group that the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
 // rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
 void Projection::countAbsorbed(Sums& sums) const {
   RowMajorMatrix solved = sums.signed_rows;
@@ -278,6 +297,22 @@ void Projection::reportStretches(Sums& sums, ProjectedInformation& result) const
     if (information.size() == 0) information = Eigen::MatrixXd::Zero(size, size);
 }
 
+void Projection::reportClusters(const Sums& sums, ProjectedInformation& result) const {
+  for (const auto& [cluster, score] : sums.clusters) {
+    const MeasurementGroup& group = result.groups[cluster.first];
+    const bool by_place = cluster.second.kind == ResidualCluster::Kind::Place;
+    const auto same = [&](const ClusterScatter& each) {
+      return each.camera == group.sensor && each.by_place == by_place;
+    };
+    auto found = std::ranges::find_if(result.clusters, same);
+    if (found == result.clusters.end())
+      found = result.clusters.insert(
+          found, {group.sensor, by_place, 0, Eigen::MatrixXd::Zero(score.size(), score.size())});
+    ++found->clusters;
+    found->scatter.noalias() += unabsorbed(group) * score * score.transpose();
+  }
+}
+
 ProjectedInformation Projection::run() {
   const Eigen::Index size = columns_.quantitySize();
   ProjectedInformation result;
@@ -294,6 +329,7 @@ ProjectedInformation Projection::run() {
     result.gradient = std::move(sums.gradient);
     result.pixel_errors = std::move(sums.pixel_errors);
     reportStretches(sums, result);
+    reportClusters(sums, result);
   }
   result.from_noise =
       informationFromNoise(columns_, elimination_.splines(), result.total, threads_, context_);

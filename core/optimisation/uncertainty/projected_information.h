@@ -1,11 +1,10 @@
-// What the measurements say of the calibrated quantities once the splines, and the biases' knots where these
-// drift, have been eliminated.
+// Information of the measurements about the calibrated quantities, after the splines and the knots of drifting biases
+// have been eliminated.
 //
 // With whitened Jacobians J_x (splines) and J_q (quantities), the projected Jacobian is
 //   P = J_q - J_x (J_x^T J_x)^-1 J_x^T J_q,
-// P^T P is the Schur complement, and an error e of the whitened measurements moves the estimate by (P^T P)^-1
-// P^T e. So P, taken group by group and stretch of time by stretch of time, also tells what errors of another
-// size, or errors that are correlated, do to the estimate.
+// P^T P is the Schur complement, and an error e of the whitened measurements changes the estimate by (P^T P)^-1
+// P^T e. So P, by group and by stretch of time, also gives the effect of errors of another size, or of correlated errors.
 #pragma once
 
 #include "core/base/progress.h"
@@ -26,35 +25,45 @@ struct MeasurementGroup {
   std::size_t sensor = 0;
   Eigen::MatrixXd information;     // its share of P^T P
   double squared_residuals = 0.0;  // whitened
-  double residuals = 0.0;          // how many
-  double absorbed = 0.0;  // how many of them the unknowns absorb (trace of the hat matrix, estimated)
+  double residuals = 0.0;          // count
+  double absorbed = 0.0;           // number that the unknowns absorb (trace of the hat matrix, estimated)
 
-  // Variance of whitened residuals, had the unknowns not been fitted to them; 1 if all is as stated.
+  // Variance of whitened errors, corrected for the fitted unknowns; 1 if the stated noise is right.
   double variance() const;
+};
+
+// Scatter of the scores of one camera's circles, summed by point of the board or by place in the image: sum of s s^T over
+// the clusters. Its mean is the camera's information if errors are independent.
+struct ClusterScatter {
+  std::size_t camera = 0;
+  bool by_place = false;
+  int clusters = 0;
+  Eigen::MatrixXd scatter;
 };
 
 struct ProjectedInformation {
   std::vector<Quantity> quantities;
   std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
   Eigen::MatrixXd total;                   // P^T P
-  Eigen::VectorXd gradient;                // P^T r, r all residuals: 0 by what is free at the optimum
+  Eigen::VectorXd gradient;                // P^T r, r all residuals: 0 for free parameters at the optimum
   std::vector<MeasurementGroup> groups;
-  // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed, and P^T P.
+  // P^T e of the measurements in each stretch of time, with residuals scaled up for the absorbed part, and P^T P.
   std::vector<Eigen::VectorXd> scores;
   std::vector<Eigen::MatrixXd> information_by_stretch;
-  double first_stretch_s = 0.0, stretch_s = 0.0;  // when the first begins, and how long each is
-  // What the splines' own errors add to P^T P on average. Where nothing moves the derivatives still hold
-  // noise, and noise squared looks like information.
+  double first_stretch_s = 0.0, stretch_s = 0.0;  // begin of the first, and length of each
+  // Mean contribution of the splines' own errors to P^T P. Without motion, derivatives still contain noise, and squared
+  // noise looks like information.
   Eigen::MatrixXd from_noise;
-  // Of biases that drift, in the order of CalibrationProblem::driftBlocks: by how much the knots fall where
-  // quantities rise, and the knots' covariance where these are known. Empty where biases are constant.
+  // Drifting biases, in the order of CalibrationProblem::driftBlocks: negative derivative of the knots by the quantities,
+  // and the knots' covariance for known quantities. Empty for constant biases.
   Eigen::MatrixXd drift_by_quantities, drift_covariance;
-  // By camera: P^T d, d what one sigma of the pixels' repeated errors changes in the residuals.
+  // By camera: P^T d, with d the change of the residuals by one sigma of the pixels' repeated errors.
   std::vector<Eigen::VectorXd> pixel_errors;
+  std::vector<ClusterScatter> clusters;
 };
 
-// `problem` must be built. Scores are collected over stretches of `stretch_s`. The same for any number of threads. Throws
-// Cancelled when asked to stop.
+// `problem` must be built. Scores are summed over stretches of `stretch_s`. The result does not depend on the number of
+// threads. Throws Cancelled when asked to stop.
 ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s, int threads = 1,
                                         const RunContext& context = {});
 

@@ -87,7 +87,7 @@ BlockErrors blockErrors(const ProjectedInformation& information, const Eigen::Ma
   return errors;
 }
 
-// Of each number, for errors that are correlated, over the sigma that takes them for white.
+// Ratio, for each number, of the sigma with correlated errors to the sigma with white errors.
 Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::MatrixXd& white,
                          const SafeInverse& safe, const Eigen::MatrixXd& given,
                          const Eigen::MatrixXd& report_from_tangent) {
@@ -115,7 +115,31 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
   return growth;
 }
 
-// Centres lie behind by a mean of what brightening and darkening edges do; which, to a quarter either way, is not known.
+// Variance of each number that errors add which circles of one point of the board, or of one place in the image, have in
+// common: the larger of both for each camera. `inverse`: report from scores.
+Eigen::VectorXd varianceOfClusters(const ProjectedInformation& information, const Eigen::MatrixXd& inverse) {
+  constexpr double kCertain_sigmas = 3.0;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(inverse.rows());
+  for (const MeasurementGroup& group : information.groups) {
+    if (group.kind != SensorKind::Circles) continue;
+    const Eigen::VectorXd white = group.variance() * congruence(inverse, group.information).diagonal();
+    Eigen::VectorXd largest = Eigen::VectorXd::Zero(sum.size());
+    for (const ClusterScatter& each : information.clusters) {
+      if (each.camera != group.sensor || each.clusters < 2) continue;
+      const Eigen::VectorXd seen = congruence(inverse, each.scatter).diagonal();
+      const double doubtless = kCertain_sigmas * std::sqrt(2.0 / each.clusters);
+      for (Eigen::Index i = 0; i < sum.size(); ++i) {
+        const double ratio = seen[i] / std::max(white[i], kLeastVariance);
+        const double certain = std::clamp((ratio - 1.0) / doubtless, 0.0, 1.0);
+        largest[i] = std::max(largest[i], certain * (seen[i] - white[i]));
+      }
+    }
+    sum += largest;
+  }
+  return sum;
+}
+
+// The lag of centres is a mean of the lags of brightening and darkening edges, with weights known to a quarter.
 double delayVariance_s2(const BoardObservations& seen, const OptimisationOptions& options) {
   constexpr double kShare = 0.25;
   // Rounded stamps are late or early by up to a step, all of them alike.
@@ -150,7 +174,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
       units.segment<4>(first).setConstant(kPixelUnit);
   }
   const SafeInverse safe = safeInverse(information.total, units);
-  // What the data doesn't say of its own: priors, the floor under open directions, errors that repeat.
+  // Information and errors beyond the data: priors, the floor under open directions, errors that repeat.
   Eigen::MatrixXd given = safe.open, measured = Eigen::MatrixXd::Zero(size, size);
   for (const MeasurementGroup& group : information.groups) {
     (group.kind == SensorKind::Prior ? given : measured) += group.variance() * group.information;
@@ -158,7 +182,11 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   for (const Eigen::VectorXd& effect : information.pixel_errors) given += effect * effect.transpose();
   const Eigen::MatrixXd inverse = product(report_from_tangent, safe.inverse);
   Eigen::MatrixXd covariance = congruence(inverse, measured + given);
-  const Eigen::VectorXd growth = growthOf(information, covariance, safe, given, report_from_tangent);
+  Eigen::VectorXd growth = growthOf(information, covariance, safe, given, report_from_tangent);
+  const Eigen::VectorXd clusters = varianceOfClusters(information, inverse);
+  for (Eigen::Index i = 0; i < size; ++i)
+    growth[i] =
+        std::max(growth[i], std::sqrt(1.0 + clusters[i] / std::max(covariance(i, i), kLeastVariance)));
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
   return {information.quantities, information.first_column, covariance,
           congruence(report_from_tangent, safe.inverse)};

@@ -54,6 +54,7 @@ ProjectedInformation withColumns(const KeptColumns& kept, ProjectedInformation i
   for (Eigen::VectorXd& score : information.scores) reduceVector(score);
   for (Eigen::MatrixXd& share : information.information_by_stretch) reduceMatrix(share);
   for (Eigen::VectorXd& effect : information.pixel_errors) reduceVector(effect);
+  for (ClusterScatter& each : information.clusters) reduceMatrix(each.scatter);
   if (information.drift_by_quantities.size() > 0)
     information.drift_by_quantities = (information.drift_by_quantities * all_from_kept).eval();
   return information;
