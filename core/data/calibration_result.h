@@ -156,6 +156,7 @@ struct CalibrationResult {
   std::string reason;                    // why not ok
   std::optional<Repair> repair;          // of the first reason
   std::vector<QualityWarning> causes;    // the separate reasons, the likeliest first
+  std::vector<QualityWarning> freed;     // options that were `auto` and had to be set, with the reason
   std::optional<std::int64_t> start_ns;  // of the recording: origin of times in seconds
   CalibrationState state;
   UncertaintyReport uncertainty;

@@ -21,7 +21,7 @@ namespace evical {
 namespace {
 
 // Beyond this a segment's polynomial, continued, says nothing of the trajectory any
-// more: assign anew at once.
+// more: assign them again at once.
 constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
 constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
@@ -40,7 +40,7 @@ class IterationReporter {
   // Goes with the next iteration.
   void tellReleased(std::vector<std::string> words) { released_ = std::move(words); }
 
-  // False where measurements must be assigned anew.
+  // False if measurements must be assigned again.
   bool report(const SolverIteration& iteration) {
     constexpr double kTypicalIterations = 8.0;
     const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
@@ -104,7 +104,7 @@ class Batch {
   const std::vector<SampleSelection> fit_samples_;  // by IMU
   BatchSolution solution_;
   double progress_ = 0.0;
-  std::vector<std::string> free_;  // solved for so far, in words
+  std::vector<std::string> free_;  // names of the parameters that were free so far
 };
 
 std::vector<ParameterStages> Batch::stages() const {
@@ -142,7 +142,7 @@ void Batch::solveStage(ParameterStages stage, int index, double tolerance) {
   }
 }
 
-// What is held again later (an axis that stood still) was free all the same.
+// A parameter that is fixed again later (an unexcited axis) counts as released.
 void Batch::tellReleased(IterationReporter& reporter) {
   std::vector<std::string> released = releasedWords(quantityWords(problem_.quantities()), free_);
   if (released.empty()) return;
@@ -177,7 +177,7 @@ bool Batch::updateWeights() {
   return changed;
 }
 
-// Circles change little by it, so that it is no reason to solve again.
+// It changes circles little, so that the batch is not solved again.
 void Batch::updateSmoothness() {
   constexpr double kLeast = 1e-4;
   const TrajectorySmoothness found = trajectorySmoothness(input_, problem_.state());
@@ -299,14 +299,13 @@ void Batch::reportNotes() {
   constexpr double kWorthSaying = 2.0;
   const auto say = [&](const std::string& sensor, const char* what, double scale) {
     if (scale > 1.0 / kWorthSaying && scale < kWorthSaying) return;
-    solution_.notes.push_back(
-        fmt::format("{}: {} is {:.2g} times what was given for it; the weights follow what was found", sensor,
-                    what, scale));
+    solution_.notes.push_back(fmt::format(
+        "{}: {} is {:.2g} times its given sigma; the weights use the estimate", sensor, what, scale));
   };
   const auto sayHeld = [&](const std::string& imu, const char* motion, std::size_t axes, const char* what) {
     if (axes == 0) return;
     solution_.notes.push_back(
-        fmt::format("{}: no {} to speak of along {} of 3 axes, {} there", imu, motion, axes, what));
+        fmt::format("{}: hardly any {} along {} of 3 axes, {} there", imu, motion, axes, what));
   };
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
     say(input_.cameras[i].name, "the spread of circle centres", solution_.scales.circles[i]);
@@ -324,22 +323,22 @@ void Batch::reportNotes() {
       solution_.notes.push_back(std::move(note));
     const UnexcitedAxes& held = weights_.held_axes[i];
     sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
-            options_.gyroscope_rotation
-                ? "the gyroscope's scale and its turn against the accelerometer stay as they are"
-                : "the gyroscope's scale stays as it is");
+            options_.estimatesGyroscopeRotations() ? "the gyroscope's scale and misalignment are fixed"
+                                                   : "the gyroscope's scale is fixed");
     sayHeld(input_.imus[i].name, "changing acceleration", held.accelerometer.size(),
-            "the accelerometer's scale stays as it is");
+            "the accelerometer's scale is fixed");
   }
   if (!input_.imus.empty()) {
     sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
-            weights_.held_axes[input_.reference_imu].axesWithoutRotation().size(), "translations stay at 0");
+            weights_.held_axes[input_.reference_imu].axesWithoutRotation().size(),
+            "translations are fixed at 0");
   }
   if (!solution_.converged) {
     solution_.notes.emplace_back("the optimiser stopped at its iteration limit before it converged");
   }
 }
 
-// What the pipeline's earlier stages see to.
+// Preconditions that earlier stages of the pipeline ensure.
 void assertComplete([[maybe_unused]] const CalibrationInput& input,
                     [[maybe_unused]] const CalibrationState& initial) {
   assert(!input.cameras.empty() && input.cameras.size() + input.imus.size() >= 2);
@@ -355,7 +354,7 @@ BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationStat
                             const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, initial);
   if (circleErrors(input, initial, options).empty()) {
-    throw calibrationFailed("optimisation", "no view of the board lies in the trajectory's time range",
+    throw calibrationFailed("optimisation", "no view of the board is within the trajectory's time range",
                             "Check that camera and IMU recorded at the same time");
   }
   return Batch(input, initial, options, context).run();

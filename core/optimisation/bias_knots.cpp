@@ -62,7 +62,7 @@ bool BiasMeanCost::Evaluate(double const* const* parameters, double* residuals, 
 void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, const So3Spline& trajectory,
                     ImuState& imu) {
   BiasDrift& drift = imu.bias_drift;
-  if (options.bias_model == BiasModel::Constant) {
+  if (!options.hasLinearBiases()) {
     drift = {};
     return;
   }

@@ -25,7 +25,7 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
     case QuantityRelease::ImuIntrinsics:
       return options.free_imu_intrinsics;
     case QuantityRelease::GyroscopeRotation:
-      return options.free_imu_intrinsics && (options.gyroscope_rotation || weighed);
+      return options.free_imu_intrinsics && (options.estimatesGyroscopeRotations() || weighed);
     case QuantityRelease::BoardSize:
       return options.free_board_size;
     case QuantityRelease::BoardBow:

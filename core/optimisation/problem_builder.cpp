@@ -17,8 +17,8 @@ double exposureSpread_s(const BoardObservations& observations) {
 
 bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
   const std::optional<KnownRotation>& prior = input.imus[imu].prior.gyroscope_rotation;
-  return (options.gyroscope_rotation || prior) && !isGiven(prior) && stage == ParameterStages::Mappings &&
-         weights.held_axes[imu].gyroscope.empty();
+  return (options.estimatesGyroscopeRotations() || prior) && !isGiven(prior) &&
+         stage == ParameterStages::Mappings && weights.held_axes[imu].gyroscope.empty();
 }
 
 bool ProblemBuilder::scaleIsHeld() const {
@@ -38,7 +38,7 @@ bool ProblemBuilder::drifts(const SensorPrior& prior) const {
 bool ProblemBuilder::rolls(std::size_t camera) const {
   const CameraData& data = input.cameras[camera];
   return data.observations.kind != CameraKind::Events && stage != ParameterStages::Extrinsics &&
-         (data.shutter == Shutter::Rolling || options.line_delay);
+         (data.shutter == Shutter::Rolling || options.estimatesLineDelays());
 }
 
 // With equal exposures of all frames, the exposure's share is part of the time offset.

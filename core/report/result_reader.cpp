@@ -295,8 +295,8 @@ void readRun(const YamlNode& root, NamedResult& named, CalibrationResult& result
     }
 }
 
-void readCauses(const YamlNode& root, std::vector<QualityWarning>& causes) {
-  const auto list = root.find("causes");
+void readWarnings(const YamlNode& root, const char* key, std::vector<QualityWarning>& causes) {
+  const auto list = root.find(key);
   if (!list) return;
   for (const YamlNode& item : list->items()) {
     QualityWarning& cause = causes.emplace_back();
@@ -304,7 +304,7 @@ void readCauses(const YamlNode& root, std::vector<QualityWarning>& causes) {
     get(item, "explains", cause.explains);
     get(item, "text", cause.text);
     if (const auto set = item.find("set"))
-      for (const std::string& key : set->keys()) cause.repair = Repair{key, (*set)[key].text()};
+      for (const std::string& option : set->keys()) cause.repair = Repair{option, (*set)[option].text()};
   }
 }
 
@@ -328,7 +328,8 @@ NamedResult resultFrom(const YamlNode& root) {
   get(root, "reason", result.reason);
   if (const auto repair = root.find("repair"))
     result.repair = Repair{(*repair)["set"].text(), (*repair)["to"].text()};
-  readCauses(root, result.causes);
+  readWarnings(root, "causes", result.causes);
+  readWarnings(root, "freed", result.freed);
   get(root, "reference", named.reference);
   if (const auto recording = root.find("recording")) result.start_ns = (*recording)["start_ns"].nanoseconds();
   if (const auto cameras = root.find("cameras"))

@@ -222,8 +222,8 @@ std::string rejectedYaml(const NamedResult& named) {
   return text.empty() ? text : "rejected_windows:\n" + text;
 }
 
-// Reasons why the result is doubtful or failed, one by one.
-std::string causesYaml(const std::vector<QualityWarning>& causes) {
+// Warnings one by one, below a key.
+std::string warningsYaml(const char* key, const std::vector<QualityWarning>& causes) {
   std::string text;
   for (const QualityWarning& cause : causes) {
     text += fmt::format("  - name: {}\n", yamlText(cause.name));
@@ -233,7 +233,7 @@ std::string causesYaml(const std::vector<QualityWarning>& causes) {
       text +=
           fmt::format("    set: {{{}: {}}}\n", yamlText(cause.repair->key), yamlText(cause.repair->value));
   }
-  return text.empty() ? text : "causes:\n" + text;
+  return text.empty() ? text : fmt::format("{}:\n{}", key, text);
 }
 
 std::string runYaml(const NamedResult& named) {
@@ -278,7 +278,7 @@ std::string resultYaml(const NamedResult& named) {
                                  yamlText(named.reference));
   if (const std::optional<Repair>& repair = named.result->repair)
     text += fmt::format("repair: {{set: {}, to: {}}}\n", yamlText(repair->key), yamlText(repair->value));
-  text += causesYaml(named.result->causes);
+  text += warningsYaml("causes", named.result->causes) + warningsYaml("freed", named.result->freed);
   if (named.result->start_ns) text += fmt::format("recording:\n  start_ns: {}\n", *named.result->start_ns);
   text += state.cameras.empty() ? "cameras: {}\n" : "cameras:\n";
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);

@@ -112,7 +112,6 @@ imus:
     stream: imu0.csv
     accelerometer_noise_density: 2.0e-3
     gyroscope_noise_density: 1.6968e-4
-options: {optimisation.model.camera_intrinsics: fixed}
 )");
 }
 
@@ -126,7 +125,6 @@ cameras:
   events: {stream: events.csv, resolution_px: [346, 260]}
   frames: {recording: frames.csv, stream: frames.csv, resolution_px: [1280, 1024]}
 reference: events
-options: {optimisation.model.board_bow: false}
 )");
 }
 

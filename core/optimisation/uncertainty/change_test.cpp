@@ -202,7 +202,7 @@ bool matters(const SensorChange& change, const OptimisationOptions& options) {
       return rotation_deg(change) > options.needed_rotation_deg ||
              translation_mm(change) > options.needed_translation_mm;
     case ChangeKind::Biases:
-      return options.bias_model == BiasModel::Constant;
+      return !options.hasLinearBiases();
   }
   return false;
 }
@@ -216,7 +216,8 @@ std::string referenceName(const CalibrationInput& input) {
                             : input.imus[input.reference_imu].name;
 }
 
-std::string wordsOf(const CalibrationInput& input, const SensorChange& change) {
+std::string wordsOf(const CalibrationInput& input, const SensorChange& change,
+                    const OptimisationOptions& options) {
   const std::string name = nameOf(input, change);
   switch (change.kind) {
     case ChangeKind::Clock:
@@ -232,9 +233,10 @@ std::string wordsOf(const CalibrationInput& input, const SensorChange& change) {
           change.sigmas);
     case ChangeKind::Biases:
       return fmt::format(
-          "{}: its biases change within the recording by {:.2g} rad/s and {:.2g} m/s^2 ({:.0f} sigmas): "
-          "calibrate with optimisation.model.bias_model: linear",
-          name, change.change.head<3>().norm(), change.change.tail<3>().norm(), change.sigmas);
+          "{}: its biases change within the recording by {:.2g} rad/s and {:.2g} m/s^2 ({:.0f} sigmas){}",
+          name, change.change.head<3>().norm(), change.change.tail<3>().norm(), change.sigmas,
+          options.bias_model == BiasModel::Auto ? ""
+                                                : "; calibrate with optimisation.model.bias_model: linear");
   }
   return {};
 }
@@ -265,7 +267,8 @@ ChangeDoubt doubtOfChanges(const CalibrationInput& input, const ProjectedInforma
   ChangeDoubt result;
   for (const SensorChange& change : findChanges(information)) {
     if (change.sigmas < result.sigmas || !matters(change, options)) continue;
-    result = {QualityWarning{wordsOf(input, change), repairOf(change, information), "change"}, change.sigmas};
+    result = {QualityWarning{wordsOf(input, change, options), repairOf(change, information), "change"},
+              change.sigmas};
   }
   return result;
 }

@@ -205,7 +205,7 @@ PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solut
   for (const CameraData& camera : input.cameras) freeDrift(camera.prior, free);
   for (const ImuData& imu : input.imus) {
     freeDrift(imu.prior, free);
-    free.gyroscope_rotation = free.gyroscope_rotation || imu.prior.gyroscope_rotation.has_value();
+    if (imu.prior.gyroscope_rotation) free.gyroscope_rotation = Estimated::Yes;
   }
   const RunContext quiet{silentProgress(), context.stop};
   try {

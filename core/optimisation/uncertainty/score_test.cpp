@@ -24,8 +24,9 @@ bool isHeld(const Quantity& quantity, const CalibrationInput& input, const Optim
   if (quantity.info->id == QuantityId::Intrinsics) return !options.freesIntrinsics();
   if (quantity.info->release == QuantityRelease::BoardBow) return !options.board_bow;
   if (quantity.info->id == QuantityId::LineDelay)
-    return !options.line_delay && input.cameras[quantity.sensor].shutter != Shutter::Rolling;
-  if (quantity.info->id != QuantityId::GyroscopeRotation || options.gyroscope_rotation) return false;
+    return !options.estimatesLineDelays() && input.cameras[quantity.sensor].shutter != Shutter::Rolling;
+  if (quantity.info->id != QuantityId::GyroscopeRotation || options.estimatesGyroscopeRotations())
+    return false;
   const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
   return !(prior && prior->sigma);
 }
@@ -99,10 +100,13 @@ void testGyroscope(const std::string& imu, const Steps& steps, std::size_t quant
             imu));
   doubts.gyroscope_sigmas = std::max(doubts.gyroscope_sigmas, sigmas);
   add(doubts.gyroscopes,
-      fmt::format("{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg, and other "
-                  "rotations may have errors of the same size; calibrate with "
-                  "optimisation.model.gyroscope_rotation: true",
-                  imu, turn_deg));
+      fmt::format("{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg ({:.0f} "
+                  "sigmas){}",
+                  imu, turn_deg, sigmas,
+                  options.gyroscope_rotation == Estimated::Auto
+                      ? ""  // it is estimated next
+                      : ", and other rotations may have errors of the same size; calibrate with "
+                        "optimisation.model.gyroscope_rotation: true"));
 }
 
 void testLens(const std::string& camera, const CameraIntrinsics& held, const Step& step,
@@ -133,9 +137,10 @@ void testShutter(const CameraData& camera, const Step& step, const OptimisationO
   if (step.sigmas < options.rolling_shutter_sigmas || readout_ms < options.rolling_shutter_ms) return;
   add(doubts,
       fmt::format("{}: the shutter is rolling: each row is exposed {:.2g} us {} the row above ({:.0f} "
-                  "sigmas); set shutter: rolling for this camera",
+                  "sigmas){}",
                   camera.name, std::abs(step.change[0]), step.change[0] > 0.0 ? "after" : "before",
-                  step.sigmas));
+                  step.sigmas,
+                  options.line_delay == Estimated::Auto ? "" : "; set shutter: rolling for this camera"));
 }
 
 // Test of the significant curvatures; the text names the largest one.
@@ -163,7 +168,8 @@ class BoardTest {
 }  // namespace
 
 OptimisationOptions freeToBeTested(OptimisationOptions options) {
-  options.gyroscope_rotation = options.board_bow = options.line_delay = true;
+  options.gyroscope_rotation = options.line_delay = Estimated::Yes;
+  options.board_bow = true;
   options.share_sensors = false;
   options.camera_intrinsics = CameraIntrinsicsChoice::Free;
   return options;

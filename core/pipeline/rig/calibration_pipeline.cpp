@@ -25,6 +25,7 @@
 #include "core/pipeline/rig/misfit_diagnosis.h"
 #include "core/pipeline/rig/residual_consistency.h"
 #include "core/pipeline/rig/split_half_check.h"
+#include "core/pipeline/rig/tag_corners.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/report/report_options.h"
 
@@ -39,10 +40,9 @@ namespace evical {
 namespace {
 
 // Not a separate verdict: each half has less data than the whole, and less accurate sigmas.
-void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
-                      CalibrationResult& result) {
-  result.split_half_check = checkHalves(input, result.state, *session.options.optimisation,
-                                        session.options.report->split_half_check_block_s, context);
+void validateByHalves(const CalibrationInput& input, const OptimisationOptions& options, double block_s,
+                      const RunContext& context, CalibrationResult& result) {
+  result.split_half_check = checkHalves(input, result.state, options, block_s, context);
   const SplitHalfCheck& validation = *result.split_half_check;
   context.progress.log(
       LogLevel::Info,
@@ -64,7 +64,8 @@ double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
 // One run: its stages, and the data that they share.
 class Calibration {
  public:
-  Calibration(const Session& session, const RunContext& context) : session_(session), context_(context) {}
+  Calibration(const Session& session, const RunContext& context)
+      : session_(session), context_(context), options_(*session.options.optimisation) {}
 
   CalibrationOutcome fromRecording() {
     return outcomeOf([this] {
@@ -181,8 +182,7 @@ class Calibration {
       const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
       if (!step) continue;
       std::vector<BoardView>& views = input_.cameras[k].observations.views;
-      whole_views_.resize(input_.cameras.size());
-      whole_views_[k] = views;
+      keepWhole(k);
       const double share = keepBeside(*step, views);
       doubt += fmt::format(
           "{}{}: the offset between its clock and the IMU's steps by {:.1f} ms about {:.1f} s after the "
@@ -195,9 +195,77 @@ class Calibration {
     clock_doubt_ = doubt;
   }
 
+  // Again with each parameter that is `auto` and that a test shows for certain to be needed.
   void optimise() {
-    const OptimisationOptions& options = *session_.options.optimisation;
+    for (bool again = true; again;) {
+      try {
+        solve();
+        again = moveCornersOfTags() || freeWhatIsNeeded(run_.result.causes);
+      } catch (const CalibrationError& error) {
+        if (!error.repair() || !isAutomatic(*error.repair())) throw;
+        again = freeWhatIsNeeded({QualityWarning{error.problem(), error.repair()}});
+      }
+    }
+  }
+
+  // Whether this sets an option that is `auto`.
+  bool isAutomatic(const Repair& repair) const {
+    return (repair == kFreeTurn && options_.gyroscope_rotation == Estimated::Auto) ||
+           (repair == kLinearBiases && options_.bias_model == BiasModel::Auto) ||
+           (repair == kFreeLineDelays && options_.line_delay == Estimated::Auto);
+  }
+
+  // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it.
+  bool moveCornersOfTags() {
+    constexpr double kWorthMoving_px = 0.02, kCertain_sigmas = 5.0;
+    constexpr int kMostRounds = 5;
+    if (++rounds_of_tags_ > kMostRounds) return false;
+    bool any = false;
+    for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
+      const TagCornerShift shift = tagCornerShift(input_, k, run_.result.circle_residuals);
+      if (std::abs(shift.outwards_px) < std::max(kWorthMoving_px, kCertain_sigmas * shift.sigma_px)) continue;
+      keepWhole(k);
+      moveTagCorners(shift.outwards_px, input_.cameras[k].observations.views);
+      corners_outwards_px_.resize(input_.cameras.size());
+      corners_outwards_px_[k] += shift.outwards_px;
+      any = true;
+    }
+    return any;
+  }
+
+  void noteCornersOfTags() {
+    for (std::size_t k = 0; k < corners_outwards_px_.size(); ++k)
+      if (const double moved_px = corners_outwards_px_[k]; moved_px != 0.0)
+        run_.result.notes.push_back(fmt::format(
+            "{}: measured tag corners are {:.2f} px too far {} the middle of their tag; this is corrected",
+            run_.pass.cameras[k].camera, std::abs(moved_px), moved_px > 0.0 ? "towards" : "from"));
+  }
+
+  // Before views of the input are changed, which belong to the pass.
+  void keepWhole(std::size_t camera) {
+    whole_views_.resize(input_.cameras.size());
+    if (!whole_views_[camera]) whole_views_[camera] = input_.cameras[camera].observations.views;
+  }
+
+  bool freeWhatIsNeeded(const std::vector<QualityWarning>& causes) {
+    bool any = false;
+    for (const QualityWarning& cause : causes) {
+      if (!cause.repair || !isAutomatic(*cause.repair)) continue;
+      if (*cause.repair == kFreeTurn) options_.gyroscope_rotation = Estimated::Yes;
+      if (*cause.repair == kLinearBiases) options_.bias_model = BiasModel::Linear;
+      if (*cause.repair == kFreeLineDelays) options_.line_delay = Estimated::Yes;
+      freed_.push_back(cause);
+      any = true;
+    }
+    return any;
+  }
+
+  void solve() {
+    const OptimisationOptions& options = options_;
     CalibrationResult& result = run_.result;
+    const Timing before = result.timing;
+    result = {};
+    result.timing = before;
     BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
     giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
@@ -213,7 +281,7 @@ class Calibration {
                                   "not_converged"},
                    result);
     flagDoubtful(uncertainty.other_sensors, result, "another_sensor");
-    flagDoubtful(uncertainty.rolling_shutters, result, "rolling_shutter");
+    flagDoubtful(QualityWarning{uncertainty.rolling_shutters, kFreeLineDelays, "rolling_shutter"}, result);
     flagDoubtful(priors.doubt, result, "prior");
     flagDoubtful(boardDoubt(uncertainty, solution.state), result, "board_size");
     flagDoubtful(uncertainty.stretch_doubt, result, "board_stretch");
@@ -270,7 +338,7 @@ class Calibration {
   // misaligned gyroscope is reported only if nothing else is: many unmodelled effects look like it, such as a
   // bent board.
   void judge(const BatchSolution& solution, const QualityWarning& held, const QualityWarning& change) {
-    const OptimisationOptions& options = *session_.options.optimisation;
+    const OptimisationOptions& options = options_;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
     if (misfit.doubt.empty() && held.text.empty() && change.text.empty()) return;
     QualityWarning cause = change;
@@ -288,8 +356,9 @@ class Calibration {
   }
 
   void compareHalves() {
-    validateByHalves(session_, input_, context_, run_.result);
-    const std::string doubt = doubtOfHalves(*run_.result.split_half_check, *session_.options.optimisation);
+    validateByHalves(input_, options_, session_.options.report->split_half_check_block_s, context_,
+                     run_.result);
+    const std::string doubt = doubtOfHalves(*run_.result.split_half_check, options_);
     if (run_.result.status == CalibrationStatus::Ok) flagDoubtful(doubt, run_.result, "halves");
   }
 
@@ -306,6 +375,10 @@ class Calibration {
     returnPass();
     CalibrationResult& result = run_.result;
     result.start_ns = run_.pass.start_ns;
+    result.freed = freed_;
+    noteCornersOfTags();
+    for (const QualityWarning& freed : freed_)
+      result.notes.push_back(fmt::format("{}: therefore {} was set", freed.text, freed.repair->text()));
     tellRejected();
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     for (const InitialisationStep& step : initial_.steps)
@@ -322,6 +395,10 @@ class Calibration {
 
   const Session& session_;
   const RunContext& context_;
+  OptimisationOptions options_;  // those of the session, with the freed parameters
+  std::vector<QualityWarning> freed_;
+  std::vector<double> corners_outwards_px_;  // by camera: how far tag corners were moved
+  int rounds_of_tags_ = 0;
   std::vector<CameraLens> lenses_;  // used by the front end
   CalibrationRun run_;
   CalibrationInput input_;

@@ -18,6 +18,8 @@ namespace evical {
 const Repair kFreeLenses{"optimisation.model.camera_intrinsics", "free"};
 const Repair kFreeTurn{"optimisation.model.gyroscope_rotation", "true"};
 const Repair kFreeBow{"optimisation.model.board_bow", "true"};
+const Repair kLinearBiases{"optimisation.model.bias_model", "linear"};
+const Repair kFreeLineDelays{"optimisation.model.line_delay", "true"};
 
 namespace {
 
@@ -31,10 +33,10 @@ struct Trial {
 };
 
 bool turnIsHeld(const BatchSolution& solution, const OptimisationOptions& options) {
-  return !solution.state.imus.empty() && !options.gyroscope_rotation;
+  return !solution.state.imus.empty() && !options.estimatesGyroscopeRotations();
 }
 void releaseTurn(OptimisationOptions& options) {
-  options.gyroscope_rotation = true;
+  options.gyroscope_rotation = Estimated::Yes;
 }
 std::string turnWords(const CalibrationInput& input, const BatchSolution& freed) {
   std::size_t most = 0;
@@ -43,10 +45,8 @@ std::string turnWords(const CalibrationInput& input, const BatchSolution& freed)
   };
   for (std::size_t k = 1; k < input.imus.size(); ++k)
     if (turn_deg(k) > turn_deg(most)) most = k;
-  return fmt::format(
-      "{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg, and other rotations "
-      "may have errors of the same size",
-      input.imus[most].name, turn_deg(most));
+  return fmt::format("{}: the gyroscope seems misaligned with the accelerometer by about {:.2g} deg",
+                     input.imus[most].name, turn_deg(most));
 }
 
 bool aLensIsHeld(const BatchSolution& solution, const OptimisationOptions&) {
@@ -95,7 +95,9 @@ const std::array<Trial, 3> kTrials = {
      {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
       "calibrate with optimisation.model.camera_intrinsics: free, and measure the board", kFreeLenses},
      {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
-      "calibrate with optimisation.model.gyroscope_rotation: true", kFreeTurn}}};
+      "other rotations may have errors of the same size: calibrate with "
+      "optimisation.model.gyroscope_rotation: true",
+      kFreeTurn}}};
 
 }  // namespace
 
@@ -122,10 +124,13 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
       const double after = totalMisfit(refit);
       if (after >= least) continue;
       least = after;
+      const bool is_next =
+          trial.kind == CauseKind::GyroscopeTurned && options.gyroscope_rotation == Estimated::Auto;
       best = Cause{
           trial.kind,
-          fmt::format("{} (freeing this reduces residuals from {:.2g} to {:.2g} times the expected size); {}",
-                      trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
+          fmt::format("{} (freeing this reduces residuals from {:.2g} to {:.2g} times the expected size){}",
+                      trial.words(input, refit), std::exp(before), std::exp(after),
+                      is_next ? "" : fmt::format("; {}", trial.advice)),
           trial.repair, 1.0 - after / before};
     } catch (const CalibrationError&) {
       continue;  // a trial without a solution explains nothing

@@ -62,9 +62,9 @@ EVICAL_FIELDS(SplitHalfCheck, block_s, windows, quantities, rms_sigmas, failure)
 EVICAL_FIELDS(Repair, key, value);
 EVICAL_FIELDS(QualityWarning, text, repair, name, explains);
 EVICAL_FIELDS(Timing, read_s, detect_s, initialise_s, optimise_s, split_half_check_s, total_s);
-EVICAL_FIELDS(CalibrationResult, status, reason, repair, causes, start_ns, state, uncertainty, latencies,
-              cameras, imus, iterations, circle_residuals, rejected_windows, split_half_check, notes, timing,
-              memory_peak_mb);
+EVICAL_FIELDS(CalibrationResult, status, reason, repair, causes, freed, start_ns, state, uncertainty,
+              latencies, cameras, imus, iterations, circle_residuals, rejected_windows, split_half_check,
+              notes, timing, memory_peak_mb);
 EVICAL_FIELDS(ImageCell, middle_px, circles, sigma_px);
 EVICAL_FIELDS(ImageMap, columns, rows, cells, rms_px, max_px);
 EVICAL_FIELDS(IntrinsicsResult, status, reason, advice, intrinsics, covariance, edge_lead_px,

@@ -76,12 +76,12 @@ std::string whyNot(Applies applies, const Session& session, const StreamTypes& t
     case Applies::WithUnknownLens:
       return where(everyLensIsGiven(session), "every camera's lens is given");
     case Applies::WithFreeGyroscopeTurns:
-      return whereOfImus(session, !optimisation.gyroscope_rotation,
+      return whereOfImus(session, optimisation.gyroscope_rotation == Estimated::No,
                          "gyroscope misalignments are not estimated");
     case Applies::WithFreeGravityNorm:
       return whereOfImus(session, !optimisation.free_gravity_norm, "gravity's norm is not estimated");
     case Applies::WithLinearBiases:
-      return whereOfImus(session, optimisation.bias_model != BiasModel::Linear, "biases are constant");
+      return whereOfImus(session, optimisation.bias_model == BiasModel::Constant, "biases are constant");
     case Applies::InCheck:
       return "only a check of an earlier result uses it";
     case Applies::InCheckWithoutBoard:

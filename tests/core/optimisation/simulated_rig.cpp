@@ -445,7 +445,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     appendUpperTriangle(a.gyroscope_mapping - b.gyroscope_mapping);
     appendUpperTriangle(a.accelerometer_mapping - b.accelerometer_mapping);
     errors.push_back(a.accelerometer_delay_s - b.accelerometer_delay_s);
-    if (options.gyroscope_rotation)
+    if (options.estimatesGyroscopeRotations())
       append(quaternionLog(b.gyroscope_from_accelerometer.conjugate() * a.gyroscope_from_accelerometer));
   }
   if (options.free_board_size) {

@@ -122,7 +122,7 @@ class TestCalibrationProblem : public QObject {
   void build_withAHeldAxis_holdsTheGyroscopesTurn() {
     const test::SimulatedRig rig = shortRig();
     OptimisationOptions options;
-    options.gyroscope_rotation = true;
+    options.gyroscope_rotation = Estimated::Yes;
     CalibrationProblem problem(rig.input, options, rig.truth);
     Weights weights = givenWeights(rig.input);
     problem.build(ParameterStages::Mappings, weights);

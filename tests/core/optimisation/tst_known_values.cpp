@@ -61,10 +61,10 @@ class TestKnownValues : public QObject {
   void isReleased_ofAGyroscopesRotation_isByOptionOrByAWeighedPrior() {
     const QuantityInfo& rotation = quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeRotation);
     OptimisationOptions options;
-    options.gyroscope_rotation = false;
+    options.gyroscope_rotation = Estimated::No;
     QVERIFY(!isReleased(rotation, options, false));
     QVERIFY(isReleased(rotation, options, true));
-    options.gyroscope_rotation = true;
+    options.gyroscope_rotation = Estimated::Yes;
     QVERIFY(isReleased(rotation, options, false));
     options.free_imu_intrinsics = false;
     QVERIFY(!isReleased(rotation, options, true));

@@ -45,7 +45,10 @@ Case caseOf(Kind kind) {
     options.bias_knot_spacing_s = 0.5;
   }
   if (kind == Kind::FreeLens) options.camera_intrinsics = CameraIntrinsicsChoice::Free;
-  if (kind == Kind::Rotation) options.gyroscope_rotation = options.free_gravity_norm = true;
+  if (kind == Kind::Rotation) {
+    options.gyroscope_rotation = Estimated::Yes;
+    options.free_gravity_norm = true;
+  }
   if (kind == Kind::CamerasAlone) {
     test.rig.input.imus.clear();
     test.start.imus.clear();

@@ -289,7 +289,7 @@ class TestPriors : public QObject {
     test::SimulatedRig rig = test::simulateRig(simulation);
     const Eigen::Quaterniond truth = rig.truth.imus[0].gyroscope_from_accelerometer;
     OptimisationOptions options;
-    options.gyroscope_rotation = option;
+    options.gyroscope_rotation = option ? Estimated::Yes : Estimated::No;
     std::optional<KnownRotation>& prior = rig.input.imus[0].prior.gyroscope_rotation;
     const auto error_rad = [&](const PriorsRun& run) {
       return quaternionLog(truth.conjugate() * run.solution.state.imus[0].gyroscope_from_accelerometer);

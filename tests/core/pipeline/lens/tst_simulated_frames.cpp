@@ -111,9 +111,14 @@ class TestSimulatedFrames : public QObject {
     QVERIFY2(seen > 0.95, QByteArray::number(seen));
   }
 
-  void shutterCalledGlobal_isDoubtful_andSaysWhy() {
+  void shutterCalledGlobal_isEstimated_orDoubtful() {
     Session global = session();
     global.cameras.front().shutter = Shutter::Global;
+    const CalibrationRun freed = calibrate(global, RunContext{});
+    QCOMPARE(freed.result.freed.size(), std::size_t{1});
+    QCOMPARE(freed.result.freed[0].repair->text(), std::string("optimisation.model.line_delay=true"));
+    QVERIFY(std::abs(freed.result.state.cameras.front().line_delay_us - 30.0) < 0.3);
+    global.options.optimisation.edit().line_delay = Estimated::No;
     const CalibrationRun run = calibrate(global, RunContext{});
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
     QVERIFY2(run.result.reason.find("shutter is rolling") != std::string::npos, run.result.reason.c_str());

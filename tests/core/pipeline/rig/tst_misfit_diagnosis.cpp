@@ -65,7 +65,7 @@ class TestCauses : public QObject {
     QFETCH(double, size);
     QFETCH(bool, fails);
     const test::Perturbation& perturbation = test::perturbation(name.toStdString());
-    test::Recorded recorded = base_;
+    test::Recorded recorded = withoutAutomaticOptions();
     perturbation.apply(recorded, size);
     std::string reason;
     try {
@@ -161,7 +161,7 @@ class TestCauses : public QObject {
   void repair_mendsIt() {
     QFETCH(QString, name);
     QFETCH(double, size);
-    test::Recorded recorded = base_;
+    test::Recorded recorded = withoutAutomaticOptions();
     test::perturbation(name.toStdString()).apply(recorded, size);
     const std::optional<Repair> repair = repairOf(recorded);
     QVERIFY(repair);
@@ -209,14 +209,29 @@ class TestCauses : public QObject {
   void walkingBiases_areRepaired() {
     test::Recorded recorded = base_;
     test::perturbation("walking biases").apply(recorded, 1e-3);
-    const std::optional<Repair> repair = repairOf(recorded);
-    QVERIFY(repair);
-    QCOMPARE(repair->text(), std::string("optimisation.model.bias_model=linear"));
-    setInSession(recorded.session, repair->key, repair->value);
     const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
     QVERIFY(!run.result.repair);
+    QCOMPARE(freedBy(run), QStringList{"optimisation.model.bias_model=linear"});
     const double sigmas = comparisonOf(recorded, run).normalisedRms();
     QVERIFY2(sigmas < 2.5, qPrintable(QString::number(sigmas)));
+  }
+
+  // A parameter that is certainly needed is estimated without asking, and the result lists it.
+  void misalignedGyroscope_isEstimated_data() {
+    QTest::addColumn<double>("size_deg");
+    for (const double size_deg : {0.3, 1.0, 3.0}) QTest::addRow("%g deg", size_deg) << size_deg;
+  }
+  void misalignedGyroscope_isEstimated() {
+    QFETCH(double, size_deg);
+    test::Recorded recorded = base_;
+    test::perturbation("gyroscope turned").apply(recorded, size_deg);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    QCOMPARE(freedBy(run), QStringList{"optimisation.model.gyroscope_rotation=true"});
+    expectRight(recorded, run);
+  }
+  void nothingSpoilt_freesNothing() {
+    QVERIFY(calibrate(base_.session, base_.pass, RunContext{}).result.freed.empty());
   }
 
   // If a clock steps, the larger part is used, and the result is correct.
@@ -246,6 +261,18 @@ class TestCauses : public QObject {
   }
 
  private:
+  test::Recorded withoutAutomaticOptions() const {
+    test::Recorded recorded = base_;
+    recorded.session.options.optimisation.edit().gyroscope_rotation = Estimated::No;
+    recorded.session.options.optimisation.edit().bias_model = BiasModel::Constant;
+    return recorded;
+  }
+  static QStringList freedBy(const CalibrationRun& run) {
+    QStringList options;
+    for (const QualityWarning& freed : run.result.freed)
+      options << QString::fromStdString(freed.repair->text());
+    return options;
+  }
   static std::optional<Repair> repairOf(const test::Recorded& recorded) {
     try {
       return calibrate(recorded.session, recorded.pass, RunContext{}).result.repair;

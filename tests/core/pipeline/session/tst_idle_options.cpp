@@ -82,6 +82,8 @@ class TestIdleOptions : public QObject {
     int idle = 0;
     for (const OptionRow& row : optionRows()) idle += !whyIdle(session, row.name).empty();
     QVERIFY(idle > 20);
+    session.options.optimisation.edit().gyroscope_rotation = Estimated::No;
+    session.options.optimisation.edit().bias_model = BiasModel::Constant;
     for (const char* const name :
          {"frames.tag_border", "frames.markers", "optimisation.priors.gyroscope_rotation_sigma_deg",
           "optimisation.model.gyroscope_random_walk", "optimisation.priors.smooth_rotation_rad_s2"})

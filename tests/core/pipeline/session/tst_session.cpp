@@ -483,7 +483,7 @@ correlation:
     setInSession(session, "imus.left_imu.accelerometer_axes", "-x,-y,-z");
     QVERIFY((session.imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
     setInSession(session, "optimisation.gyroscope_rotation", "true");
-    QVERIFY(session.options.optimisation->gyroscope_rotation);
+    QVERIFY(session.options.optimisation->gyroscope_rotation == Estimated::Yes);
     setInSession(session, "time_range_s", "[2,11.5]");
     QVERIFY((session.time_range_s == std::array<double, 2>{2.0, 11.5}));
     for (const auto& [key, value] :
