@@ -74,12 +74,6 @@ bool printRow(const Scenario& scenario, const Outcome& o) {
   return met;
 }
 
-void printQuantities(const Outcome& outcome) {
-  if (!outcome.comparison) return;
-  fmt::print("{}weakest: {}\nreason: {}\n", comparisonTable(*outcome.comparison), outcome.weakest,
-             outcome.reason);
-}
-
 // Error in sigmas of each required quantity, and of the board's shape if that matters; very large if there is
 // no result.
 double worstSigmas(const Outcome& outcome, bool with_board) {
@@ -91,58 +85,6 @@ double worstSigmas(const Outcome& outcome, bool with_board) {
     if (needed || (with_board && has("board."))) worst = std::max(worst, std::abs(quantity.normalised()));
   }
   return worst;
-}
-
-// Errors beyond 4 sigmas and the required accuracy in a result that is called ok.
-bool isWrongOk(const Outcome& outcome) {
-  if (!outcome.comparison || outcome.verdict != "ok") return false;
-  const auto isWrong = [](const QuantityDifference& quantity) {
-    constexpr double kSigmas = 4.0, kRotation_deg = 0.1, kTranslation_mm = 3.0, kTimeOffset_ms = 1.0;
-    const auto beyond = [&](const char* part, double bound) {
-      return quantity.name.find(part) != std::string::npos && std::abs(quantity.difference) > bound;
-    };
-    return std::abs(quantity.normalised()) > kSigmas &&
-           (beyond(".rotation.", kRotation_deg) || beyond(".translation.", kTranslation_mm) ||
-            (beyond(".time_offset", kTimeOffset_ms) && quantity.name.find("drift") == std::string::npos));
-  };
-  const std::vector<QuantityDifference>& all = outcome.comparison->quantities;
-  return std::any_of(all.begin(), all.end(), isWrong);
-}
-
-// Calibrated sigmas: errors over sigmas have an RMS of 1 over seeds. False only if there are enough seeds to
-// exclude chance.
-bool printNormalised(const std::vector<Outcome>& outcomes) {
-  double rotation2 = 0.0, translation2 = 0.0, offset2 = 0.0, all2 = 0.0;
-  int rotations = 0, translations = 0, offsets = 0, all = 0;
-  for (const Outcome& outcome : outcomes) {
-    if (!outcome.comparison) continue;
-    for (const QuantityDifference& quantity : outcome.comparison->quantities) {
-      if (quantity.sigma <= 0.0) continue;
-      const double squared = quantity.normalised() * quantity.normalised();
-      all2 += squared;
-      ++all;
-      const auto add = [&](const char* part, double& sum, int& count) {
-        if (quantity.name.find(part) == std::string::npos) return;
-        sum += squared;
-        ++count;
-      };
-      add(".rotation.", rotation2, rotations);
-      add(".translation.", translation2, translations);
-      add(".time_offset", offset2, offsets);
-    }
-  }
-  const auto rms = [](double sum, int count) { return count == 0 ? 1.0 : std::sqrt(sum / count); };
-  fmt::print(
-      "\nnormalised errors over {} recordings, RMS: rotation {:.2f}, translation {:.2f}, time offset {:.2f}, "
-      "all quantities {:.2f} "
-      "(target 0.7-1.4)\n",
-      outcomes.size(), rms(rotation2, rotations), rms(translation2, translations), rms(offset2, offsets),
-      rms(all2, all));
-  constexpr std::size_t kEnoughSeeds = 20;
-  const auto isHonest = [](double value) { return value >= 0.7 && value <= 1.4; };
-  return outcomes.size() < kEnoughSeeds ||
-         (isHonest(rms(rotation2, rotations)) && isHonest(rms(translation2, translations)) &&
-          isHonest(rms(offset2, offsets)) && isHonest(rms(all2, all)));
 }
 
 // Speed, blur and thresholds change the times of events. They must not change the estimated time offset.
@@ -216,7 +158,7 @@ int run(int argc, char** argv) {
       if (arguments.all_quantities) printQuantities(outcomes.back());
     }
     if (arguments.scenarios.seeds > 1)
-      all_good = (printNormalised(outcomes) || !arguments.verdicts) && all_good;
+      all_good = (NormalisedErrors(outcomes).print() || !arguments.verdicts) && all_good;
   }
   spread.print();
   return all_good ? 0 : 1;

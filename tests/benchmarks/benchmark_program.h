@@ -68,6 +68,9 @@ int run(int argc, char** argv);
 namespace intrinsics {
 int run(int argc, char** argv);
 }
+namespace laboratories {
+int run(int argc, char** argv);
+}
 namespace maintain {
 int run(int argc, char** argv);
 }

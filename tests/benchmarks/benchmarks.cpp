@@ -18,7 +18,7 @@ struct Benchmark {
   std::string_view description;
 };
 
-constexpr std::array<Benchmark, 15> kBenchmarks = {{
+constexpr std::array<Benchmark, 16> kBenchmarks = {{
     {"accuracy", accuracy::run, "Accuracy on simulated recordings against their truth"},
     {"board_starts", board_starts::run, "Identification of the board from any start time"},
     {"centre_errors", centre_errors::run,
@@ -29,6 +29,7 @@ constexpr std::array<Benchmark, 15> kBenchmarks = {{
     {"frame_cameras", frame_cameras::run,
      "Accuracy of frame cameras, further boards and lenses, against targets"},
     {"intrinsics", intrinsics::run, "Intrinsics of simulated recordings against their truth"},
+    {"laboratories", laboratories::run, "Calibrations of random rigs against the truth"},
     {"maintain", maintain::run, "Accuracy of `evical maintain`"},
     {"no_board", no_board::run, "Old calibrations checked without a board"},
     {"protocol", protocol::run, "The papers' protocol in simulation"},

@@ -8,14 +8,9 @@
 #include "core/base/option_table.h"
 #include "core/base/stopwatch.h"
 #include "core/frontend/board_tracker.h"
-#include "core/geometry/camera_model.h"
-#include "core/numerics/robust.h"
-#include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "tests/benchmarks/centre_truth.h"
 
 #include <algorithm>
 #include <array>
@@ -26,92 +21,6 @@
 
 namespace evical::benchmarks::centre_errors {
 namespace {
-
-struct CentreError {
-  Eigen::Vector2d error_px = Eigen::Vector2d::Zero(), velocity_px_s = Eigen::Vector2d::Zero(),
-                  acceleration_px_s2 = Eigen::Vector2d::Zero(), from_mean_px = Eigen::Vector2d::Zero(),
-                  lead_effect = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d whitening = Eigen::Matrix2d::Identity();
-  double speed_px_s = 0.0;  // on the sensor
-};
-
-const TrueCircle* find(const std::vector<TrueCircle>& circles, int circle) {
-  const auto found = std::find_if(circles.begin(), circles.end(),
-                                  [&](const TrueCircle& truth) { return truth.circle == circle; });
-  return found == circles.end() ? nullptr : &*found;
-}
-
-std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations) {
-  constexpr double kStep_s = 1e-3;  // of the finite difference for accelerations
-  const SinusoidMotion motion(scenario);
-  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
-  std::vector<CentreError> errors;
-  std::vector<int> circles;
-  std::vector<Eigen::Vector2d> truths;
-  for (const BoardView& view : observations.views) {
-    for (const CircleObservation& circle : view.circles) {
-      const auto at = [&](double time_s) { return trueBoardView(motion, scenario, 0, time_s); };
-      const std::vector<TrueCircle> now = at(circle.time_s), before = at(circle.time_s - kStep_s),
-                                    after = at(circle.time_s + kStep_s);
-      const TrueCircle *truth = find(now, circle.circle), *earlier = find(before, circle.circle),
-                       *later = find(after, circle.circle);
-      if (!truth || !earlier || !later) continue;
-      CentreError error;
-      error.error_px = circle.centre_px - truth->centre_px;
-      error.velocity_px_s = truth->velocity_px_s;
-      error.acceleration_px_s2 = (later->velocity_px_s - earlier->velocity_px_s) / (2.0 * kStep_s);
-      error.lead_effect = circle.edge_lead_effect;
-      error.whitening = circle.covariance_px2.inverse().llt().matrixU();
-      error.speed_px_s = (idealPixelScale(camera, truth->centre_px).inverse() * truth->velocity_px_s).norm();
-      errors.push_back(error);
-      circles.push_back(circle.circle);
-      truths.push_back(truth->centre_px);
-    }
-  }
-  std::vector<Eigen::Vector2d> means(static_cast<std::size_t>(scenario.board.pointCount()),
-                                     Eigen::Vector2d::Zero());
-  std::vector<double> counts(means.size(), 0.0);
-  for (std::size_t k = 0; k < truths.size(); ++k) {
-    const auto i = static_cast<std::size_t>(circles[k]);
-    means[i] += (truths[k] - means[i]) / ++counts[i];
-  }
-  for (std::size_t k = 0; k < truths.size(); ++k)
-    errors[k].from_mean_px = truths[k] - means[static_cast<std::size_t>(circles[k])];
-  return errors;
-}
-
-// Delay, lead, and one further parameter, by robust least squares; the few gross errors have little weight.
-struct ErrorFit {
-  double delay_s = 0.0, lead_px = 0.0, third = 0.0;
-  double chi = 0.0;  // RMS of the remaining whitened errors, with unit weight
-};
-
-template <class Third>
-ErrorFit fitErrors(const std::vector<CentreError>& errors, Third third) {
-  constexpr double kWild2 = 36.0;  // squared errors over sigmas
-  constexpr int kRounds = 4;
-  ErrorFit fit;
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::Matrix3d matrix = 1e-12 * Eigen::Matrix3d::Identity();
-    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-    double squares = 0.0, weights = 0.0;
-    for (const CentreError& error : errors) {
-      Eigen::Matrix<double, 2, 3> row;
-      row << -error.velocity_px_s, error.lead_effect, third(error);
-      row = error.whitening * row;
-      const Eigen::Vector2d seen = error.whitening * error.error_px;
-      const double square = (seen - row * Eigen::Vector3d(fit.delay_s, fit.lead_px, fit.third)).squaredNorm();
-      const double weight = round == 0 ? 1.0 : cauchyWeight(square / kWild2);
-      matrix += weight * row.transpose() * row;
-      vector += weight * row.transpose() * seen;
-      squares += weight * square;
-      weights += 2.0 * weight;
-    }
-    const Eigen::Vector3d solution = matrix.ldlt().solve(vector);
-    fit = {solution.x(), solution.y(), solution.z(), std::sqrt(squares / std::max(weights, 1.0))};
-  }
-  return fit;
-}
 
 double rmsOf(const std::vector<CentreError>& errors, const ErrorFit& fit) {
   double squares = 0.0;
@@ -153,7 +62,18 @@ void printSpeeds(const std::vector<CentreError>& errors) {
   fmt::print("\n");
 }
 
-// A row per group that measurements depend on.
+// What all circles of a window have in common, by fifths of the windows' speeds.
+void printCommon(const std::vector<CentreError>& errors, const ErrorFit& fit) {
+  fmt::print(
+      "\n| windows up to, px/s | common error along, across, px | stated by the centres | with the common "
+      "displacement | error / stated |\n|---|---|---|---|---|\n");
+  for (const CommonErrors& fifth : commonErrors(errors, fit))
+    fmt::print("| {:.0f} | {:.4f}, {:.4f} | {:.4f} | {:.4f} | {:.2f} |\n", fifth.up_to_px_s, fifth.along_px,
+               fifth.across_px, fifth.by_centres_px, fifth.stated_px, fifth.ratio());
+  fmt::print("\n");
+}
+
+// Sets an option of the groups that measurements depend on.
 void setOption(const std::string& group, const std::string& name, const std::string& value,
                FrontEndOptions& options) {
   if (group == "bursts") return BurstOptions::table().set(options.bursts, group, name, value);
@@ -178,6 +98,10 @@ FrontEndOptions optionsOf(const std::string& variant) {
   return options;
 }
 
+struct Tables {
+  bool speeds = false, common = false;
+};
+
 void printHeader() {
   fmt::print(
       "| scenario | seed | options | windows | circles | delay, ms | lead, px | q, ms^2 | of it in px, RMS | "
@@ -186,7 +110,7 @@ void printHeader() {
 }
 
 void runVariant(const Scenario& scenario, const std::vector<Event>& events, const std::string& variant,
-                bool speeds) {
+                const Tables& tables) {
   constexpr std::size_t kBatch = 50'000;
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
   BoardTracker tracker(scenario.board, camera.resolution_px, camera, optionsOf(variant), scenario.start_ns);
@@ -206,7 +130,8 @@ void runVariant(const Scenario& scenario, const std::vector<Event>& events, cons
       observations.windows.size(), errors.size(), 1e3 * by_acceleration.delay_s, by_acceleration.lead_px,
       1e6 * by_acceleration.third, accelerationPart_px(errors, by_acceleration.third), 1e3 * by_gain.third,
       rmsOf(errors, by_acceleration), by_acceleration.chi, spent_s);
-  if (speeds) printSpeeds(errors);
+  if (tables.speeds) printSpeeds(errors);
+  if (tables.common) printCommon(errors, by_acceleration);
   std::fflush(stdout);
 }
 
@@ -216,10 +141,12 @@ int run(int argc, char** argv) {
   CommandLine app("Errors of circle centres along the motion, on simulated recordings");
   ScenarioArguments scenarios;
   std::vector<std::string> variants;
-  bool speeds = false;
+  Tables tables;
   scenarios.addTo(app);
   app.option("--variant", variants, "Options of a further run: group.option=value,...").repeated();
-  app.flag("--speeds", speeds, "Also the lag of centres by speed");
+  app.flag("--speeds", tables.speeds, "Also the lag of centres by speed");
+  app.flag("--common", tables.common,
+           "Also the errors that all circles of a window have in common, by speed");
   if (!app.parse(argc, argv)) return 0;
   variants.insert(variants.begin(), std::string());
   printHeader();
@@ -229,7 +156,7 @@ int run(int argc, char** argv) {
       std::vector<Event> events;
       simulateEvents(scenario, 0,
                      [&](EventSpan packet) { events.insert(events.end(), packet.begin(), packet.end()); });
-      for (const std::string& variant : variants) runVariant(scenario, events, variant, speeds);
+      for (const std::string& variant : variants) runVariant(scenario, events, variant, tables);
     }
   }
   return 0;

@@ -16,6 +16,9 @@
 #include "core/synthetic/session_errors.h"
 #include "tests/support/scenario_session.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -99,15 +102,30 @@ double windowsFound(const Scenario& scenario, const BoardObservations& observati
 
 }  // namespace
 
-Outcome runScenario(const Scenario& scenario, const std::function<void(Session&)>& change) {
+DetectionResult detectScenario(const Scenario& scenario) {
+  Outcome ignored;
+  return detect(scenario, test::sessionFor(scenario), ignored);
+}
+
+Outcome runScenario(const Scenario& scenario, const SessionChange& change) {
+  Session session = test::sessionFor(scenario);
+  if (change) change(session);
+  Outcome detected;
+  DetectionResult pass = detect(scenario, session, detected);
+  Outcome outcome = calibrateScenario(scenario, std::move(pass), change);
+  outcome.detect_s = detected.detect_s;
+  outcome.events_per_s = detected.events_per_s;
+  return outcome;
+}
+
+Outcome calibrateScenario(const Scenario& scenario, DetectionResult detections, const SessionChange& change) {
   Outcome outcome;
   Session session = test::sessionFor(scenario);
   if (change) change(session);
-  DetectionResult pass = detect(scenario, session, outcome);
-  outcome.windows_found = windowsFound(scenario, pass.cameras.front());
+  outcome.windows_found = windowsFound(scenario, detections.cameras.front());
   const Stopwatch stopwatch;
   try {
-    const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
+    const CalibrationRun run = calibrate(session, std::move(detections), RunContext{});
     outcome.verdict = statusName(run.result.status);
     outcome.weakest = run.result.uncertainty.weakest;
     outcome.reason = run.result.reason;
@@ -124,6 +142,56 @@ Outcome runScenario(const Scenario& scenario, const std::function<void(Session&)
   }
   outcome.solve_s = stopwatch.elapsed_s();
   return outcome;
+}
+
+NormalisedErrors::NormalisedErrors(std::span<const Outcome> outcomes) : recordings(outcomes.size()) {
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.comparison) continue;
+    for (const QuantityDifference& quantity : outcome.comparison->quantities) {
+      if (quantity.sigma <= 0.0) continue;
+      const auto add = [&](const char* part, Sum& sum) {
+        if (quantity.name.find(part) == std::string::npos) return;
+        sum.squares += quantity.normalised() * quantity.normalised();
+        ++sum.count;
+      };
+      add("", all);
+      add(".rotation.", rotation);
+      add(".translation.", translation);
+      add(".time_offset", time_offset);
+    }
+  }
+}
+
+bool NormalisedErrors::print() const {
+  fmt::print(
+      "\nnormalised errors over {} recordings, RMS: rotation {:.2f}, translation {:.2f}, time offset {:.2f}, "
+      "all quantities {:.2f} (target 0.7-1.4)\n",
+      recordings, rotation.rms(), translation.rms(), time_offset.rms(), all.rms());
+  constexpr std::size_t kEnoughRecordings = 20;
+  const auto isRight = [](const Sum& sum) { return sum.rms() >= 0.7 && sum.rms() <= 1.4; };
+  return recordings < kEnoughRecordings ||
+         (isRight(rotation) && isRight(translation) && isRight(time_offset) && isRight(all));
+}
+
+bool isWrongOk(const Outcome& outcome) {
+  if (!outcome.comparison || outcome.verdict != "ok") return false;
+  const auto isWrong = [](const QuantityDifference& quantity) {
+    constexpr double kSigmas = 4.0, kRotation_deg = 0.1, kTranslation_mm = 3.0, kTimeOffset_ms = 1.0;
+    const auto beyond = [&](const char* part, double bound) {
+      return quantity.name.find(part) != std::string::npos && std::abs(quantity.difference) > bound;
+    };
+    return std::abs(quantity.normalised()) > kSigmas &&
+           (beyond(".rotation.", kRotation_deg) || beyond(".translation.", kTranslation_mm) ||
+            (beyond(".time_offset", kTimeOffset_ms) && quantity.name.find("drift") == std::string::npos));
+  };
+  const std::vector<QuantityDifference>& all = outcome.comparison->quantities;
+  return std::any_of(all.begin(), all.end(), isWrong);
+}
+
+void printQuantities(const Outcome& outcome) {
+  if (!outcome.comparison) return;
+  fmt::print("{}weakest: {}\nreason: {}\n", comparisonTable(*outcome.comparison), outcome.weakest,
+             outcome.reason);
 }
 
 CalibrationState trueState(const Scenario& scenario) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
+#include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario.h"
 
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace evical {
@@ -23,7 +27,32 @@ struct Outcome {
 };
 
 // `change` modifies the session that matches the scenario, before the calibration.
-Outcome runScenario(const Scenario& scenario, const std::function<void(Session&)>& change = {});
+using SessionChange = std::function<void(Session&)>;
+Outcome runScenario(const Scenario& scenario, const SessionChange& change = {});
+// Its two steps. The first one uses the front end's default options.
+DetectionResult detectScenario(const Scenario& scenario);
+Outcome calibrateScenario(const Scenario& scenario, DetectionResult detections,
+                          const SessionChange& change = {});
+
+// Errors over sigmas of many recordings. Their RMS is 1 if the sigmas are right.
+struct NormalisedErrors {
+  struct Sum {
+    double squares = 0.0;
+    int count = 0;
+    double rms() const { return count == 0 ? 1.0 : std::sqrt(squares / count); }
+  };
+  Sum rotation, translation, time_offset, all;
+  std::size_t recordings = 0;
+
+  explicit NormalisedErrors(std::span<const Outcome> outcomes);
+  // False if an RMS of 20 recordings or more is outside 0.7 to 1.4.
+  bool print() const;
+};
+
+// An error of more than 4 sigmas that matters, in a result with status ok.
+bool isWrongOk(const Outcome& outcome);
+
+void printQuantities(const Outcome& outcome);
 
 CalibrationState trueState(const Scenario& scenario);
 
