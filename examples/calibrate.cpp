@@ -14,7 +14,7 @@ namespace {
 // Prints one line per stage, without fractions of a stage and log lines.
 class StageNames : public ProgressSink {
  public:
-  void stageStarted(std::string_view stage) override { std::printf("%s\n", std::string(stage).c_str()); }
+  void stageStarted(const ProgressStage& stage) override { std::printf("%s\n", stage.text().c_str()); }
   void stageProgress(double) override {}
   void log(LogLevel, std::string_view) override {}
 };

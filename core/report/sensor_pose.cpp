@@ -33,7 +33,7 @@ std::vector<SensorPose> sensorPoses(const NamedResult& named) {
 }
 
 std::string directionWords(const SensorPose& pose) {
-  return fmt::format("takes points of {0} to {1}: p_{1} = R p_{0} + t", pose.sensor, pose.reference);
+  return fmt::format("transforms points of {0} to {1}: p_{1} = R p_{0} + t", pose.sensor, pose.reference);
 }
 
 std::string anglesWarning(const Eigen::Vector3d& roll_pitch_yaw_deg) {

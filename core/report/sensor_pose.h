@@ -26,7 +26,7 @@ struct SensorPose {
 // Cameras, then IMUs, without the reference.
 std::vector<SensorPose> sensorPoses(const NamedResult& named);
 
-// "takes points of left to left_imu: p_left_imu = R p_left + t"
+// "transforms points of left to left_imu: p_left_imu = R p_left + t"
 std::string directionWords(const SensorPose& pose);
 
 // Warning if roll and yaw rotate about almost the same axis (gimbal lock): they are not separable, and change

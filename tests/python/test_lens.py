@@ -79,7 +79,7 @@ def test_events_of_other_programs_are_taken():
 
 
 def test_events_outside_are_refused_and_named():
-    with pytest.raises(evical.InputError, match=r"event 1: \(346, 3\) is outside of the camera's 346 x 260 pixels"):
+    with pytest.raises(evical.InputError, match=r"event 1: \(346, 3\) is outside the camera's 346 x 260 pixels"):
         evical.Camera(PINHOLE).undistort_events(events_at((345, 3), (346, 3)))
 
 

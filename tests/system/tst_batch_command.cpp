@@ -101,7 +101,7 @@ class TestBatchCommand : public QObject {
     VERIFY_OUTCOME(runProgram({"batch", path("mixed.yaml"), "-o", path("mixed"), "--job", "good"}), 0);
     QVERIFY(resultTime("mixed", "good") > before);
     const Outcome table = runProgram({"batch", path("mixed.yaml"), "-o", path("mixed"), "--collect"});
-    VERIFY_OUTCOME(table, 1);  // the others are of other options
+    VERIFY_OUTCOME(table, 1);  // the others have other options
     VERIFY_TEXT(table.output, "other: was not run");
     QVERIFY2(!table.output.contains("good: "), qPrintable(table.output));
   }
@@ -158,8 +158,8 @@ class TestBatchCommand : public QObject {
                                  << "job.*unknown key|no such key|unknown";
     QTest::newRow("no session") << "jobs: [a.bag]\n"
                                 << "no session describes it";
-    QTest::newRow("nothing of its own") << "session: a.yaml\njobs: [{name: x}]\n"
-                                        << "neither a recording nor a session";
+    QTest::newRow("nothing to run") << "session: a.yaml\njobs: [{name: x}]\n"
+                                    << "neither a recording nor a session";
     QTest::newRow("two names") << "jobs: [{name: x, session: " + own + "}, {name: x, session: " + own + "}]\n"
                                << "two jobs have the name 'x'";
     QTest::newRow("name out of the folder") << "jobs: [{name: ../x, session: " + own + "}]\n"

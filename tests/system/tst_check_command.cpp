@@ -69,7 +69,7 @@ class TestCheckCommand : public QObject {
         runProgram({"check", result(), recording(), "--set", "check.matters_translation_mm=0.5"});
     VERIFY_OUTCOME(outcome, 4);
     QVERIFY2(outcome.output.contains(
-                 QRegularExpression("cannot tell: .*translation of left below .* mm \\(0.5 matters\\)"
+                 QRegularExpression("cannot tell: .*translation of left below .* mm \\(required: 0.5\\)"
                                     ".*\nto do: [A-Z]")),
              qPrintable(outcome.output));
   }
@@ -87,8 +87,8 @@ class TestCheckCommand : public QObject {
   void badInput_endsWith2_data() {
     QTest::addColumn<QStringList>("arguments");
     QTest::addColumn<QString>("part");
-    QTest::newRow("no result") << QStringList{path("nowhere"), recording()} << "nowhere.*is not there";
-    QTest::newRow("no recording") << QStringList{result(), path("none.bag")} << "none.bag.*is not there";
+    QTest::newRow("no result") << QStringList{path("nowhere"), recording()} << "nowhere.*does not exist";
+    QTest::newRow("no recording") << QStringList{result(), path("none.bag")} << "none.bag.*does not exist";
     QTest::newRow("not a result") << QStringList{recording(), recording()} << "neither a result nor";
     QTest::newRow("stability below 0")
         << QStringList{result(), recording(), "--stability-rotation", "-1"} << "stability_rotation_deg";

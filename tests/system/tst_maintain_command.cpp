@@ -267,7 +267,7 @@ class TestMaintainCommand : public QObject {
     QTest::newRow("another time") << 4 << "does not overlap in time";
     QTest::newRow("no rotations") << 5 << "not a rotation";
     QTest::newRow("backwards") << 6 << "time runs backwards";
-    QTest::newRow("a point beside it") << 7 << "of a point";
+    QTest::newRow("a point at a lever arm from it") << 7 << "of a point";
   }
   void otherTrajectories_areRefused() {
     QFETCH(const int, kind);

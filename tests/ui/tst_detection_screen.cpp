@@ -309,7 +309,7 @@ class TestDetectionScreen : public QObject {
     changed.options.front_end.edit().grid.least_circles = 500;
     screen.setSession(changed);
     QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000 * kSlowdown);
-    QVERIFY2(screen.panel().text().contains("Lost at moving circles"), qPrintable(screen.panel().text()));
+    QVERIFY2(screen.panel().text().contains("Failed at moving circles"), qPrintable(screen.panel().text()));
     QVERIFY2(screen.panel().text().contains("at least 500 needed"), qPrintable(screen.panel().text()));
     screen.setSession(recorded_->session);
     QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::Complete, 20000 * kSlowdown);

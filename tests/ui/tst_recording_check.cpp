@@ -147,7 +147,7 @@ class TestRecordingCheck : public QObject {
     const Session recorded = readSession(simulatedSession().toStdString());
     test.window.files().open(QString::fromStdString(recorded.recording.string()));
     QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
-    QVERIFY2(test.pageText().contains("11 x 4, 50 mm: not confirmed"), qPrintable(test.pageText()));
+    QVERIFY2(test.pageText().contains("11 x 4, 50 mm, not confirmed"), qPrintable(test.pageText()));
     QVERIFY(!test.pageText().contains("Ready to calibrate"));
     auto* const confirm = test.child<QPushButton>("confirm_board");
     QVERIFY(confirm->isVisible());
@@ -157,7 +157,7 @@ class TestRecordingCheck : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // With a single camera, neither the distance between the sensors nor an IMU's motion is assessed.
+  // For a single camera, neither the sensors' distance nor the IMU's motion is required.
   void cameraAlone_isJudgedWithoutTheRig() {
     CheckFixture test;
     test.window.workbench().lens.setAim(CalibrationAim::Camera);
@@ -170,7 +170,7 @@ class TestRecordingCheck : public QObject {
                    one.thing != AssessedThing::Obstacle,
                nameOf(one.thing));
     QVERIFY2(!test.card()->text().contains("distance between the sensors"), qPrintable(test.card()->text()));
-    // The rig is judged anew.
+    // The rig is checked again.
     test.window.workbench().lens.setAim(CalibrationAim::Rig);
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
     QVERIFY(!test.check.checked()->assessment.sigmas.empty());

@@ -96,7 +96,7 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board) {
   throw calibrationFailed(observations.camera,
                           fmt::format("the board was never found in {} windows ({})",
                                       observations.windows.size(), outcomes(observations)),
-                          other_board ? fmt::format("Rows of circles are visible, but not a {} x {} board: "
+                          other_board ? fmt::format("Rows of circles are visible, but no {} x {} board: "
                                                     "check rows, columns and circles (dark or bright) {}",
                                                     board.rows, board.cols, howTo(HowTo::EditBoard))
                                       : "Check that the board is in view, in focus and moving, and check "

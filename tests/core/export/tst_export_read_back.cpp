@@ -230,7 +230,7 @@ class TestExportReadBack : public QObject {
     row("kalibr", "input-left_imu.yaml", "update_rate: 997.5", "update_rate: 99e1", "update_rate");
     row("openvins", "kalibr_imucam_chain.yaml", "T_cam_imu:", "T_camera:", "cam0.T_cam_imu");
     row("openvins", "kalibr_imucam_chain.yaml", "timeshift_cam_imu: 0.", "timeshift: 0.",
-        "left: the time offset differs by 7.3 ms");  // it takes 0 then
+        "left: the time offset differs by 7.3 ms");  // the program uses 0 then
     row("openvins", "kalibr_imu_chain.yaml", "model: rpng", "model: kalibr",
         "the accelerometer's scales and misalignment differ");
     row("vins-fusion", "vins.yaml", "max_cnt: 150", "", "max_cnt");

@@ -259,7 +259,7 @@ class TestExportSlam : public QObject {
     const ExportedFiles exported = exportTo(result, "kimera");
     QVERIFY_THROWS_EXCEPTION(std::runtime_error, contentOf(exported, "kimera/RightCameraParams.yaml"));
     QVERIFY(hasNote(exported, "left and right are not side by side"));
-    // Pipeline-definitions.cpp at 6b8ec96 reads the right camera's file where the front end is 1, StereoImu.
+    // Pipeline-definitions.cpp at 6b8ec96 reads the right camera's file if the front end is 1, StereoImu.
     QCOMPARE(kimeraFile(exported, "PipelineParams.yaml").get<int>("frontend_type"), 0);
     const KimeraFile of_a_pair = kimeraFile(exportTo(rig({}), "kimera"), "PipelineParams.yaml");
     for (const char* const key : {"frontend_type", "backend_type", "display_type", "parallel_run"})

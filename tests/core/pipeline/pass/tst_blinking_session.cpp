@@ -65,7 +65,7 @@ class TestBlinkingSession : public QObject {
     QTest::newRow("time range of several")
         << "cameras:"
         << "time_range_s: [0, 1]\ncameras:" << QStringList{"time_range_s", "ambiguous with several"};
-    QTest::newRow("another recording beside")
+    QTest::newRow("another recording in addition")
         << "stream: events"
         << "stream: events, recording: first.raw"
         << QStringList{"cameras.left.recording", "in addition to the list"};

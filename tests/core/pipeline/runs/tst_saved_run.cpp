@@ -222,7 +222,7 @@ class TestSavedRun : public QObject {
     QTest::newRow("flipped early") << 10 << false << "trajectory, convergence and residuals" << false << true;
     QTest::newRow("flipped late") << 95 << false << "detections of the board" << true << false;
     QTest::newRow("cut off") << 90 << true << "detections of the board" << true << false;
-    QTest::newRow("empty") << 0 << true << "run.data is not there" << false << false;
+    QTest::newRow("empty") << 0 << true << "run.data is missing" << false << false;
   }
 
   void damagedData_showsWhatIsThere() {

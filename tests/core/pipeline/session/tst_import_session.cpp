@@ -116,7 +116,7 @@ class TestImportSession : public QObject {
     request.files[1] = write("camchain.yaml", chain);
     std::vector<std::string> notes;
     QCOMPARE(written(request, notes).cameras.size(), std::size_t{1});
-    QVERIFY(has(notes, "T_cam0_lidar is left out"));
+    QVERIFY(has(notes, "T_cam0_lidar is ignored"));
     QVERIFY(has(notes, "cam0: left out: T_imu_cam"));
   }
 
@@ -375,7 +375,7 @@ class TestImportSession : public QObject {
     std::vector<std::string> notes;
     const Session session = written({{write("config.yaml", text)}, "", {}, std::nullopt}, notes);
     QVERIFY(session.imus.size() == 1 && session.imus[0].stream == "/davis_right/imu");
-    QVERIFY(has(notes, "/davis_left/imu is left out"));
+    QVERIFY(has(notes, "/davis_left/imu is ignored"));
   }
 };
 

@@ -230,7 +230,7 @@ class TestSessionGuess : public QObject {
     QVERIFY(draft.yaml.find("    # intrinsics: ") != std::string::npos);
     QCOMPARE(draft.notes.size(), std::size_t{3});
     QVERIFY(draft.notes[1].find("cameras.camera: give resolution_px") == 0);
-    QVERIFY(draft.notes[2].find("no IMU") == 0);
+    QVERIFY(draft.notes[2].find("there is no IMU") == 0);
   }
 
   void draft_takesTheSensorsOfAllRecordings() {

@@ -205,7 +205,7 @@ class TestSessionPriors : public QObject {
     row("quaternion's size", "[0.5, -0.5, 0.5, 0.5]", "[0, 0, 1]", {"rotation_xyzw", "3 numbers"});
     row("not finite", "[0.04, -0.03, 0.05]", "[0.04, .nan, 0.05]", {"translation_m", ".nan"});
     row("millimetres", "[0.04, -0.03, 0.05]", "[400, -30, 50]", {"translation_m", "unit"});
-    row("negative sigma", "0.002}", "-0.002}", {"translation_std_m", "above 0"});
+    row("negative sigma", "0.002}", "-0.002}", {"translation_std_m", "must be positive"});
     row("one sigma of 0", "[0.1, 0.2, 0.3]", "[0.1, 0, 0.3]", {"rotation_std_deg", "0 for some"});
     row("sigma without value", "translation_m: [0.1, 0, 0]", "translation_std_m: 0.1",
         {"translation_std_m", "without translation_m"});

@@ -431,7 +431,8 @@ void TestNumpy::rowsThatAreNoEvents_areLeftOut() {
   QVERIFY(sameEvents(contents.events.at(0), {{1'500'000'000, 1, 2, true}, {2'000'000'000, 3, 65535, false}}));
   QCOMPARE(contents.faults.size(), std::size_t{2});
   QVERIFY2(contents.faults[0].text.starts_with("2 rows have no time"), contents.faults[0].text.c_str());
-  QVERIFY2(contents.faults[1].text.starts_with("4 rows have coordinates"), contents.faults[1].text.c_str());
+  QVERIFY2(contents.faults[1].text.starts_with("4 rows have invalid pixel coordinates"),
+           contents.faults[1].text.c_str());
   QVERIFY(contents.faults[1].text.ends_with("from row 2 on."));
 }
 
@@ -514,15 +515,16 @@ void TestNumpy::lies_areRefused_data() {
   row("header of 4 GB", "\x93NUMPY\2" + std::string(1, '\0') + "\xF0\xFF\xFF\xFF" + good,
       "claims 4294967280 bytes");
   row("header cut", npyFile(good, "").substr(0, 40), "array's header is cut off");
-  row("unknown type", npyFile(npyHeader("'<q2'", shape()), ""), "no events");
+  row("unknown type", npyFile(npyHeader("'<q2'", shape()), ""), "not events");
   row("huge element", npyFile(npyHeader("'|V99999999999999999999'", shape()), ""), "is unknown");
   row("huge elements", npyFile(npyHeader("[('x', '|V65536'), ('y', '|V65536')]", shape()), ""), "too large");
   row("huge list", npyFile(npyHeader("[('x', '<u2', (4294967296, 4294967296))]", shape()), ""), "is unknown");
   row("nothing", npyFile(npyHeader("'|V0'", shape()), ""), "no bytes");
   row("one column", npyArray("'<u2'", shape(), rowsForNumpy({{'x', "<u2"}}, 1.0)), "give the folder");
-  row("boxes", npyArray("[('t', '<u8'), ('x', '<f4'), ('y', '<f4'), ('w', '<f4')]", "(0,)", ""), "no events");
+  row("boxes", npyArray("[('t', '<u8'), ('x', '<f4'), ('y', '<f4'), ('w', '<f4')]", "(0,)", ""),
+      "not events");
   row("quaternions", npyArray("'<f8'", "(2, 4)", std::string(16, '?') + std::string(48, '\x3F')),
-      "no events");
+      "not events");
   row("no arrays", zipArchive({{"events.txt", "0 1 2 1\n"}}), "ZIP archive");
   row("archive cut", zipArchive(fourArrays(false)).substr(0, 30'000), "directory");
   std::string archive = zipArchive(fourArrays(true));
