@@ -30,8 +30,11 @@ run accuracy --verdicts "${single[@]}"
 run accuracy --verdicts --quantities "${rigs[@]}"
 for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
 
+# Random rigs, boards, lenses, light and motions: half an hour.
+run laboratories --seeds 40
+
 # Circle centres along the motion, in ordinary and in small motions.
-run centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
+run centre_errors --speeds --common --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
 
 # Detection of the board from different start times.
 run board_starts --duration 20 "${single[@]}"

@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -221,20 +222,27 @@ void setOptions(const std::string& variant, Session& session) {
   }
 }
 
-DetectionResult detectionsOf(const Scenario& scenario, const Arguments& arguments) {
-  const std::filesystem::path file = std::filesystem::path(arguments.detections) /
-                                     fmt::format("{}{}.data", scenario.name, arguments.exact ? "_exact" : "");
-  if (!arguments.detections.empty() && std::filesystem::exists(file)) {
-    ReadRunData kept = readRunData(file);
-    if (kept.has_pass) return std::move(kept.run.pass);
-  }
+// File of the detections that an earlier run has kept; empty if none are to be kept.
+std::filesystem::path fileOf(const Scenario& scenario, const Arguments& arguments) {
+  if (arguments.detections.empty()) return {};
+  return std::filesystem::path(arguments.detections) /
+         fmt::format("{}{}.data", scenario.name, arguments.exact ? "_exact" : "");
+}
+
+std::optional<DetectionResult> keptDetections(const std::filesystem::path& file) {
+  if (file.empty() || !std::filesystem::exists(file)) return std::nullopt;
+  ReadRunData kept = readRunData(file);
+  return kept.has_pass ? std::optional(std::move(kept.run.pass)) : std::nullopt;
+}
+
+void keepDetections(const std::filesystem::path& file, const Outcome& outcome,
+                    const DetectionResult& detections) {
+  if (file.empty() || !outcome.result) return;
+  std::filesystem::create_directories(file.parent_path());
   CalibrationRun run;
-  run.pass = detectScenario(scenario);
-  if (!arguments.detections.empty()) {
-    std::filesystem::create_directories(arguments.detections);
-    std::ofstream(file, std::ios::binary) << runData(run);
-  }
-  return std::move(run.pass);
+  run.result = *outcome.result;
+  run.pass = detections;
+  std::ofstream(file, std::ios::binary) << runData(run);
 }
 
 std::string describe(const Scenario& scenario) {
@@ -324,12 +332,15 @@ int run(int argc, char** argv) {
       "time offset, ms (error/sigma) | solve, s | verdict |\n|---|---|---|---|---|---|---|---|\n");
   for (int k = 0; k < arguments.seeds; ++k) {
     const Scenario scenario = drawLaboratory(arguments.skipped + k, arguments.exact);
-    const DetectionResult detections = detectionsOf(scenario, arguments);
+    const std::filesystem::path file = fileOf(scenario, arguments);
+    std::optional<DetectionResult> kept = keptDetections(file);
+    const DetectionResult detections = kept ? std::move(*kept) : detectScenario(scenario);
     if (arguments.common) printCommon(scenario, detections.cameras.front());
     for (Results& each : results) {
       const auto change = [&](Session& session) { setOptions(each.variant, session); };
       Outcome outcome = calibrateScenario(scenario, detections, change);
       if (arguments.quantities) printQuantities(outcome);
+      if (!std::filesystem::exists(file)) keepDetections(file, outcome, detections);
       each.add(scenario, std::move(outcome));
     }
   }
