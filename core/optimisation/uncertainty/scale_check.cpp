@@ -129,13 +129,13 @@ void checkBow(const CalibrationInput& input, std::size_t index, const BoardState
   if (bow_mm < options.bent_board_mm) return;
   if (bow_mm > options.doubtful_scale_sigmas * options.board_bow_sigma_mm)
     check.bow_doubt =
-        bowWords(bent, board, input.boardWords(index)) + ", further than is modelled well: lay it on glass";
+        bowWords(bent, board, input.boardWords(index)) + ", more than the model covers: mount it on glass";
   else
     check.notes.push_back(bowWords(bent, board, input.boardWords(index)) +
                           ", which is estimated with the rest");
 }
 
-// "left: a board 0.1 % larger than said moves its translation by 0.68 mm"
+// "left: a board 0.1 % larger than given changes its translation by 0.68 mm"
 void addEffects(const CalibrationInput& input, const QuantityCovariance& covariance,
                 std::vector<std::string>& notes) {
   const auto scale = boardColumn(covariance, QuantityId::Scale);
@@ -148,8 +148,8 @@ void addEffects(const CalibrationInput& input, const QuantityCovariance& covaria
     const Eigen::Vector3d moves_m =
         covariance.covariance.col(*scale).segment<3>(covariance.first_column[i]) / variance;
     notes.push_back(fmt::format(
-        "{}: if the board is 0.1 % larger than said, the translation is {:.2f} mm off; its sigmas hold "
-        "{:.2f} mm for that",
+        "{}: if the board is 0.1 % larger than given, the translation changes by {:.2f} mm; its sigmas "
+        "include {:.2f} mm for this",
         input.cameras[quantity.sensor].name, 1e3 * kTenthOfPercent * moves_m.norm(),
         1e3 * std::sqrt(variance) * moves_m.norm()));
   }

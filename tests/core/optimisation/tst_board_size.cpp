@@ -206,7 +206,7 @@ class TestBoardSize : public QObject {
     QVERIFY(run.estimate.report.cameras[0].translation_std_m.norm() >
             exact.estimate.report.cameras[0].translation_std_m.norm());
     QCOMPARE(run.estimate.notes.size(), std::size_t{1});
-    QVERIFY2(run.estimate.notes[0].starts_with("left: if the board is 0.1 % larger than said"),
+    QVERIFY2(run.estimate.notes[0].starts_with("left: if the board is 0.1 % larger than given"),
              run.estimate.notes[0].c_str());
     QVERIFY(exact.estimate.notes.empty());
     QCOMPARE(exact.solution.state.board.scale, 1.0);
