@@ -175,7 +175,7 @@ class TestHandOn : public QObject {
     PosePanel panel;
     panel.setResult(rig_);
     const auto shown = [&](const char* name) { return panel.findChild<QLabel*>(name)->text().simplified(); };
-    QCOMPARE(shown("direction"), QString("Takes points of left to imu: p_imu = R p_left + t"));
+    QCOMPARE(shown("direction"), QString("Transforms points of left to imu: p_imu = R p_left + t"));
     QCOMPARE(shown("translation"), QString("30.0000 0.0000 40.0000"));
     const Eigen::Quaterniond& q = rig_.result->state.cameras[0].reference_from_camera.rotation;
     QVERIFY(shown("quaternion").startsWith(QString::number(q.x(), 'f', 6)) &&

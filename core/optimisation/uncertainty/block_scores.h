@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <compare>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,7 +18,10 @@ namespace evical {
 struct ResidualCluster {
   enum class Kind { Point, Place } kind = Kind::Point;
   int index = 0;
-  auto operator<=>(const ResidualCluster&) const = default;
+  bool operator==(const ResidualCluster&) const = default;
+  bool operator<(const ResidualCluster& other) const {
+    return std::tie(kind, index) < std::tie(other.kind, other.index);
+  }
 };
 
 // [P r]^T [P r]: information, score and squared residuals.

@@ -196,12 +196,15 @@ QuantityCovariance withPixelDelay(const CalibrationInput& input, const Optimisat
                                   QuantityCovariance covariance) {
   std::vector<CameraKind> kinds;
   for (const CameraData& camera : input.cameras) kinds.push_back(camera.observations.kind);
+  constexpr double kMissedMotion_s = 5e-6;  // error of an accelerometer's delay by motion between knots
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
+    const Eigen::Index column = covariance.first_column[i];
+    if (quantity.info->id == QuantityId::AccelerometerDelay)
+      covariance.covariance(column, column) += kMissedMotion_s * kMissedMotion_s;
     if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||
         !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty()))
       continue;
-    const Eigen::Index column = covariance.first_column[i];
     covariance.covariance(column, column) +=
         delayVariance_s2(input.cameras[quantity.sensor].observations, options);
   }
