@@ -35,51 +35,65 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
   return projected ? std::optional(projected->centre_px) : std::nullopt;
 }
 
+// One circle of a view: its error, and L^-1 of its covariance L L^T.
+struct ViewCircle {
+  CircleError* error;
+  const CircleObservation* measured;
+  Eigen::Matrix2d whitening_px;
+};
+
+std::vector<ViewCircle> viewCircles(const BoardObservations& observations, const OptimisationOptions& options,
+                                    std::span<CircleError> view) {
+  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  std::vector<ViewCircle> circles;
+  for (CircleError& error : view) {
+    if (!std::isfinite(error.normalised2)) continue;  // behind the camera
+    const CircleObservation& measured = observations.views[error.view].circles[error.index];
+    const Eigen::Matrix2d covariance = measured.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
+    circles.push_back({&error, &measured, covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity())});
+  }
+  return circles;
+}
+
+// Squared deviations of the errors from their median, over sigmas.
+std::vector<double> deviationsFromMedian(const std::vector<ViewCircle>& circles) {
+  std::vector<double> x_px, y_px, deviations2;
+  for (const ViewCircle& circle : circles) {
+    x_px.push_back(circle.error->error_px.x());
+    y_px.push_back(circle.error->error_px.y());
+  }
+  const Eigen::Vector2d median_px(medianOf(std::move(x_px)), medianOf(std::move(y_px)));
+  for (const ViewCircle& circle : circles)
+    deviations2.push_back((circle.whitening_px * (circle.error->error_px - median_px)).squaredNorm());
+  return deviations2;
+}
+
 // Errors over sigmas of one view, whitened for the displacement that its circles have in common. Circles far from the
 // median take no part in the displacement.
 void normalise(const BoardObservations& observations, const OptimisationOptions& options,
                std::span<CircleError> view) {
-  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
-  std::vector<double> x_px, y_px;
-  for (const CircleError& error : view) {
-    if (!std::isfinite(error.normalised2)) continue;
-    x_px.push_back(error.error_px.x());
-    y_px.push_back(error.error_px.y());
-  }
-  if (x_px.empty()) return;
-  const Eigen::Vector2d median_px(medianOf(std::move(x_px)), medianOf(std::move(y_px)));
-  std::vector<Eigen::Matrix2d> factors, roots;
-  std::vector<double> deviations2, whitened;
-  for (const CircleError& error : view) {
-    const CircleObservation& circle = observations.views[error.view].circles[error.index];
-    const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
-    factors.emplace_back(covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity()));
-    if (std::isfinite(error.normalised2))
-      deviations2.push_back((factors.back() * (error.error_px - median_px)).squaredNorm());
-  }
-  const double scale = std::max(1.0, scaleOfPoints(deviations2));
-  const double bound2 = std::pow(options.outlier_sigma * scale, 2);
+  const std::vector<ViewCircle> circles = viewCircles(observations, options, view);
+  const std::vector<double> deviations2 = deviationsFromMedian(circles);
+  const double bound = options.outlier_sigma * std::max(1.0, scaleOfPoints(deviations2));
   std::vector<Eigen::Index> rows;
-  std::vector<std::size_t> common;
-  for (std::size_t i = 0, k = 0; i < view.size(); ++i) {
-    if (!std::isfinite(view[i].normalised2)) continue;
-    const double deviation2 = deviations2[k++];
-    if (deviation2 > bound2) {
-      view[i].normalised2 = (factors[i] * view[i].error_px).squaredNorm();
-      continue;
-    }
-    const CircleObservation& circle = observations.views[view[i].view].circles[view[i].index];
-    const Eigen::Vector2d in_sigmas = factors[i] * view[i].error_px;
-    common.push_back(i);
+  std::vector<Eigen::Matrix2d> roots;
+  std::vector<double> whitened;
+  std::vector<CircleError*> common;
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    const ViewCircle& circle = circles[i];
+    const Eigen::Vector2d in_sigmas = circle.whitening_px * circle.error->error_px;
+    circle.error->normalised2 = in_sigmas.squaredNorm();
+    if (deviations2[i] > bound * bound) continue;
+    common.push_back(circle.error);
     rows.push_back(static_cast<Eigen::Index>(whitened.size()));
-    roots.emplace_back(commonDisplacement_px(observations.kind, circle, options) * factors[i]);
+    roots.emplace_back(commonDisplacement_px(observations.kind, *circle.measured, options) *
+                       circle.whitening_px);
     whitened.insert(whitened.end(), {in_sigmas.x(), in_sigmas.y()});
   }
-  if (rows.empty()) return;
+  if (common.empty()) return;
   CommonDisplacement(std::move(rows), roots).whiten(whitened.data(), 1);
   for (std::size_t k = 0; k < common.size(); ++k)
-    view[common[k]].normalised2 =
-        whitened[2 * k] * whitened[2 * k] + whitened[2 * k + 1] * whitened[2 * k + 1];
+    common[k]->normalised2 = Eigen::Map<const Eigen::Vector2d>(&whitened[2 * k]).squaredNorm();
 }
 
 }  // namespace

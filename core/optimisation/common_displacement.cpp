@@ -20,9 +20,8 @@ double gainOf(double l) {
 }  // namespace
 
 double commonDisplacement_px(CameraKind kind, const CircleObservation& circle, const ModelOptions& options) {
-  constexpr double kLeastSpeed_px_s = 15.0;
   if (kind != CameraKind::Events) return 0.0;
-  const double speed_px_s = std::max(kLeastSpeed_px_s, circle.velocity_px_s.norm());
+  const double speed_px_s = std::max(options.common_displacement_px_s, circle.velocity_px_s.norm());
   return std::hypot(options.common_displacement_px, options.common_displacement_px2_s / speed_px_s);
 }
 

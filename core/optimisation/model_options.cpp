@@ -78,6 +78,8 @@ constexpr std::tuple kModelFields{
           "Event cameras: sigma of a displacement that all circles of a window have in common, fast motion."},
     Field{"common_displacement_px2_s", &ModelOptions::common_displacement_px2_s, 2.0, within(0.0, 1000.0),
           "px^2/s", "Event cameras: product of the same sigma and the image speed, slow motion."},
+    Field{"common_displacement_px_s", &ModelOptions::common_displacement_px_s, 15.0, within(0.1, 1000.0),
+          "px/s", "Event cameras: image speed below which the same sigma does not grow any more."},
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Threshold of Huber's loss for circle residuals."},
     Field{

@@ -29,7 +29,7 @@ struct ModelOptions {
   double accelerometer_random_walk;
   double slow_edge_speed_px_s;
   double least_centre_sigma_px;
-  double common_displacement_px, common_displacement_px2_s;
+  double common_displacement_px, common_displacement_px2_s, common_displacement_px_s;
   double huber_sigma;
   double outlier_sigma;
   double outlier_window_fraction;

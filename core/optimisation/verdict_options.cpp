@@ -20,6 +20,8 @@ constexpr std::tuple kVerdictFields{
     Field{"slow_pixels_ms", &VerdictOptions::slow_pixels_ms, 0.6, within(0.0, 100.0), "ms",
           "Tolerated delay between brightening and darkening edges; beyond it pixels are called slow, and a "
           "quarter of the excess is added to time offset sigmas."},
+    Field{"missed_motion_us", &VerdictOptions::missed_motion_us, 5.0, within(0.0, 1e4), "us",
+          "Error of an accelerometer's delay by motion between knots; part of its sigma."},
     Field{"contradiction_sigmas", &VerdictOptions::contradiction_sigmas, 4.0, within(1.0, 1000.0), "sigma",
           "A warning is issued if a given or prior value differs from the data by more than this."},
     Field{"doubtful_contradiction_sigmas", &VerdictOptions::doubtful_contradiction_sigmas, 8.0,
@@ -55,6 +57,12 @@ constexpr std::tuple kVerdictFields{
           "The result is doubtful if the board's size or gravity differs from its given value by more than "
           "this.",
           Level::Expert},
+    Field{"largest_scale_share", &VerdictOptions::largest_scale_share, 0.8, within(0.0, 1.0), "",
+          "The board's size is tested if its sigma is at most this share of the prior's."},
+    Field{"tag_corner_px", &VerdictOptions::tag_corner_px, 0.02, within(0.0, 100.0), "px",
+          "Smallest mean displacement of tag corners that is corrected."},
+    Field{"tag_corner_sigmas", &VerdictOptions::tag_corner_sigmas, 5.0, within(1.0, 1000.0), "sigma",
+          "Significance from which the mean displacement of tag corners is corrected."},
     Field{"doubtful_circle_misfit", &VerdictOptions::doubtful_circle_misfit, 2.5, within(1.0, 1000.0), "",
           "The result is doubtful if the median circle error exceeds the front end's sigma by this factor.",
           Level::Expert},

@@ -10,6 +10,7 @@ struct VerdictOptions {
   double pixel_error_px;
   double pixel_delay_ms;
   double slow_pixels_ms;
+  double missed_motion_us;
   double contradiction_sigmas;
   double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;
@@ -21,6 +22,9 @@ struct VerdictOptions {
   double bent_board_sigmas;
   double bent_board_mm;
   double doubtful_scale_sigmas;
+  double largest_scale_share;
+  double tag_corner_px;
+  double tag_corner_sigmas;
   double doubtful_circle_misfit;
   double failed_circle_misfit;
   double doubtful_imu_misfit;

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "app/command_line.h"
+#include "core/base/error.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/processor_time.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +38,21 @@ struct ScenarioArguments {
     return scenario;
   }
 };
+
+// Calls visit(name, value) for each setting of "NAME=VALUE,NAME=VALUE". Throws CalibrationError (BadInput).
+template <class Visit>
+void forEachSetting(const std::string& variant, const Visit& visit) {
+  for (std::size_t begin = 0; begin < variant.size();) {
+    const std::size_t end = std::min(variant.find(',', begin), variant.size());
+    const std::string setting = variant.substr(begin, end - begin);
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos)
+      throw badInput("--variant " + variant, "is not a setting",
+                     "Write group.option=value,group.option=value");
+    visit(setting.substr(0, equals), setting.substr(equals + 1));
+    begin = end + 1;
+  }
+}
 
 namespace benchmarks {
 

@@ -62,7 +62,7 @@ void printSpeeds(const std::vector<CentreError>& errors) {
   fmt::print("\n");
 }
 
-// What all circles of a window have in common, by fifths of the windows' speeds.
+// Errors that all circles of a window have in common, by fifths of the windows' speeds.
 void printCommon(const std::vector<CentreError>& errors, const ErrorFit& fit) {
   fmt::print(
       "\n| windows up to, px/s | common error along, across, px | stated by the centres | with the common "
@@ -84,17 +84,13 @@ void setOption(const std::string& group, const std::string& name, const std::str
 
 FrontEndOptions optionsOf(const std::string& variant) {
   FrontEndOptions options;
-  for (std::size_t begin = 0; begin < variant.size();) {
-    const std::size_t end = std::min(variant.find(',', begin), variant.size());
-    const std::string setting = variant.substr(begin, end - begin);
-    const std::size_t dot = setting.find('.'), equals = setting.find('=');
-    if (dot == std::string::npos || equals == std::string::npos || equals < dot)
+  forEachSetting(variant, [&](const std::string& full_name, const std::string& value) {
+    const std::size_t dot = full_name.find('.');
+    if (dot == std::string::npos)
       throw badInput("--variant " + variant, "is not a setting",
                      "Write group.option=value,group.option=value");
-    setOption(setting.substr(0, dot), setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1),
-              options);
-    begin = end + 1;
-  }
+    setOption(full_name.substr(0, dot), full_name.substr(dot + 1), value, options);
+  });
   return options;
 }
 

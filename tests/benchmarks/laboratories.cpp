@@ -1,9 +1,9 @@
-// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn anew for each number, calibrated with
+// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number, calibrated with
 // default options, against the truth: `evical_benchmarks laboratories [--seeds N] [--skip N] [--exact] [--detections FOLDER]
 // [--variant OPTION=VALUE,...]...`. Sessions have the usual errors of board size and lens, unless --exact. Fails if a
 // calibration fails, if a wrong result is reported as ok, or if the errors over sigmas of 20 laboratories or more leave 0.7 to 1.4.
-#include "core/base/error.h"
 #include "core/numerics/angles.h"
+#include "core/numerics/robust.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/session/calibration_options.h"
 #include "tests/benchmarks/benchmark_program.h"
@@ -210,18 +210,6 @@ struct Arguments {
   }
 };
 
-void setOptions(const std::string& variant, Session& session) {
-  for (std::size_t begin = 0; begin < variant.size();) {
-    const std::size_t end = std::min(variant.find(',', begin), variant.size());
-    const std::string setting = variant.substr(begin, end - begin);
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos)
-      throw badInput("--variant " + variant, "is not a setting", "Write option=value,option=value");
-    setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
-    begin = end + 1;
-  }
-}
-
 // File of the detections that an earlier run has kept; empty if none are to be kept.
 std::filesystem::path fileOf(const Scenario& scenario, const Arguments& arguments) {
   if (arguments.detections.empty()) return {};
@@ -301,13 +289,6 @@ void Results::add(const Scenario& scenario, Outcome outcome) {
   outcomes.push_back(std::move(outcome));
 }
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 bool Results::print() const {
   fmt::print(
       "\n{}: {} laboratories, {} failed, {} doubtful, {} wrong and ok; median error {:.4f} deg, {:.3f} mm\n",
@@ -337,7 +318,11 @@ int run(int argc, char** argv) {
     const DetectionResult detections = kept ? std::move(*kept) : detectScenario(scenario);
     if (arguments.common) printCommon(scenario, detections.cameras.front());
     for (Results& each : results) {
-      const auto change = [&](Session& session) { setOptions(each.variant, session); };
+      const auto change = [&](Session& session) {
+        forEachSetting(each.variant, [&](const std::string& name, const std::string& value) {
+          setOption(session.options, name, value);
+        });
+      };
       Outcome outcome = calibrateScenario(scenario, detections, change);
       if (arguments.quantities) printQuantities(outcome);
       if (!std::filesystem::exists(file)) keepDetections(file, outcome, detections);

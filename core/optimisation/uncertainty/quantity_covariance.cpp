@@ -196,12 +196,12 @@ QuantityCovariance withPixelDelay(const CalibrationInput& input, const Optimisat
                                   QuantityCovariance covariance) {
   std::vector<CameraKind> kinds;
   for (const CameraData& camera : input.cameras) kinds.push_back(camera.observations.kind);
-  constexpr double kMissedMotion_s = 5e-6;  // error of an accelerometer's delay by motion between knots
+  const double missed_motion_s = 1e-6 * options.missed_motion_us;
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
     const Eigen::Index column = covariance.first_column[i];
     if (quantity.info->id == QuantityId::AccelerometerDelay)
-      covariance.covariance(column, column) += kMissedMotion_s * kMissedMotion_s;
+      covariance.covariance(column, column) += missed_motion_s * missed_motion_s;
     if (!quantity.info->is(QuantityOwner::Camera, QuantityId::TimeOffset) ||
         !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty()))
       continue;

@@ -28,12 +28,12 @@ std::optional<Eigen::Index> gravityNormColumn(const QuantityCovariance& covarian
 // Prior of a number, and its estimate.
 struct Weighed {
   double prior_sigma, found, found_sigma;  // the prior's mean is 0
+  double largest_share;                    // of the prior's sigma, with which the prior is tested
 
   // Disagreement between the recording and the prior; 0 if the recording adds little to the prior, since the estimate
   // then says nothing about the prior's error.
   double sigmas() const {
-    constexpr double kLargestShare = 0.8;  // of the prior's sigma
-    if (found_sigma > kLargestShare * prior_sigma) return 0.0;
+    if (found_sigma > largest_share * prior_sigma) return 0.0;
     return found / std::sqrt(prior_sigma * prior_sigma - found_sigma * found_sigma);
   }
 };
@@ -52,9 +52,10 @@ struct Combination {
     prior_variance += weight * weight * prior_sigma * prior_sigma;
     found += weight * excess;
   }
-  Weighed weighed(const QuantityCovariance& covariance) const {
+  Weighed weighed(const QuantityCovariance& covariance, const OptimisationOptions& options) const {
     return {std::sqrt(prior_variance), found,
-            std::sqrt(std::max(0.0, weights.dot(covariance.covariance * weights)))};
+            std::sqrt(std::max(0.0, weights.dot(covariance.covariance * weights))),
+            options.largest_scale_share};
   }
 };
 
@@ -67,7 +68,7 @@ Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& sta
              state.board.scale - 1.0);
   excess.add(gravityNormColumn(covariance), -1.0 / input.gravity_norm_m_s2, options.gravity_norm_sigma_m_s2,
              state.gravity_in_world_m_s2.norm() - input.gravity_norm_m_s2);
-  return excess.weighed(covariance);
+  return excess.weighed(covariance, options);
 }
 
 // Relative excess of a further board's size over its given value, measured by the world's board.
@@ -77,7 +78,7 @@ Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& stat
   for (const auto& [index, weight] : {std::pair<std::size_t, double>{board, 1.0}, {0, -1.0}})
     ratio.add(boardColumn(covariance, QuantityId::Scale, index), weight,
               input.spacingSigma(index, options.board_spacing_sigma), state.boardAt(index).scale - 1.0);
-  return ratio.weighed(covariance);
+  return ratio.weighed(covariance, options);
 }
 
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
@@ -176,7 +177,7 @@ ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& sta
     Combination stretch(covariance);
     stretch.add(boardColumn(covariance, QuantityId::Stretch, i), 1.0, boardStretchSigma(spacing_sigma),
                 board.stretch);
-    const Weighed stretched = stretch.weighed(covariance);
+    const Weighed stretched = stretch.weighed(covariance, options);
     if (isDoubtful(stretched, check.stretch_doubt))
       check.stretch_doubt = stretchDoubt(input.boardWords(i), stretched);
     checkBow(input, i, certainBow(i, board, covariance, options), options, check);

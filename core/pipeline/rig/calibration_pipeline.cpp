@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/option_table.h"
 #include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/data/calibration_observer.h"
@@ -38,6 +39,8 @@
 
 namespace evical {
 namespace {
+
+constexpr const char* kModelGroup = "optimisation.model";  // of options that may be `auto`
 
 // Not a separate verdict: each half has less data than the whole, and less accurate sigmas.
 void validateByHalves(const CalibrationInput& input, const OptimisationOptions& options, double block_s,
@@ -200,7 +203,7 @@ class Calibration {
     for (bool again = true; again;) {
       try {
         solve();
-        again = moveCornersOfTags() || freeWhatIsNeeded(run_.result.causes);
+        again = freeWhatIsNeeded(run_.result.causes);
       } catch (const CalibrationError& error) {
         if (!error.repair() || !isAutomatic(*error.repair())) throw;
         again = freeWhatIsNeeded({QualityWarning{error.problem(), error.repair()}});
@@ -208,22 +211,36 @@ class Calibration {
     }
   }
 
-  // Whether this sets an option that is `auto`.
+  // True if the repair sets an option that is `auto`.
   bool isAutomatic(const Repair& repair) const {
-    return (repair == kFreeTurn && options_.gyroscope_rotation == Estimated::Auto) ||
-           (repair == kLinearBiases && options_.bias_model == BiasModel::Auto) ||
-           (repair == kFreeLineDelays && options_.line_delay == Estimated::Auto);
+    const std::vector<OptionRow> rows = ModelOptions::table().rows(options_, kModelGroup);
+    return std::ranges::any_of(
+        rows, [&](const OptionRow& row) { return row.name == repair.key && row.value == "auto"; });
   }
 
   // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it.
-  bool moveCornersOfTags() {
-    constexpr double kWorthMoving_px = 0.02, kCertain_sigmas = 5.0;
+  BatchSolution solveWithTags() {
     constexpr int kMostRounds = 5;
-    if (++rounds_of_tags_ > kMostRounds) return false;
+    BatchSolution solution = optimiseBatch(input_, initial_.state, options_, context_);
+    for (int round = 0; round < kMostRounds && moveCornersOfTags(solution); ++round)
+      solution = optimiseBatch(input_, initial_.state, options_, context_);
+    return solution;
+  }
+
+  bool moveCornersOfTags(const BatchSolution& solution) {
+    if (std::ranges::none_of(input_.cameras, [&](const CameraData& camera) {
+          return input_.boardAt(camera.board).type == BoardType::AprilGrid;
+        }))
+      return false;
+    const std::vector<CircleResidual> residuals =
+        circleResiduals(input_, solution.state, solution.used_circles, options_);
     bool any = false;
     for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
-      const TagCornerShift shift = tagCornerShift(input_, k, run_.result.circle_residuals);
-      if (std::abs(shift.outwards_px) < std::max(kWorthMoving_px, kCertain_sigmas * shift.sigma_px)) continue;
+      if (input_.boardOf(k).type != BoardType::AprilGrid) continue;
+      const TagCornerShift shift = tagCornerShift(k, residuals);
+      if (std::abs(shift.outwards_px) <
+          std::max(options_.tag_corner_px, options_.tag_corner_sigmas * shift.sigma_px))
+        continue;
       keepWhole(k);
       moveTagCorners(shift.outwards_px, input_.cameras[k].observations.views);
       corners_outwards_px_.resize(input_.cameras.size());
@@ -251,9 +268,9 @@ class Calibration {
     bool any = false;
     for (const QualityWarning& cause : causes) {
       if (!cause.repair || !isAutomatic(*cause.repair)) continue;
-      if (*cause.repair == kFreeTurn) options_.gyroscope_rotation = Estimated::Yes;
-      if (*cause.repair == kLinearBiases) options_.bias_model = BiasModel::Linear;
-      if (*cause.repair == kFreeLineDelays) options_.line_delay = Estimated::Yes;
+      ModelOptions::table().set(options_, kModelGroup,
+                                cause.repair->key.substr(cause.repair->key.rfind('.') + 1),
+                                cause.repair->value);
       freed_.push_back(cause);
       any = true;
     }
@@ -266,7 +283,7 @@ class Calibration {
     const Timing before = result.timing;
     result = {};
     result.timing = before;
-    BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
+    BatchSolution solution = solveWithTags();
     giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
     PriorCheck priors = checkPriors(input_, solution, options, context_);
@@ -398,8 +415,7 @@ class Calibration {
   OptimisationOptions options_;  // those of the session, with the freed parameters
   std::vector<QualityWarning> freed_;
   std::vector<double> corners_outwards_px_;  // by camera: how far tag corners were moved
-  int rounds_of_tags_ = 0;
-  std::vector<CameraLens> lenses_;  // used by the front end
+  std::vector<CameraLens> lenses_;           // used by the front end
   CalibrationRun run_;
   CalibrationInput input_;
   Initialisation initial_;

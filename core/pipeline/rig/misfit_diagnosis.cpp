@@ -18,7 +18,6 @@ namespace evical {
 const Repair kFreeLenses{"optimisation.model.camera_intrinsics", "free"};
 const Repair kFreeTurn{"optimisation.model.gyroscope_rotation", "true"};
 const Repair kFreeBow{"optimisation.model.board_bow", "true"};
-const Repair kLinearBiases{"optimisation.model.bias_model", "linear"};
 const Repair kFreeLineDelays{"optimisation.model.line_delay", "true"};
 
 namespace {

@@ -22,7 +22,7 @@ struct Cause {
 };
 const char* causeName(CauseKind kind);
 // Settings that free parameters which are fixed by default.
-extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kLinearBiases, kFreeLineDelays;
+extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kFreeLineDelays;
 
 // Absent if none of the groups explains a large share.
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,

@@ -4,10 +4,22 @@
 #include "tests/core/optimisation/residual_states.h"
 #include "tests/support/test_program.h"
 
+#include <Eigen/Cholesky>
+
 namespace {
 
 using namespace evical;
 using namespace evical::test;
+
+constexpr double kCommon_px = 0.5;
+
+std::vector<CircleMeasurement> inTwoViews(std::vector<CircleMeasurement> circles) {
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].view = static_cast<int>(i % 2);
+    circles[i].common_px = kCommon_px;
+  }
+  return circles;
+}
 
 class TestCircleCost : public QObject {
   Q_OBJECT
@@ -34,6 +46,49 @@ class TestCircleCost : public QObject {
       const double error = worstJacobianError(cost, blocks, 1e-5);
       QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
       QCOMPARE(worstErrorWithConstantBlocks(cost, blocks), 0.0);
+    }
+  }
+
+  // Circles of two views, each with a displacement in common.
+  void jacobiansWithCommonDisplacements_matchNumericDifferences() {
+    for (const double near_sigma : {0.5, 30.0}) {
+      States states(7);
+      const CircleModel model = circleModel();
+      const Blocks blocks = circleBlocks(states, 0.05);
+      const CircleCost cost(model, segmentTimes(),
+                            inTwoViews(circlesNear(model, blocks, near_sigma, states)));
+      const double error = worstJacobianError(cost, blocks, 1e-5);
+      QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
+    }
+  }
+
+  // The squared residuals of a view are r^T (I + B B^T)^-1 r.
+  void commonDisplacement_isMarginalised() {
+    States states(8);
+    CircleModel model = circleModel();
+    model.huber_sigma = 1e9;
+    const Blocks blocks = circleBlocks(states, 0.05);
+    std::vector<CircleMeasurement> circles = inTwoViews(circlesNear(model, blocks, 2.0, states));
+    const Eigen::VectorXd whitened = residualsAt(CircleCost(model, segmentTimes(), circles), blocks);
+    for (CircleMeasurement& circle : circles) circle.common_px = 0.0;
+    const Eigen::VectorXd apart = residualsAt(CircleCost(model, segmentTimes(), circles), blocks);
+    const auto count = static_cast<Eigen::Index>(circles.size());
+    for (const int view : {0, 1}) {
+      Eigen::MatrixXd roots = Eigen::MatrixXd::Zero(2 * count, 2);
+      Eigen::VectorXd of_view = Eigen::VectorXd::Zero(2 * count);
+      double squares = 0.0;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const CircleMeasurement& circle = circles[static_cast<std::size_t>(i)];
+        if (circle.view != view) continue;
+        roots.middleRows<2>(2 * i) = kCommon_px * circle.whitening_px;
+        of_view.segment<2>(2 * i) = apart.segment<2>(2 * i);
+        squares += whitened.segment<2>(2 * i).squaredNorm();
+      }
+      const Eigen::MatrixXd covariance =
+          Eigen::MatrixXd::Identity(2 * count, 2 * count) + roots * roots.transpose();
+      const double expected = of_view.dot(covariance.llt().solve(of_view));
+      QVERIFY(expected < 0.95 * of_view.squaredNorm());
+      QVERIFY(std::abs(squares - expected) < 1e-9 * expected);
     }
   }
 

@@ -44,7 +44,7 @@ AssessmentScreen::AssessmentScreen(Words words, QWidget* parent)
   in_card->addLayout(form_);
   grid_->setColumnStretch(1, 1);
   notes_->setObjectName(words_.name + "_notes");
-  notes_->setAccessibleName(tr("What to do, and notes"));
+  notes_->setAccessibleName(tr("Advice and notes"));
   notes_->setWordWrap(true);
   notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   stack_->addWidget(emptyHint(words_.hint, this));
