@@ -132,7 +132,7 @@ void bindImu(py::module_& module) {
       .def_property_readonly("gyroscope_bias_std_rad_s",
                              [](const ImuOfResult& i) { return arrayOf(i.sigma().gyroscope_bias_std_rad_s); })
       .def_property_readonly(
-          "gyroscope_mapping",
+          "gyroscope_scale_misalignment",
           [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().gyroscopeMatrix())); },
           "(3, 3): from true rates in the IMU's frame to measured ones.")
       .def_property_readonly("gyroscope_rms_rad_s",
@@ -145,8 +145,10 @@ void bindImu(py::module_& module) {
           "accelerometer_bias_std_m_s2",
           [](const ImuOfResult& i) { return arrayOf(i.sigma().accelerometer_bias_std_m_s2); })
       .def_property_readonly(
-          "accelerometer_mapping",
-          [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().accelerometer_mapping)); },
+          "accelerometer_scale_misalignment",
+          [](const ImuOfResult& i) {
+            return arrayOf(Eigen::MatrixXd(i.state().accelerometer_scale_misalignment));
+          },
           "(3, 3), upper triangular.")
       .def_property_readonly(
           "accelerometer_delay_s", [](const ImuOfResult& i) { return i.state().accelerometer_delay_s; },

@@ -103,12 +103,12 @@ void RunTrace::watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex);
   watcher_id_ = gettid();
   while (!stop.stop_requested()) {
-    look();
+    sample();
     wake.wait_for(lock, stop, 10ms, [] { return false; });
   }
 }
 
-void RunTrace::look() {
+void RunTrace::sample() {
   namespace fs = std::filesystem;
   const std::lock_guard lock(mutex_);
   const double now_s = stopwatch_.elapsed_s();
@@ -161,7 +161,7 @@ std::size_t RunTrace::freeRow() const {
 }
 
 std::string RunTrace::json() {
-  look();
+  sample();
   const std::lock_guard lock(mutex_);
   const double end_s = stopwatch_.elapsed_s();
   std::vector<std::string> events = {rowName(kStageRow, "stages")};

@@ -49,7 +49,7 @@ class RunTrace final : public ProgressSink {
   };
 
   void watch(const std::stop_token& stop);
-  void look();
+  void sample();
   void lookAt(int thread_id, double computing_s, double now_s);
   std::size_t freeRow() const;
 

@@ -21,8 +21,8 @@ struct CircleObservation {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  // of the ellipse
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
-  // Shift of the centre (ideal pixels) per pixel of edge lead.
-  Eigen::Vector2d edge_lead_effect = Eigen::Vector2d::Zero();
+  // Shift of the centre (ideal pixels) per pixel of edge localisation bias.
+  Eigen::Vector2d edge_localisation_bias_effect = Eigen::Vector2d::Zero();
   Eigen::Vector2d semi_axes_px = Eigen::Vector2d::Zero();  // major, minor
   double angle_rad = 0.0;                                  // of the major axis, from x towards y
   int events = 0;                                          // edge bursts in the fit

@@ -48,7 +48,7 @@ struct SensorPrior {
 
 struct ImuPrior : SensorPrior {
   std::optional<KnownVector> gyroscope_bias, accelerometer_bias;  // rad/s, m/s^2
-  std::optional<KnownMapping> gyroscope_mapping, accelerometer_mapping;
+  std::optional<KnownMapping> gyroscope_scale_misalignment, accelerometer_scale_misalignment;
   std::optional<KnownRotation> gyroscope_rotation;  // gyroscope_from_accelerometer, sigmas about its axes
   std::optional<KnownNumber> accelerometer_delay;   // s
 

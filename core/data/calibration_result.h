@@ -26,8 +26,8 @@ struct CameraUncertainty {
   Eigen::Vector3d rotation_std_rad = Eigen::Vector3d::Zero();   // about the reference's axes
   Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();  // in the reference
   double time_offset_std_s = 0.0;
-  double edge_lead_std_px = 0.0;
-  double slow_edge_lead_std_px = 0.0;
+  double edge_localisation_bias_std_px = 0.0;
+  double slow_edge_localisation_bias_std_px = 0.0;
   // Sigmas of the lens in use if this recording determined it, in the order of IntrinsicsJacobian
   // (camera_model.h); 0 for fixed coefficients.
   std::optional<std::array<double, 9>> intrinsics_std = {};
@@ -42,8 +42,8 @@ struct ImuUncertainty {
   double time_offset_std_s = 0.0;
   Eigen::Vector3d gyroscope_bias_std_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias_std_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gyroscope_mapping_std = Eigen::Matrix3d::Zero();  // upper triangle
-  Eigen::Matrix3d accelerometer_mapping_std = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gyroscope_scale_misalignment_std = Eigen::Matrix3d::Zero();  // upper triangle
+  Eigen::Matrix3d accelerometer_scale_misalignment_std = Eigen::Matrix3d::Zero();
   // Sigmas of the biases at the knots of their drift.
   std::vector<Eigen::Vector3d> gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2;
   Eigen::Vector3d gyroscope_rotation_std_rad = Eigen::Vector3d::Zero();  // about the accelerometer's axes

@@ -18,12 +18,13 @@ namespace evical {
 struct CameraState {
   RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // see referenceTime_s
-  double edge_lead_px = 0.0;   // distance of measured centres ahead of their place, along their image motion
-  double slow_edge_lead_px = 0.0;      // additional lead near standstill
-  CameraLens lens = {};                // `solved` if its intrinsics are estimated
-  double time_offset_drift_ppm = 0.0;  // if it is estimated
-  double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s
-  double line_delay_us = 0.0;          // of frames: from one row's exposure to the next one's
+  double edge_localisation_bias_px =
+      0.0;  // distance of measured centres ahead of their place, along their image motion
+  double slow_edge_localisation_bias_px = 0.0;  // additional lead near standstill
+  CameraLens lens = {};                         // `solved` if its intrinsics are estimated
+  double time_offset_drift_ppm = 0.0;           // if it is estimated
+  double time_offset_at_s = 0.0;                // the camera's time at which the offset is time_offset_s
+  double line_delay_us = 0.0;                   // of frames: from one row's exposure to the next one's
   double exposure_share = 0.0;  // of frames: share of a longer exposure between the stamp and the middle
 };
 
@@ -32,9 +33,9 @@ struct ImuState {
   double time_offset_s = 0.0;                                      // see referenceTime_s
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();  // if they drift: the means over time
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gyroscope_mapping =
+  Eigen::Matrix3d gyroscope_scale_misalignment =
       Eigen::Matrix3d::Identity();  // upper triangular: measured = M true + bias
-  Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();  // the same
+  Eigen::Matrix3d accelerometer_scale_misalignment = Eigen::Matrix3d::Identity();  // the same
   // The IMU's frame is the accelerometer's; the gyroscope may be misaligned with it.
   Eigen::Quaterniond gyroscope_from_accelerometer = Eigen::Quaterniond::Identity();
   // The IMU's clock is the gyroscope's: the accelerometer's sample stamped t was measured at t minus this.
@@ -52,7 +53,7 @@ struct ImuState {
   }
   // measured rate = (this matrix) * (rate in the IMU's frame) + bias.
   Eigen::Matrix3d gyroscopeMatrix() const {
-    return gyroscope_mapping * gyroscope_from_accelerometer.toRotationMatrix();
+    return gyroscope_scale_misalignment * gyroscope_from_accelerometer.toRotationMatrix();
   }
 };
 

@@ -24,7 +24,7 @@ std::optional<Eigen::Vector3d> predictedForce_m_s2(const CalibrationState& state
   const Eigen::Vector3d force = rotation.rotation.transpose() * (acceleration - state.gravity_in_world_m_s2) +
                                 rotation.angular_acceleration_rad_s2.cross(lever_arm) +
                                 w.cross(w.cross(lever_arm));
-  return imu.accelerometer_mapping * (imu.reference_from_imu.rotation.conjugate() * force) +
+  return imu.accelerometer_scale_misalignment * (imu.reference_from_imu.rotation.conjugate() * force) +
          imu.accelerometerBiasAt_m_s2(stamp_s);
 }
 

@@ -36,7 +36,7 @@ struct IntrinsicsResult {
   std::vector<std::string> advice;  // additional views that would improve the result
   CameraIntrinsics intrinsics;
   IntrinsicsMatrix covariance = IntrinsicsMatrix::Zero();  // zero for fixed parameters
-  double edge_lead_px = 0.0, edge_lead_std_px = 0.0;
+  double edge_localisation_bias_px = 0.0, edge_localisation_bias_std_px = 0.0;
   ImageMap image;                    // coverage and projection uncertainty
   double reprojection_rms_px = 0.0;  // of distances, on the sensor
   double normalised_rms = 0.0;       // of residuals divided by their sigmas

@@ -84,7 +84,8 @@ std::string ekalibrImuText(const RigImu& imu, unsigned pointer_id) {
              "      - key: {}\n        value:\n          ptr_wrapper:\n            id: {}\n            "
              "data:\n",
              key(imu.stream, imu.file_name), kEkalibrFirst | pointer_id) +
-         sensorText("ACCE", imu.state.accelerometer_bias_m_s2, imu.state.accelerometer_mapping, blanks) +
+         sensorText("ACCE", imu.state.accelerometer_bias_m_s2, imu.state.accelerometer_scale_misalignment,
+                    blanks) +
          sensorText("GYRO", imu.state.gyroscope_bias_rad_s,
                     mapped ? gyroscope.triangular : Eigen::Matrix3d(Eigen::Matrix3d::Identity()), blanks) +
          fmt::format(

@@ -25,13 +25,13 @@ TriangularTimesRotation splitUpper(const Eigen::Matrix3d& matrix) {
 }
 
 bool hasMapping(const ImuState& imu) {
-  return imu.accelerometer_mapping != Eigen::Matrix3d::Identity() ||
+  return imu.accelerometer_scale_misalignment != Eigen::Matrix3d::Identity() ||
          imu.gyroscopeMatrix() != Eigen::Matrix3d::Identity();
 }
 
 LowerTriangularImu lowerTriangular(const ImuState& imu) {
   if (!hasMapping(imu)) return {};
-  const TriangularTimesRotation accelerometer = splitLower(imu.accelerometer_mapping);
+  const TriangularTimesRotation accelerometer = splitLower(imu.accelerometer_scale_misalignment);
   const TriangularTimesRotation gyroscope =
       splitLower(imu.gyroscopeMatrix() * accelerometer.rotation.transpose());
   return {accelerometer.rotation, accelerometer.triangular, gyroscope.triangular, gyroscope.rotation};

@@ -57,7 +57,7 @@ std::string matlabImuText(const RigImu& imu, std::size_t number, ExportNotes& no
   return line(owner, "Name", fmt::format("'{}'", imu.file_name)) +
          line(owner, "ReferenceFromImu", matlabMatrixText(matrixOf(imu.state.reference_from_imu))) +
          line(owner, "TimeOffset", real(imu.state.time_offset_s)) +
-         line(owner, "AccelerometerMatrix", matlabMatrixText(imu.state.accelerometer_mapping)) +
+         line(owner, "AccelerometerMatrix", matlabMatrixText(imu.state.accelerometer_scale_misalignment)) +
          line(owner, "GyroscopeMatrix", matlabMatrixText(imu.state.gyroscopeMatrix())) +
          line(owner, "AccelerometerBias", matlabMatrixText(imu.state.accelerometer_bias_m_s2)) +
          line(owner, "GyroscopeBias", matlabMatrixText(imu.state.gyroscope_bias_rad_s)) +

@@ -74,7 +74,7 @@ void addImu(const RigImu& imu, const ImuUncertainty& uncertainty, Arrays& arrays
   arrays.add("stream", npyText(imu.stream));
   arrays.add("T_ref_imu", npyMatrix(matrixOf(state.reference_from_imu)));
   addTiming(state, arrays);
-  arrays.add("accelerometer_M", npyMatrix(state.accelerometer_mapping));
+  arrays.add("accelerometer_M", npyMatrix(state.accelerometer_scale_misalignment));
   arrays.add("gyroscope_M", npyMatrix(state.gyroscopeMatrix()));
   arrays.add("accelerometer_bias_m_s2", state.accelerometer_bias_m_s2);
   arrays.add("gyroscope_bias_rad_s", state.gyroscope_bias_rad_s);

@@ -71,7 +71,7 @@ std::string opencvImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes)
                    "gyroscope_matrix w + gyroscope_bias [rad/s]."}) +
          opencvMatrixText("reference_from_imu", matrixOf(imu.state.reference_from_imu)) +
          fmt::format("time_offset_s: {}\n", real(imu.state.time_offset_s)) +
-         opencvMatrixText("accelerometer_matrix", imu.state.accelerometer_mapping) +
+         opencvMatrixText("accelerometer_matrix", imu.state.accelerometer_scale_misalignment) +
          opencvMatrixText("gyroscope_matrix", imu.state.gyroscopeMatrix()) +
          opencvMatrixText("accelerometer_bias", imu.state.accelerometer_bias_m_s2) +
          opencvMatrixText("gyroscope_bias", imu.state.gyroscope_bias_rad_s) +

@@ -16,7 +16,7 @@ std::string openvinsMappingText(const RigImu& imu) {
   return fmt::format("  model: {}\n  Tw:\n{}  R_IMUtoGYRO:\n{}  Ta:\n{}  R_IMUtoACC:\n{}  Tg:\n{}",
                      mapped ? "rpng" : "calibrated", rowsYaml(mapped ? gyroscope.triangular : identity, 4),
                      rowsYaml(mapped ? gyroscope.rotation : identity, 4),
-                     rowsYaml(imu.state.accelerometer_mapping, 4), rowsYaml(identity, 4),
+                     rowsYaml(imu.state.accelerometer_scale_misalignment, 4), rowsYaml(identity, 4),
                      rowsYaml(Eigen::Matrix3d::Zero(), 4));
 }
 

@@ -95,7 +95,7 @@ class Comparison {
         const auto i = indexOf(file.imus[k].name, k, rig_.imus);
         if (!i || !file.imus[k].accelerometer) continue;
         const Eigen::Matrix3d turn =
-            file.imus[k].accelerometer->inverse() * rig_.imus[*i].state.accelerometer_mapping;
+            file.imus[k].accelerometer->inverse() * rig_.imus[*i].state.accelerometer_scale_misalignment;
         const double off = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
         if (off <= kSumOfRoundings * file.rounding)
           turns_[*i] = turn;
@@ -203,7 +203,7 @@ class Comparison {
     if (read.time_offset_s) compareTime(file, own.name, *read.time_offset_s, own.state.time_offset_s);
     if (read.accelerometer)
       compareNumbers(file, called("the accelerometer's matrix"), *read.accelerometer * turns_[i],
-                     own.state.accelerometer_mapping);
+                     own.state.accelerometer_scale_misalignment);
     if (read.gyroscope)
       compareNumbers(file, called("the gyroscope's matrix"), *read.gyroscope * turns_[i],
                      own.state.gyroscopeMatrix());

@@ -202,7 +202,8 @@ void noteLostMapping(const RigImu& imu, const char* program, ExportNotes& notes)
   const auto off = [](const Eigen::Matrix3d& m) {
     return (m - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   };
-  const double largest = std::max(off(imu.state.gyroscopeMatrix()), off(imu.state.accelerometer_mapping));
+  const double largest =
+      std::max(off(imu.state.gyroscopeMatrix()), off(imu.state.accelerometer_scale_misalignment));
   if (largest == 0.0) return;
   notes.push_back(
       fmt::format("{}: {} does not support scales and misalignment, which are up to {:.2g} % here; correct "

@@ -54,7 +54,7 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
 
 struct CentreFit {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();    // centre x, y in ideal pixels; radius offset in pixels
-  Eigen::Vector3d by_lead = Eigen::Vector3d::Zero();  // of the shift, by an edge lead in pixels
+  Eigen::Vector3d by_lead = Eigen::Vector3d::Zero();  // of the shift, by an edge localisation bias in pixels
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double weight = 0.0, squares = 0.0, time_s = 0.0;
   int points = 0, inliers = 0;
@@ -115,7 +115,7 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
   out.velocity_px_s = motion.velocityAt(centre) + fit.time_s * motion.accelerationAt(centre);
   out.time_s = secondsSince(start_ns, motion.time_ns) + fit.time_s;
   out.centre_px = centre + motion.travel(centre, fit.time_s);
-  out.edge_lead_effect = fit.by_lead.head<2>();
+  out.edge_localisation_bias_effect = fit.by_lead.head<2>();
   out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
   out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse();  // ascending shape: major axis first

@@ -218,7 +218,7 @@ void Alignment::addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) cons
   if (layout_.with_scale) {
     constexpr double kAnyScale = 1.0;
     matrix(layout_.scale(), layout_.scale()) = vector(layout_.scale()) = inverseSquare(kAnyScale);
-    matrix.diagonal().tail<9>().setConstant(inverseSquare(options_.accelerometer_mapping_sigma));
+    matrix.diagonal().tail<9>().setConstant(inverseSquare(options_.accelerometer_scale_misalignment_sigma));
   }
   if (!gravity_m_s2_) return;
   // |g| is known: a tight observation along the current direction.

@@ -56,8 +56,8 @@ constexpr std::tuple kInitialisationFields{
     Field{"accelerometer_bias_sigma_m_s2", &InitialisationOptions::accelerometer_bias_sigma_m_s2, 0.5,
           within(1e-3, 100.0), "m/s^2", "Sigma of the weak prior of the accelerometer's bias, around 0."},
     Field{
-        "accelerometer_mapping_sigma", &InitialisationOptions::accelerometer_mapping_sigma, 0.05,
-        within(1e-6, 1.0), "",
+        "accelerometer_scale_misalignment_sigma",
+        &InitialisationOptions::accelerometer_scale_misalignment_sigma, 0.05, within(1e-6, 1.0), "",
         "Sigma of the weak prior of the accelerometer's scales and axes in the check of the board's scale."},
     Field{"largest_scale_error", &InitialisationOptions::largest_scale_error, 0.03, within(0.0, 10.0), "",
           "Largest relative difference between the board's scale from accelerations and spacing_m; above it "

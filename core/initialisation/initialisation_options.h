@@ -27,7 +27,7 @@ struct InitialisationOptions {
   double acceleration_sigma_m_s2;
   double translation_sigma_m;
   double accelerometer_bias_sigma_m_s2;
-  double accelerometer_mapping_sigma;
+  double accelerometer_scale_misalignment_sigma;
   double largest_scale_error;
   double scale_error_sigmas;
   double camera_knot_spacing_s;

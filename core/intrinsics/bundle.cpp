@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kLeastScale = 1e-3;
 
-// Prior of the edge lead, with mean 0.
+// Prior of the edge localisation bias, with mean 0.
 class LeadPrior final : public ceres::SizedCostFunction<1, 1> {
  public:
   explicit LeadPrior(double sigma_px) : weight_(1.0 / sigma_px) {}
@@ -97,7 +97,8 @@ class Adjustment {
       auto& of_view = all.emplace_back();
       std::array<double, kPoseBlock> pose{};
       writePose(bundle_.poses[v], pose.data());
-      const std::array<const double*, 3> blocks = {intrinsics.data(), &bundle_.edge_lead_px, pose.data()};
+      const std::array<const double*, 3> blocks = {intrinsics.data(), &bundle_.edge_localisation_bias_px,
+                                                   pose.data()};
       for (const SensorCircle& circle : bundle_.views[v].circles) {
         Eigen::Vector2d residual;
         CircleCentreCost(bundle_.intrinsics.model, circle, board_.radius_m, 1.0)
@@ -173,14 +174,15 @@ class Adjustment {
     problem.AddParameterBlock(intrinsics.data(), 9,
                               fixed.empty() ? nullptr : new ceres::SubsetManifold(9, fixed));
     setBounds(problem, intrinsics);
-    problem.AddResidualBlock(new LeadPrior(options_.edge_lead_sigma_px), nullptr, &bundle_.edge_lead_px);
+    problem.AddResidualBlock(new LeadPrior(options_.edge_localisation_bias_sigma_px), nullptr,
+                             &bundle_.edge_localisation_bias_px);
     for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
       writePose(bundle_.poses[v], poses[v].data());
       for (const SensorCircle& circle : bundle_.views[v].circles) {
         if (!circle.used) continue;
         problem.AddResidualBlock(
             new CircleCentreCost(bundle_.intrinsics.model, circle, board_.radius_m, bundle_.scale),
-            new ceres::HuberLoss(options_.huber_sigma), intrinsics.data(), &bundle_.edge_lead_px,
+            new ceres::HuberLoss(options_.huber_sigma), intrinsics.data(), &bundle_.edge_localisation_bias_px,
             poses[v].data());
       }
       if (problem.HasParameterBlock(poses[v].data())) problem.SetManifold(poses[v].data(), new PoseManifold);
@@ -218,7 +220,7 @@ Eigen::Vector2d Bundle::error_px(std::size_t view, const SensorCircle& circle) c
   writeIntrinsics(intrinsics, block.data());
   std::array<double, kPoseBlock> pose{};
   writePose(poses[view], pose.data());
-  const std::array<const double*, 3> blocks = {block.data(), &edge_lead_px, pose.data()};
+  const std::array<const double*, 3> blocks = {block.data(), &edge_localisation_bias_px, pose.data()};
   SensorCircle unweighted = circle;
   unweighted.covariance_px2.setIdentity();
   Eigen::Vector2d error;

@@ -1,4 +1,4 @@
-// Bundle adjustment: intrinsics, edge lead, and a pose for every view.
+// Bundle adjustment: intrinsics, edge localisation bias, and a pose for every view.
 #pragma once
 
 #include "core/base/progress.h"
@@ -17,14 +17,14 @@ FreeIntrinsics freeIntrinsics(CameraModel model, const IntrinsicsOptions& option
 
 struct Bundle {
   CameraIntrinsics intrinsics;
-  double edge_lead_px = 0.0;
+  double edge_localisation_bias_px = 0.0;
   std::vector<SensorView> views;      // with marks of used circles
   std::vector<RigidTransform> poses;  // camera_from_board, by view
   double scale = 1.0;                 // median-based spread of the normalised errors
   bool converged = false;
   double radius_m = 0.0;  // of the board's circles
 
-  // Predicted minus measured, with the edge lead; 1000 px if the camera does not see it.
+  // Predicted minus measured, with the edge localisation bias; 1000 px if the camera does not see it.
   Eigen::Vector2d error_px(std::size_t view, const SensorCircle& circle) const;
   int circlesUsed() const;
   int viewsUsed() const;

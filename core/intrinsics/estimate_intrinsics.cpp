@@ -166,14 +166,14 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
 
   IntrinsicsResult result;
   result.intrinsics = bundle.intrinsics;
-  result.edge_lead_px = bundle.edge_lead_px;
+  result.edge_localisation_bias_px = bundle.edge_localisation_bias_px;
   result.views_found = static_cast<int>(input.observations.views.size());
   addFit(bundle, result);
   checkCount(views, static_cast<std::size_t>(result.views_used), "consistent views", input, options);
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
   // Only moving edges in events have a lead; otherwise the value would be the prior's.
-  if (hasLead(bundle)) result.edge_lead_std_px = uncertainty.edge_lead_std_px;
+  if (hasLead(bundle)) result.edge_localisation_bias_std_px = uncertainty.edge_localisation_bias_std_px;
   result.normalised_rms = uncertainty.normalised_rms;
   result.largest_tilt_deg = largestTilt_deg(bundle);
   checkTilts(bundle, focalLengthRelativeStd(result.intrinsics, result.covariance), options);

@@ -25,7 +25,7 @@ struct IntrinsicsOptions {
   double outlier_sigma;
   double outlier_view_fraction;
   double least_centre_sigma_px;
-  double edge_lead_sigma_px;
+  double edge_localisation_bias_sigma_px;
   double correlation_time_s;
   double place_error_px;
   int max_iterations;

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr int kShared = kIntrinsicsCount + 1;  // and the edge lead
+constexpr int kShared = kIntrinsicsCount + 1;  // and the edge localisation bias
 using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
@@ -48,7 +48,8 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   writeIntrinsics(bundle.intrinsics, intrinsics.data());
   Eigen::Matrix<double, kPoseBlock, 1> pose_block;
   writePose(pose, pose_block.data());
-  const std::array<const double*, 3> blocks = {intrinsics.data(), &bundle.edge_lead_px, pose_block.data()};
+  const std::array<const double*, 3> blocks = {intrinsics.data(), &bundle.edge_localisation_bias_px,
+                                               pose_block.data()};
   PoseMatrix a = PoseMatrix::Zero();
   Eigen::Matrix<double, kShared, 6> b = Eigen::Matrix<double, kShared, 6>::Zero();
   Eigen::Matrix<double, 6, 1> pose_score = Eigen::Matrix<double, 6, 1>::Zero();
@@ -141,7 +142,7 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   BundleUncertainty out;
   if (residuals <= unknowns) return out;
   const double variance = squares / (residuals - unknowns);
-  information(kIntrinsicsCount, kIntrinsicsCount) += std::pow(options.edge_lead_sigma_px, -2);
+  information(kIntrinsicsCount, kIntrinsicsCount) += std::pow(options.edge_localisation_bias_sigma_px, -2);
   const SharedMatrix inverse = inverseOf(information, free);
   SharedMatrix covariance = variance * inverse;
   // Correction for few views: the estimate absorbs part of their common errors.
@@ -155,7 +156,7 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   const PlaceMatrix by_place_errors = options.place_error_px * inverse * by_place;
   covariance += by_place_errors * by_place_errors.transpose();
   out.covariance = covariance.topLeftCorner<kIntrinsicsCount, kIntrinsicsCount>();
-  out.edge_lead_std_px = std::sqrt(covariance(kIntrinsicsCount, kIntrinsicsCount));
+  out.edge_localisation_bias_std_px = std::sqrt(covariance(kIntrinsicsCount, kIntrinsicsCount));
   out.normalised_rms = bundle.scale * std::sqrt(variance);
   return out;
 }

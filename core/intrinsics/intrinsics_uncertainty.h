@@ -10,7 +10,7 @@ namespace evical {
 
 struct BundleUncertainty {
   IntrinsicsMatrix covariance = IntrinsicsMatrix::Zero();  // zero where a parameter is fixed
-  double edge_lead_std_px = 0.0;
+  double edge_localisation_bias_std_px = 0.0;
   double normalised_rms = 0.0;  // of residuals over their sigmas
 };
 

@@ -24,7 +24,7 @@ SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const 
   const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
   out.covariance_px2 = sensor_from_ideal * circle.covariance_px2 * sensor_from_ideal.transpose() +
                        floor_px2 * Eigen::Matrix2d::Identity();
-  out.lead_effect = sensor_from_ideal * circle.edge_lead_effect;
+  out.lead_effect = sensor_from_ideal * circle.edge_localisation_bias_effect;
   return out;
 }
 

@@ -44,8 +44,8 @@ void ImuPairs::add(std::size_t imu, double time_s, const ImuSample& sample) {
   const ImuState& state = imus_[imu];
   const Eigen::Vector3d rate =
       state.gyroscopeMatrix().inverse() * (sample.angular_rate_rad_s - state.gyroscope_bias_rad_s);
-  const Eigen::Vector3d force =
-      state.accelerometer_mapping.inverse() * (sample.specific_force_m_s2 - state.accelerometer_bias_m_s2);
+  const Eigen::Vector3d force = state.accelerometer_scale_misalignment.inverse() *
+                                (sample.specific_force_m_s2 - state.accelerometer_bias_m_s2);
   // All data are kept on the reference's clock, so that windows are the same for all IMUs.
   const PairNominal& clock = nominal_[imu];
   const double common_s =

@@ -113,7 +113,7 @@ StopResidual residualOf(const StopMean& stop, const StopNoise& noise, const Acce
                         double gravity_m_s2) {
   ImuState imu;
   setAccelerometerNumbers(numbers, imu);
-  const Eigen::Matrix3d inverse = imu.accelerometer_mapping.inverse();
+  const Eigen::Matrix3d inverse = imu.accelerometer_scale_misalignment.inverse();
   const Eigen::Vector3d force = inverse * (stop.force_m_s2 - imu.accelerometer_bias_m_s2);
   const Eigen::Vector3d along = inverse.transpose() * force.normalized();
   StopResidual residual;
@@ -284,14 +284,14 @@ AccelerometerVector accelerometerNumbers(const ImuState& imu) {
   numbers.head<3>() = imu.accelerometer_bias_m_s2;
   for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
     numbers[3 + static_cast<Eigen::Index>(e)] =
-        imu.accelerometer_mapping(kMappingEntries[e][0], kMappingEntries[e][1]);
+        imu.accelerometer_scale_misalignment(kMappingEntries[e][0], kMappingEntries[e][1]);
   return numbers;
 }
 
 void setAccelerometerNumbers(const AccelerometerVector& numbers, ImuState& imu) {
   imu.accelerometer_bias_m_s2 = numbers.head<3>();
   for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
-    imu.accelerometer_mapping(kMappingEntries[e][0], kMappingEntries[e][1]) =
+    imu.accelerometer_scale_misalignment(kMappingEntries[e][0], kMappingEntries[e][1]) =
         numbers[3 + static_cast<Eigen::Index>(e)];
 }
 
@@ -303,7 +303,7 @@ AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const Ma
         squared(sigma.accelerometer_bias_std_m_s2[axis]) + squared(options.stability_accelerometer_bias_m_s2);
   for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
     variances[3 + static_cast<Eigen::Index>(e)] =
-        squared(sigma.accelerometer_mapping_std(kMappingEntries[e][0], kMappingEntries[e][1])) +
+        squared(sigma.accelerometer_scale_misalignment_std(kMappingEntries[e][0], kMappingEntries[e][1])) +
         squared(options.stability_imu_scale);
   return variances.cwiseMax(1e-12);
 }

@@ -57,15 +57,15 @@ using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 AccelerometerVector linearFrom(const AccelerometerVector& numbers) {
   ImuState imu;
   setAccelerometerNumbers(numbers, imu);
-  imu.accelerometer_mapping = imu.accelerometer_mapping.inverse().eval();
-  imu.accelerometer_bias_m_s2 = imu.accelerometer_mapping * imu.accelerometer_bias_m_s2;
+  imu.accelerometer_scale_misalignment = imu.accelerometer_scale_misalignment.inverse().eval();
+  imu.accelerometer_bias_m_s2 = imu.accelerometer_scale_misalignment * imu.accelerometer_bias_m_s2;
   return accelerometerNumbers(imu);
 }
 AccelerometerVector numbersFrom(const AccelerometerVector& linear) {
   ImuState imu;
   setAccelerometerNumbers(linear, imu);
-  imu.accelerometer_mapping = imu.accelerometer_mapping.inverse().eval();
-  imu.accelerometer_bias_m_s2 = imu.accelerometer_mapping * imu.accelerometer_bias_m_s2;
+  imu.accelerometer_scale_misalignment = imu.accelerometer_scale_misalignment.inverse().eval();
+  imu.accelerometer_bias_m_s2 = imu.accelerometer_scale_misalignment * imu.accelerometer_bias_m_s2;
   return accelerometerNumbers(imu);
 }
 

@@ -107,8 +107,8 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     if (!builder.rolls(i)) builder.hold(&state.cameras[i].line_delay_us);
     if (!builder.exposuresVary(i)) builder.hold(&state.cameras[i].exposure_share);
     if (input_.cameras[i].observations.kind == CameraKind::Events) continue;
-    builder.hold(&state.cameras[i].edge_lead_px);  // only events have a lead
-    builder.hold(&state.cameras[i].slow_edge_lead_px);
+    builder.hold(&state.cameras[i].edge_localisation_bias_px);  // only events have a lead
+    builder.hold(&state.cameras[i].slow_edge_localisation_bias_px);
   }
   if (!options_.free_gravity_norm) set(state.gravity_in_world_m_s2.data(), &sphere_);
   for (std::size_t i = 0; i < state.cameras.size(); ++i)

@@ -28,8 +28,8 @@ enum Block {
   kTimeOffset,
   kTimeOffsetDrift,
   kLineDelay,
-  kEdgeLead,
-  kSlowEdgeLead,
+  kEdgeLocalisationBias,
+  kSlowEdgeLocalisationBias,
   kBoardScale,
   kBoardStretch,
   kBoardRowCurvature,
@@ -56,7 +56,7 @@ struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
   double time_offset_s, time_offset_drift_ppm, line_delay_us, exposure_share;
-  EdgeLead lead;
+  EdgeLocalisationBias lead;
   BoardState board;
   Matrix3d world_from_board;  // its rotation
 
@@ -68,7 +68,7 @@ struct Mount {
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
         line_delay_us(*parameters[kLineDelay]),
         exposure_share(*parameters[kExposureShare]),
-        lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
+        lead{*parameters[kEdgeLocalisationBias], *parameters[kSlowEdgeLocalisationBias]},
         board{*parameters[kBoardScale],
               *parameters[kBoardStretch],
               *parameters[kBoardRowCurvature],
@@ -164,9 +164,10 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
   }
   writeBoardJacobians(mount, placed, circle.on_board_m, -by_position,
                       by_normal * mount.camera_from_imu * placed.imu_from_world, row, jacobians);
-  if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
-  if (jacobians[kSlowEdgeLead])
-    jacobianRows<2, 1>(jacobians, kSlowEdgeLead, row) = by_px * circle.lead.of_slow;
+  if (jacobians[kEdgeLocalisationBias])
+    jacobianRows<2, 1>(jacobians, kEdgeLocalisationBias, row) = by_px * circle.lead.of_lead;
+  if (jacobians[kSlowEdgeLocalisationBias])
+    jacobianRows<2, 1>(jacobians, kSlowEdgeLocalisationBias, row) = by_px * circle.lead.of_slow;
 }
 
 // One for each view whose circles have a displacement in common.

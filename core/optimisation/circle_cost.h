@@ -1,6 +1,6 @@
-// Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
+// Zero when the measured ellipse centres are those of the projected circles, leading by the edge localisation bias along
 // their image motion (docs/maths.md, 9.1):
-//   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_lead.h) - measured ],
+//   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_localisation_bias.h) - measured ],
 //   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
 //     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
@@ -13,7 +13,7 @@
 // With free intrinsics, the prediction is that of free_intrinsics.h.
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
-// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge lead [px] and
+// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge localisation bias [px] and
 // that of slow edges [px], the board's scale, stretch, two curvatures and twist [1/m] (BoardState; its circles keep the
 // radius that was given and the plane's normal, which changes their centres by far less than could be seen), the
 // exposure's share, world_from_board's rotation (x y z w) and translation [m]; where intrinsics are free also
@@ -27,7 +27,7 @@
 #include "core/data/calibration_state.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/common_displacement.h"
-#include "core/optimisation/edge_lead.h"
+#include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/spline_segment.h"
 
@@ -45,7 +45,7 @@ struct CircleMeasurement {
   double by_exposure_s = 0.0;  // and all of what the frame was exposed longer than others
   Eigen::Vector2d on_board_m, centre_px;
   Eigen::Matrix2d whitening_px;  // L^-1
-  EdgeLeadEffect lead;
+  EdgeLocalisationBiasEffect lead;
   Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
   double common_px = 0.0;                                    // commonDisplacement_px
   int view = 0, circle = 0;                                  // circle: position in the view's list

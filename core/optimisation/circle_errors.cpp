@@ -2,7 +2,7 @@
 
 #include "core/numerics/robust.h"
 #include "core/optimisation/common_displacement.h"
-#include "core/optimisation/edge_lead.h"
+#include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/free_intrinsics.h"
 
 #include "core/geometry/circle_conic.h"
@@ -120,9 +120,9 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                                             time_s - circle.time_s, circle.time_s),
                             input.boardOf(c), state.boardAt(camera.board));
         if (centre_px) {
-          const EdgeLeadEffect lead =
-              edgeLeadEffect(*camera.lens.detection_intrinsics, circle, options.slow_edge_speed_px_s);
-          error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
+          const EdgeLocalisationBiasEffect lead =
+              edgeBiasEffect(*camera.lens.detection_intrinsics, circle, options.slow_edge_speed_px_s);
+          error.error_px = *centre_px + edgeBiasOf(camera_state).times(lead) - circle.centre_px;
           error.normalised2 = 0.0;
         }
         errors.push_back(error);

@@ -18,8 +18,9 @@ inline double circleTime_s(const CameraState& camera, const CircleObservation& c
 }
 
 struct CircleError {
-  std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list
-  Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - measured, edge lead included
+  std::size_t camera = 0, view = 0, index = 0;  // index: position in the view's list
+  Eigen::Vector2d error_px =
+      Eigen::Vector2d::Zero();  // predicted - measured, edge localisation bias included
   double normalised2 =
       0.0;  // squared, over sigmas, without the common displacement of the view; infinite behind the camera
 };

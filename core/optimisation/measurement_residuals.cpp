@@ -3,7 +3,7 @@
 #include "core/base/time.h"
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/circle_errors.h"
-#include "core/optimisation/edge_lead.h"
+#include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/sample_runs.h"
 
@@ -49,7 +49,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.on_board_m = builder.input.boardOf(camera).point_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead = edgeLeadEffect(*data.lens.detection_intrinsics, observed, builder.options.slow_edge_speed_px_s);
+  m.lead = edgeBiasEffect(*data.lens.detection_intrinsics, observed, builder.options.slow_edge_speed_px_s);
   m.pixel_error_px = pixel_errors.at(observed);
   m.common_px = scale * commonDisplacement_px(data.observations.kind, observed, builder.options);
   m.view = static_cast<int>(view);
@@ -111,7 +111,7 @@ void addGyroscope(ProblemBuilder& builder, const SampleRun& run, double sigma) {
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   blocks.insert(blocks.end(),
-                {state.gyroscope_bias_rad_s.data(), builder.parameters.of(state.gyroscope_mapping),
+                {state.gyroscope_bias_rad_s.data(), builder.parameters.of(state.gyroscope_scale_misalignment),
                  state.gyroscope_from_accelerometer.coeffs().data()});
   if (!builder.isReference(run.imu))
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s,
@@ -132,9 +132,9 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run, double sigm
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   builder.parameters.appendPosition(run.segment, blocks);
-  blocks.insert(blocks.end(),
-                {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
-                 builder.parameters.of(state.accelerometer_mapping), &state.accelerometer_delay_s});
+  blocks.insert(blocks.end(), {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
+                               builder.parameters.of(state.accelerometer_scale_misalignment),
+                               &state.accelerometer_delay_s});
   if (!builder.isReference(run.imu)) {
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
                                  state.reference_from_imu.translation_m.data(), &state.time_offset_s,
@@ -169,13 +169,14 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(), {sensor.reference_from_camera.rotation.coeffs().data(),
-                                 sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
-                                 &state.slow_edge_lead_px, &board.scale, &board.stretch,
-                                 &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m,
-                                 &state.exposure_share, board.world_from_board.rotation.coeffs().data(),
-                                 board.world_from_board.translation_m.data()});
+    blocks.insert(
+        blocks.end(),
+        {sensor.reference_from_camera.rotation.coeffs().data(),
+         sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
+         &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_localisation_bias_px,
+         &state.slow_edge_localisation_bias_px, &board.scale, &board.stretch, &board.row_curvature_1_m,
+         &board.column_curvature_1_m, &board.twist_1_m, &state.exposure_share,
+         board.world_from_board.rotation.coeffs().data(), board.world_from_board.translation_m.data()});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

@@ -71,7 +71,7 @@ constexpr std::tuple kModelFields{
           "m/s^3/sqrt(Hz)", "Linear biases: random walk of accelerometers without one in the session.",
           Level::Public, Applies::WithLinearBiases},
     Field{"slow_edge_speed_px_s", &ModelOptions::slow_edge_speed_px_s, 20.0, within(0.1, 1000.0), "px/s",
-          "Image speed at which the additional lead of slow edges has decayed to 1/e."},
+          "Image speed at which the additional edge localisation bias at low speed has decayed to 1/e."},
     Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
           "Sigma added in quadrature to the covariance of each measured centre."},
     Field{"common_displacement_px", &ModelOptions::common_displacement_px, 0.008, within(0.0, 10.0), "px",

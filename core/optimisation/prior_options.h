@@ -9,8 +9,8 @@ struct PriorOptions {
   double camera_focal_length_sigma;
   double camera_principal_point_sigma_px;
   double camera_distortion_sigma;
-  double edge_lead_sigma_px;
-  double slow_edge_lead_sigma_px;
+  double edge_localisation_bias_sigma_px;
+  double slow_edge_localisation_bias_sigma_px;
   double longest_readout_ms;
   double time_offset_drift_sigma_ppm;
   double exposure_share_sigma;

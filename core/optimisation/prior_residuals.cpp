@@ -72,7 +72,8 @@ void addCameraPriors(ProblemBuilder& builder) {
     const PriorOwner owner{data.lens.detection_intrinsics->resolution_px.height_px};
     addWeakPriors(builder, kCameraQuantities, ids, owner, data.prior, cameras[i]);
   };
-  for (std::size_t i = 0; i < cameras.size(); ++i) add(i, {QuantityId::EdgeLead, QuantityId::SlowEdgeLead});
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    add(i, {QuantityId::EdgeLocalisationBias, QuantityId::SlowEdgeLocalisationBias});
   for (std::size_t i = 0; i < cameras.size(); ++i)
     if (builder.rolls(i)) add(i, {QuantityId::LineDelay});
   for (std::size_t i = 0; i < cameras.size(); ++i)
@@ -106,11 +107,12 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
     builder.residuals.push_back({id});
   if (builder.stage != ParameterStages::Mappings) return;
   const UnexcitedAxes& held = builder.weights.held_axes[imu];
-  add({QuantityId::GyroscopeMapping, QuantityId::AccelerometerMapping, QuantityId::AccelerometerDelay});
-  holdMapping(builder, builder.parameters.of(state.gyroscope_mapping), held.gyroscope,
-              prior.gyroscope_mapping);
-  holdMapping(builder, builder.parameters.of(state.accelerometer_mapping), held.accelerometer,
-              prior.accelerometer_mapping);
+  add({QuantityId::GyroscopeScaleMisalignment, QuantityId::AccelerometerScaleMisalignment,
+       QuantityId::AccelerometerDelay});
+  holdMapping(builder, builder.parameters.of(state.gyroscope_scale_misalignment), held.gyroscope,
+              prior.gyroscope_scale_misalignment);
+  holdMapping(builder, builder.parameters.of(state.accelerometer_scale_misalignment), held.accelerometer,
+              prior.accelerometer_scale_misalignment);
   if (builder.turnsGyroscope(imu)) add({QuantityId::GyroscopeRotation});
 }
 

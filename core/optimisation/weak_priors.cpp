@@ -17,16 +17,16 @@ std::optional<double> weakSigma(const QuantityInfo& info, const OptimisationOpti
       return 1e3 * options.longest_readout_ms / owner.image_height_px;
     case QuantityId::ExposureShare:
       return options.exposure_share_sigma;
-    case QuantityId::EdgeLead:
-      return options.edge_lead_sigma_px;
-    case QuantityId::SlowEdgeLead:
-      return options.slow_edge_lead_sigma_px;
+    case QuantityId::EdgeLocalisationBias:
+      return options.edge_localisation_bias_sigma_px;
+    case QuantityId::SlowEdgeLocalisationBias:
+      return options.slow_edge_localisation_bias_sigma_px;
     case QuantityId::GyroscopeBias:
       return options.gyroscope_bias_sigma_rad_s;
     case QuantityId::AccelerometerBias:
       return options.accelerometer_bias_sigma_m_s2;
-    case QuantityId::GyroscopeMapping:
-    case QuantityId::AccelerometerMapping:
+    case QuantityId::GyroscopeScaleMisalignment:
+    case QuantityId::AccelerometerScaleMisalignment:
       return options.mapping_sigma;
     case QuantityId::AccelerometerDelay:
       return options.accelerometer_delay_sigma_s;

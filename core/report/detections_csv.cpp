@@ -34,8 +34,8 @@ const std::vector<std::string> kDetectionColumns = {"camera",
                                                     "angle_rad",
                                                     "bursts",
                                                     "residual_rms_px",
-                                                    "edge_lead_effect_x",
-                                                    "edge_lead_effect_y",
+                                                    "edge_localisation_bias_effect_x",
+                                                    "edge_localisation_bias_effect_y",
                                                     "rows_below_middle",
                                                     "longer_exposed_s"};
 const std::vector<std::string> kWindowColumns = {"camera", "time_s",     "half_width_s", "outcome",
@@ -48,8 +48,9 @@ void writeCircle(const std::string& camera, const BoardView& view, const CircleO
                  camera, view.time_s, kGrids[static_cast<std::size_t>(view.kind)], c.circle, c.time_s,
                  c.centre_px.x(), c.centre_px.y(), c.covariance_px2(0, 0), c.covariance_px2(0, 1),
                  c.covariance_px2(1, 1), c.velocity_px_s.x(), c.velocity_px_s.y(), c.semi_axes_px.x(),
-                 c.semi_axes_px.y(), c.angle_rad, c.events, c.residual_rms_px, c.edge_lead_effect.x(),
-                 c.edge_lead_effect.y(), c.rows_below_middle, c.longer_exposed_s);
+                 c.semi_axes_px.y(), c.angle_rad, c.events, c.residual_rms_px,
+                 c.edge_localisation_bias_effect.x(), c.edge_localisation_bias_effect.y(),
+                 c.rows_below_middle, c.longer_exposed_s);
 }
 
 CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
@@ -67,7 +68,7 @@ CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
   c.angle_rad = line.real(14);
   c.events = line.integer(15, 0, kLargestCount);
   c.residual_rms_px = line.real(16);
-  c.edge_lead_effect = {line.real(17), line.real(18)};
+  c.edge_localisation_bias_effect = {line.real(17), line.real(18)};
   c.rows_below_middle = line.real(19);
   c.longer_exposed_s = line.real(20);
   return c;

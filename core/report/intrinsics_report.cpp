@@ -101,7 +101,8 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
   text += correlationYaml(r);
   text += fmt::format("projection_std_px: {{rms: {}, max: {}}}\n", number(r.image.rms_px),
                       number(r.image.max_px));
-  text += fmt::format("edge_lead_px: {:.6g}\nedge_lead_std_px: {:.6g}\n", r.edge_lead_px, r.edge_lead_std_px);
+  text += fmt::format("edge_localisation_bias_px: {:.6g}\nedge_localisation_bias_std_px: {:.6g}\n",
+                      r.edge_localisation_bias_px, r.edge_localisation_bias_std_px);
   text += fmt::format("reprojection_rms_px: {:.6g}\nnormalised_rms: {:.6g}\n", r.reprojection_rms_px,
                       r.normalised_rms);
   text += fmt::format(
@@ -128,9 +129,9 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
                       r.image.rms_px, r.image.max_px);
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} times its sigmas\n", "reprojection",
                       r.reprojection_rms_px, r.normalised_rms);
-  if (r.edge_lead_std_px > 0.0)
-    text +=
-        fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
+  if (r.edge_localisation_bias_std_px > 0.0)
+    text += fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge localisation bias",
+                        r.edge_localisation_bias_px, r.edge_localisation_bias_std_px);
   text +=
       fmt::format("    {:<26}{:>12} of {}, {} circles, {} rejected; tilted by up to {:.0f} deg\n", "views",
                   r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);

@@ -137,7 +137,7 @@ SimulatedImu DriveScenario::imuAt(std::size_t index, double time_s) const {
     imu.time_offset_s += step.time_offset_s;
     imu.gyroscope_bias_rad_s += step.gyroscope_bias_rad_s;
     imu.accelerometer_bias_m_s2 += step.accelerometer_bias_m_s2;
-    imu.accelerometer_mapping.diagonal() += step.accelerometer_scale;
+    imu.accelerometer_scale_misalignment.diagonal() += step.accelerometer_scale;
   }
   return imu;
 }

@@ -44,8 +44,8 @@ class ShakenMount {
 Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eigen::Vector3d& gravity_m_s2) {
   const MotionState state = motionOfFrame(body, imu.reference_from_imu);
   return {imu.gyroscopeMatrix() * state.angular_velocity_in_body_rad_s,
-          imu.accelerometer_mapping * (state.world_from_body.rotation.conjugate() *
-                                       (state.acceleration_in_world_m_s2 - gravity_m_s2))};
+          imu.accelerometer_scale_misalignment * (state.world_from_body.rotation.conjugate() *
+                                                  (state.acceleration_in_world_m_s2 - gravity_m_s2))};
 }
 
 // spoilSamples needs a scenario of cameras.

@@ -44,7 +44,7 @@ void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
     const Eigen::Vector3d from_force = imu.faults.g_sensitivity_rad_s_per_m_s2 * force;
     sample.angular_rate_rad_s =
         by_rate * rate + gyroscope_bias + from_force + imu.gyroscope_density * root_rate * noise();
-    sample.specific_force_m_s2 = imu.accelerometer_mapping * force + accelerometer_bias +
+    sample.specific_force_m_s2 = imu.accelerometer_scale_misalignment * force + accelerometer_bias +
                                  imu.accelerometer_density * root_rate * noise();
     use(sample, SimulatedBiases{gyroscope_bias + from_force, accelerometer_bias});
     if (imu.gyroscope_walk > 0.0) gyroscope_bias += imu.gyroscope_walk / root_rate * noise();

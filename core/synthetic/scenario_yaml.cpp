@@ -249,9 +249,9 @@ void readImuFaults(const YamlNode& map, ImuFaults& faults) {
 void readImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
-                 "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping",
-                 "gyroscope_from_accelerometer_deg", "accelerometer_delay_s", "time_offset_s",
-                 "reference_from_imu", "faults"});
+                 "accelerometer_bias_m_s2", "gyroscope_scale_misalignment",
+                 "accelerometer_scale_misalignment", "gyroscope_from_accelerometer_deg",
+                 "accelerometer_delay_s", "time_offset_s", "reference_from_imu", "faults"});
   get(map, "name", imu.name);
   get(map, "stream", imu.stream);
   get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
@@ -261,8 +261,8 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   get(map, "accelerometer_walk_density", imu.accelerometer_walk, 0.0, 10.0, "m/s^3/sqrt(Hz)");
   get(map, "gyroscope_bias_rad_s", imu.gyroscope_bias_rad_s, -10.0, 10.0);
   get(map, "accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, -50.0, 50.0);
-  getMapping(map, "gyroscope_mapping", imu.gyroscope_mapping);
-  getMapping(map, "accelerometer_mapping", imu.accelerometer_mapping);
+  getMapping(map, "gyroscope_scale_misalignment", imu.gyroscope_scale_misalignment);
+  getMapping(map, "accelerometer_scale_misalignment", imu.accelerometer_scale_misalignment);
   Eigen::Vector3d turn_rad = quaternionLog(imu.gyroscope_from_accelerometer);
   get(map, "gyroscope_from_accelerometer_deg", turn_rad, -20.0, 20.0, kRadPerDeg);
   imu.gyroscope_from_accelerometer = quaternionExp(turn_rad);

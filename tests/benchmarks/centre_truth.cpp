@@ -69,7 +69,7 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
       error.error_px = circle.centre_px - truth->centre_px;
       error.velocity_px_s = truth->velocity_px_s;
       error.acceleration_px_s2 = (later->velocity_px_s - earlier->velocity_px_s) / (2.0 * kStep_s);
-      error.lead_effect = circle.edge_lead_effect;
+      error.lead_effect = circle.edge_localisation_bias_effect;
       error.whitening = circle.covariance_px2.inverse().llt().matrixU();
       error.speed_px_s = (idealPixelScale(camera, truth->centre_px).inverse() * truth->velocity_px_s).norm();
       errors.push_back(error);

@@ -121,8 +121,8 @@ void drawImu(Dice& dice, Scenario& scenario) {
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index col = row; col < 3; ++col) {
       const double sigma = row == col ? 0.006 : 0.002;
-      imu.gyroscope_mapping(row, col) += dice.normal(sigma);
-      imu.accelerometer_mapping(row, col) += dice.normal(sigma);
+      imu.gyroscope_scale_misalignment(row, col) += dice.normal(sigma);
+      imu.accelerometer_scale_misalignment(row, col) += dice.normal(sigma);
     }
   }
 }

@@ -55,7 +55,7 @@ BoardObservations fromFrames(const Scenario& scenario, const Session& session, s
   simulateFrames(scenario, k, [&](const Frame& frame) {
     const Stopwatch stopwatch;
     batch.frames = {frame};
-    views->take(batch);
+    views->consume(batch);
     busy_s += stopwatch.elapsed_s();
   });
   const Stopwatch stopwatch;

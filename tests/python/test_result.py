@@ -27,7 +27,7 @@ def test_members_have_the_shapes_that_are_promised(calibrated):
     assert left.reference_from_camera.shape == (4, 4) and left.rotation_std_deg.shape == (3,)
     np.testing.assert_allclose(left.reference_from_camera[:3, :3] @ left.reference_from_camera[:3, :3].T, np.eye(3), atol=1e-12)
     np.testing.assert_array_equal(imu.reference_from_imu, np.eye(4))
-    assert imu.gyroscope_mapping.shape == (3, 3) and imu.accelerometer_bias_m_s2.shape == (3,)
+    assert imu.gyroscope_scale_misalignment.shape == (3, 3) and imu.accelerometer_bias_m_s2.shape == (3,)
     assert np.linalg.norm(result.gravity_m_s2) == pytest.approx(9.81, abs=0.1)
     assert result.reference == "left_imu" and result.version == evical.__version__
     assert left.windows["used"] > 100 and result.timing_s["total"] > 0

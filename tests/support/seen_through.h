@@ -19,7 +19,7 @@ inline void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& le
       circle.centre_px = seen_px;
       circle.covariance_px2 = (change * circle.covariance_px2 * change.transpose()).eval();
       circle.velocity_px_s = (change * circle.velocity_px_s).eval();
-      circle.edge_lead_effect = (change * circle.edge_lead_effect).eval();
+      circle.edge_localisation_bias_effect = (change * circle.edge_localisation_bias_effect).eval();
     }
   }
 }

@@ -131,13 +131,13 @@ class TestDetectionOfRun : public QObject {
     const Session& session = recorded_->session;
     const CameraIntrinsics& camera = *session.cameras.front().intrinsics;
     CalibrationState state = restingState(camera);
-    state.cameras[0].edge_lead_px = 0.8;
+    state.cameras[0].edge_localisation_bias_px = 0.8;
     BoardView view;
     CircleObservation moving;  // the board's first circle, at 100 px/s to the right
     moving.circle = 0;
     moving.centre_px = *idealPixel(camera, *project(camera, kFirstCircle));
     moving.velocity_px_s = {100.0, 0.0};
-    moving.edge_lead_effect = {1.0, 0.0};
+    moving.edge_localisation_bias_effect = {1.0, 0.0};
     view.circles = {moving};
     const auto at_rest = reprojectBoard(state, 0, {session.board}, 1.0);
     const auto leading = reprojectBoard(state, 0, {session.board}, 1.0, view, 0.0);

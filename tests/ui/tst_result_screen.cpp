@@ -172,20 +172,22 @@ class TestResultScreen : public QObject {
     NamedResult named;
     named.cameras = {{"left"}};
     UncertaintyReport& report = evical::test::ownResult(named).uncertainty;
-    for (const QuantityId id : {QuantityId::TimeOffset, QuantityId::LineDelay, QuantityId::EdgeLead})
+    for (const QuantityId id :
+         {QuantityId::TimeOffset, QuantityId::LineDelay, QuantityId::EdgeLocalisationBias})
       report.columns.push_back({QuantityOwner::Camera, 0, id});
     Eigen::MatrixXd& correlation = report.correlation;
     correlation.setIdentity(3, 3);
     correlation(0, 2) = correlation(2, 0) = -0.9;
     correlation(0, 1) = correlation(1, 0) = 0.2;
     view.setResult(named);
-    QCOMPARE(view.strongestPairs(1), QStringList{"left: time offset and left: edge lead: -0.90"});
+    QCOMPARE(view.strongestPairs(1),
+             QStringList{"left: time offset and left: edge localisation bias: -0.90"});
     const QImage picture = view.grab().toImage();
     // Bottom left cell: a with c, blue; the diagonal red.
     const QPoint blue = view.cellMiddle(2, 0), red = view.cellMiddle(0, 0);
     QVERIFY(picture.pixelColor(blue).blue() > picture.pixelColor(blue).red() + 60);
     QVERIFY(picture.pixelColor(red).red() > picture.pixelColor(red).blue() + 60);
-    QCOMPARE(view.textAt(blue), QString("left: edge lead and left: time offset: -0.900"));
+    QCOMPARE(view.textAt(blue), QString("left: edge localisation bias and left: time offset: -0.900"));
     QVERIFY(view.textAt(QPoint(2, 2)).isEmpty());
   }
 

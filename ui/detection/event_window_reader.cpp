@@ -108,7 +108,7 @@ class EventWindowReader::CacheFilling {
 
  private:
   void flush() {
-    const std::optional<CameraBatch> batch = intake_.take(pending_);
+    const std::optional<CameraBatch> batch = intake_.consume(pending_);
     pending_.clear();
     if (!batch) return;
     cache_.append(batch->events);

@@ -2,7 +2,7 @@
 #include "ui/detection/layers.h"
 
 #include "core/numerics/robust.h"
-#include "core/optimisation/edge_lead.h"
+#include "core/optimisation/edge_localisation_bias.h"
 #include "ui/detection/timeline.h"
 #include "ui/detection/trajectory_pose.h"
 #include "ui/detection/window_analysis.h"
@@ -258,8 +258,8 @@ std::map<int, Eigen::Vector2d> idealLeads(const CameraState& camera, const Camer
                                           const BoardView& view, double slow_edge_speed_px_s) {
   std::map<int, Eigen::Vector2d> leads;
   for (const CircleObservation& circle : view.circles) {
-    const EdgeLeadEffect effect = edgeLeadEffect(intrinsics, circle, slow_edge_speed_px_s);
-    leads[circle.circle] = edgeLeadOf(camera).times(effect);
+    const EdgeLocalisationBiasEffect effect = edgeBiasEffect(intrinsics, circle, slow_edge_speed_px_s);
+    leads[circle.circle] = edgeBiasOf(camera).times(effect);
   }
   return leads;
 }
@@ -298,8 +298,9 @@ LayerWords layerWords(Layer layer) {
     case Layer::Reprojection:
       break;
   }
-  return {tr("Reprojection"),
-          tr("Board projected with the calibration's trajectory, and its edges with the edge lead")};
+  return {
+      tr("Reprojection"),
+      tr("Board projected with the calibration's trajectory, and its edges with the edge localisation bias")};
 }
 
 QColor layerColour(Layer layer) {

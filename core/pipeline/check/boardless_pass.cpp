@@ -25,12 +25,12 @@ struct MotionIntake {
   std::unique_ptr<EventIntake> events;
   std::unique_ptr<CameraMotion> motion;
 
-  void take(std::vector<Event>& measured) {
-    if (const std::optional<CameraBatch> batch = events->take(measured))
+  void consume(std::vector<Event>& measured) {
+    if (const std::optional<CameraBatch> batch = events->consume(measured))
       motion->add(batch->bursts, batch->complete_until_ns);
   }
   CameraRecord finish() {
-    if (const std::optional<CameraBatch> batch = events->finish())
+    if (const std::optional<CameraBatch> batch = events->flush())
       motion->add(batch->bursts, batch->complete_until_ns);
     return motion->finish();
   }
@@ -66,7 +66,7 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
       context.progress.stageProgress(recording.fractionRead());
       if (packet.sensor >= intakes.size() || intakes[packet.sensor].kind != CameraKind::Events) continue;
       std::erase_if(packet.events, [&](const Event& event) { return !range.holds(event.time_ns); });
-      intakes[packet.sensor].take(packet.events);
+      intakes[packet.sensor].consume(packet.events);
     }
     context.throwIfStopped();
     for (MotionIntake& intake : intakes) {

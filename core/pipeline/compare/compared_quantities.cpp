@@ -40,8 +40,8 @@ std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& opt
       return Judged{"ms", 1e3, options.stability_time_offset_ms, options.matters_time_offset_ms};
     case QuantityId::Intrinsics:
       return Judged{"px", 1.0, options.stability_lens_px, options.matters_lens_px};
-    case QuantityId::GyroscopeMapping:
-    case QuantityId::AccelerometerMapping:
+    case QuantityId::GyroscopeScaleMisalignment:
+    case QuantityId::AccelerometerScaleMisalignment:
       return Judged{"%", kPerCent, kPerCent * options.stability_imu_scale, 0.0};
     case QuantityId::GyroscopeRotation:
       return Judged{"deg", kDegPerRad, options.stability_rotation_deg, 0.0};
@@ -51,7 +51,7 @@ std::optional<Judged> judgedBy(const QuantityInfo& info, const CheckOptions& opt
     case QuantityId::Stretch:
       return Judged{"", 1.0, kStableSheet, 0.0};
     default:
-      return std::nullopt;  // not part of the rig's calibration: biases, drifts, edge leads
+      return std::nullopt;  // not part of the rig's calibration: biases, drifts, edge localisation biases
   }
 }
 
@@ -357,8 +357,8 @@ std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& 
       return 1e-3 * options.stability_time_offset_ms;
     case QuantityId::Intrinsics:
       return options.stability_lens_px;
-    case QuantityId::GyroscopeMapping:
-    case QuantityId::AccelerometerMapping:
+    case QuantityId::GyroscopeScaleMisalignment:
+    case QuantityId::AccelerometerScaleMisalignment:
       return options.stability_imu_scale;
     case QuantityId::Scale:
     case QuantityId::Stretch:

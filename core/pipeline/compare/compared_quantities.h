@@ -38,7 +38,7 @@ struct ComparedResults {
 };
 
 // Allowed drift of a quantity without a change of the rig, in SI units; for a lens in RMS pixels. Absent for
-// biases, drifts and edge leads, which each calibration estimates again.
+// biases, drifts and edge localisation biases, which each calibration estimates again.
 std::optional<double> stabilityOf(const QuantityInfo& info, const CheckOptions& options);
 
 // Covariance of a lens's first `count` intrinsics that moves its image by `rms_px`, isotropically.

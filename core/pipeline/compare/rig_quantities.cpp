@@ -22,8 +22,8 @@ QuantityShare shareOf(const QuantityInfo& info) {
     case QuantityId::TimeOffset:
       return QuantityShare::Compared;
     case QuantityId::TimeOffsetDrift:
-    case QuantityId::EdgeLead:
-    case QuantityId::SlowEdgeLead:
+    case QuantityId::EdgeLocalisationBias:
+    case QuantityId::SlowEdgeLocalisationBias:
     case QuantityId::GyroscopeBias:
     case QuantityId::AccelerometerBias:
     case QuantityId::Gravity:

@@ -17,7 +17,7 @@ namespace evical {
 enum class QuantityShare {
   Common,    // the rig's, or the board's: the same in all recordings
   Compared,  // separate for each recording, but compared: time offsets
-  Own        // biases, drifts, edge leads
+  Own        // biases, drifts, edge localisation biases
 };
 
 // Numbers are in SI units, one for each part.

@@ -79,7 +79,7 @@ class Pilot {
           std::max(recording_.fractionRead(), static_cast<double>(slices_) / options_.first_look_slices));
       for (const Event& event : packet.events) {
         if (event.time_ns > end_ns_) break;
-        take(event);
+        consume(event);
       }
     }
     lookAtSlice();
@@ -93,7 +93,7 @@ class Pilot {
            (rough_ && rough_->sigma_px < options_.first_look_projection_px);
   }
 
-  void take(const Event& event) {
+  void consume(const Event& event) {
     if (event.time_ns >= slice_begin_ns_ + length_ns_) {
       lookAtSlice();
       while (slice_begin_ns_ + length_ns_ <= event.time_ns) slice_begin_ns_ += period_ns_;

@@ -113,7 +113,7 @@ class Maintainer {
     gravity_m_s2_ = input_.options->gravity_m_s2 > 0.0
                         ? input_.options->gravity_m_s2
                         : input_.before.result->state.gravity_in_world_m_s2.norm();
-    look();
+    scanBeginning();
     readAll();
     describe();
     checkLogs();
@@ -139,7 +139,7 @@ class Maintainer {
   const std::string& name(std::size_t imu) const { return before().imus[imu].name; }
 
   // Reads the first seconds: existing IMUs, their rates, and offsets between their clocks.
-  void look();
+  void scanBeginning();
   // Reads the whole log into means and pairs.
   void readAll();
   void describe();
@@ -176,7 +176,7 @@ PairNominal Maintainer::nominalOf(std::size_t imu) const {
   return nominal;
 }
 
-void Maintainer::look() {
+void Maintainer::scanBeginning() {
   constexpr double kLook_s = 90.0;
   constexpr std::size_t kLooked = 20'000;  // samples in which both sensors must have measured
   context_.progress.stageStarted("look");

@@ -15,7 +15,7 @@ class BlinkViews final : public CameraViews {
  public:
   BlinkViews(const CameraBatch& first, const ViewRequest& request);
 
-  void take(const CameraBatch& batch) override { tracker_.add(batch.events); }
+  void consume(const CameraBatch& batch) override { tracker_.add(batch.events); }
   const BoardObservations& soFar() const override { return tracker_.soFar(); }
   // Throws CalibrationFailed if nothing blinks.
   BoardObservations finish(std::vector<RecordingFault>& faults) override;

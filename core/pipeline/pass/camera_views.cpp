@@ -22,7 +22,7 @@ class EventViews final : public CameraViews {
       tracker_.observeWith(request.context.observer->windowObserver(first.camera, tracker_));
   }
 
-  void take(const CameraBatch& batch) override {
+  void consume(const CameraBatch& batch) override {
     tracker_.addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
   }
   const BoardObservations& soFar() const override { return tracker_.observations(); }

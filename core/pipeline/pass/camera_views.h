@@ -17,7 +17,7 @@ namespace evical {
 class CameraViews {
  public:
   virtual ~CameraViews() = default;
-  virtual void take(const CameraBatch& batch) = 0;
+  virtual void consume(const CameraBatch& batch) = 0;
   virtual const BoardObservations& soFar() const = 0;
   // Observations in ideal pixels, or in raw pixels if the lens is unknown. Appends faults.
   virtual BoardObservations finish(std::vector<RecordingFault>& faults) = 0;

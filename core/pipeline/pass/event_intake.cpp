@@ -9,7 +9,7 @@
 
 namespace evical {
 
-std::optional<CameraBatch> EventIntake::take(std::vector<Event>& events) {
+std::optional<CameraBatch> EventIntake::consume(std::vector<Event>& events) {
   putInOrder(events);
   if (events.empty()) return std::nullopt;
   CameraBatch batch;
@@ -32,7 +32,7 @@ std::optional<CameraBatch> EventIntake::take(std::vector<Event>& events) {
   return batch;
 }
 
-std::optional<CameraBatch> EventIntake::finish() {
+std::optional<CameraBatch> EventIntake::flush() {
   if (!extractor_) return std::nullopt;
   CameraBatch batch;
   batch.camera = camera_;

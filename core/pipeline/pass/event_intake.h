@@ -33,8 +33,8 @@ class EventIntake {
         use_(use) {}
 
   // Absent if no event remains. Throws BadInput if too many are outside the resolution.
-  std::optional<CameraBatch> take(std::vector<Event>& events);
-  std::optional<CameraBatch> finish();
+  std::optional<CameraBatch> consume(std::vector<Event>& events);
+  std::optional<CameraBatch> flush();
 
   std::uint64_t eventCount() const { return count_; }
   double stampStep_s() const { return stamp_step_.step_s(); }

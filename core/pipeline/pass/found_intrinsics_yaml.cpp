@@ -17,13 +17,14 @@ struct NumberKey {
   const char* key;
   double IntrinsicsResult::*number;
 };
-constexpr std::array kNumbers = {NumberKey{"edge_lead_px", &IntrinsicsResult::edge_lead_px},
-                                 NumberKey{"edge_lead_std_px", &IntrinsicsResult::edge_lead_std_px},
-                                 NumberKey{"reprojection_rms_px", &IntrinsicsResult::reprojection_rms_px},
-                                 NumberKey{"normalised_rms", &IntrinsicsResult::normalised_rms},
-                                 NumberKey{"largest_tilt_deg", &IntrinsicsResult::largest_tilt_deg},
-                                 NumberKey{"moved_px", &IntrinsicsResult::moved_px},
-                                 NumberKey{"elapsed_s", &IntrinsicsResult::elapsed_s}};
+constexpr std::array kNumbers = {
+    NumberKey{"edge_localisation_bias_px", &IntrinsicsResult::edge_localisation_bias_px},
+    NumberKey{"edge_localisation_bias_std_px", &IntrinsicsResult::edge_localisation_bias_std_px},
+    NumberKey{"reprojection_rms_px", &IntrinsicsResult::reprojection_rms_px},
+    NumberKey{"normalised_rms", &IntrinsicsResult::normalised_rms},
+    NumberKey{"largest_tilt_deg", &IntrinsicsResult::largest_tilt_deg},
+    NumberKey{"moved_px", &IntrinsicsResult::moved_px},
+    NumberKey{"elapsed_s", &IntrinsicsResult::elapsed_s}};
 
 struct CountKey {
   const char* key;

@@ -21,7 +21,7 @@ FrameViews::FrameViews(const CameraBatch& first, const ViewRequest& request)
   so_far_.kind = CameraKind::Frames;
 }
 
-void FrameViews::take(const CameraBatch& batch) {
+void FrameViews::consume(const CameraBatch& batch) {
   for (const Frame& frame : batch.frames) {
     if (context_.stop.stop_requested()) return;
     const double time_s = secondsSince(start_ns_, frame.time_ns);

@@ -15,7 +15,7 @@ class FrameViews final : public CameraViews {
 
   // Throws BadInput if images have another size than the session's, if their size changes, or if none can be
   // read.
-  void take(const CameraBatch& batch) override;
+  void consume(const CameraBatch& batch) override;
   const BoardObservations& soFar() const override { return so_far_; }
   BoardObservations finish(std::vector<RecordingFault>& faults) override;
   Resolution resolution_px() const override { return resolution_px_; }

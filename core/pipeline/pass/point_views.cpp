@@ -79,7 +79,7 @@ FoundPoints PointViews::pointsOf(const CameraBatch& batch) {
   return points;
 }
 
-void PointViews::take(const CameraBatch& batch) {
+void PointViews::consume(const CameraBatch& batch) {
   if (batch.points.empty()) return;
   PointsInFrame seen;
   seen.time_s = secondsSince(start_ns_, batch.points.front().time_ns);

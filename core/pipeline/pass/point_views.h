@@ -16,7 +16,7 @@ class PointViews final : public CameraViews {
   PointViews(const CameraBatch& first, const ViewRequest& request);
 
   // Throws BadInput if points do not belong to this board or this sensor.
-  void take(const CameraBatch& batch) override;
+  void consume(const CameraBatch& batch) override;
   const BoardObservations& soFar() const override { return so_far_; }
   BoardObservations finish(std::vector<RecordingFault>& faults) override;
 

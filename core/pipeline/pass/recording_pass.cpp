@@ -75,7 +75,7 @@ class WindowWorker {
     std::unique_ptr<CameraViews>& views = views_[batch.camera];
     if (batch.opened_px) views = cameraViews(batch, {session_, lenses_[batch.camera], context_});
     const std::size_t before = views->soFar().windows.size();
-    views->take(batch);
+    views->consume(batch);
     if (context_.observer != nullptr && views->soFar().windows.size() > before)
       context_.observer->windowsDetected(batch.camera, views->soFar());
   }
@@ -126,7 +126,7 @@ class ReadingPass {
     for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
       if (!intakes_[camera].events) continue;
       flush(camera, queue);
-      if (std::optional<CameraBatch> batch = intakes_[camera].events->finish()) queue.push(std::move(*batch));
+      if (std::optional<CameraBatch> batch = intakes_[camera].events->flush()) queue.push(std::move(*batch));
     }
   }
 
@@ -191,7 +191,7 @@ class ReadingPass {
   }
 
   bool flush(std::size_t camera, BoundedQueue<CameraBatch>& queue) {
-    std::optional<CameraBatch> batch = intakes_[camera].events->take(intakes_[camera].pending);
+    std::optional<CameraBatch> batch = intakes_[camera].events->consume(intakes_[camera].pending);
     intakes_[camera].pending.clear();
     if (!batch) return true;
     batch->start_ns = result_.start_ns;

@@ -55,7 +55,7 @@ void validateByHalves(const CalibrationInput& input, const OptimisationOptions& 
 }
 
 // Removes views on the smaller part's side of a step, and those close to it. Returns their share.
-double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
+double keepLargerSide(const ClockStep& step, std::vector<BoardView>& views) {
   constexpr double kMargin_s = 1.5;  // accuracy of the step's time
   const auto before = static_cast<double>(views.size());
   std::erase_if(views, [&](const BoardView& view) {
@@ -186,7 +186,7 @@ class Calibration {
       if (!step) continue;
       std::vector<BoardView>& views = input_.cameras[k].observations.views;
       keepWhole(k);
-      const double share = keepBeside(*step, views);
+      const double share = keepLargerSide(*step, views);
       doubt += fmt::format(
           "{}{}: the offset between its clock and the IMU's steps by {:.1f} ms about {:.1f} s after the "
           "start: {:.0f} % of the views, those on the shorter side, are excluded",

@@ -27,22 +27,23 @@ EVICAL_FIELDS(Resolution, width_px, height_px);
 EVICAL_FIELDS(CameraIntrinsics, model, resolution_px, focal_length_px, principal_point_px, distortion);
 EVICAL_FIELDS(LensUncertainty, std, correlation);
 EVICAL_FIELDS(CameraLens, given, detection_intrinsics, solved, given_with);
-EVICAL_FIELDS(CameraState, reference_from_camera, time_offset_s, edge_lead_px, slow_edge_lead_px, lens,
-              time_offset_drift_ppm, time_offset_at_s, line_delay_us, exposure_share);
+EVICAL_FIELDS(CameraState, reference_from_camera, time_offset_s, edge_localisation_bias_px,
+              slow_edge_localisation_bias_px, lens, time_offset_drift_ppm, time_offset_at_s, line_delay_us,
+              exposure_share);
 EVICAL_FIELDS(BiasDrift, start_s, knot_spacing_s, gyroscope_rad_s, accelerometer_m_s2);
 EVICAL_FIELDS(ImuState, reference_from_imu, time_offset_s, gyroscope_bias_rad_s, accelerometer_bias_m_s2,
-              gyroscope_mapping, accelerometer_mapping, gyroscope_from_accelerometer, accelerometer_delay_s,
-              bias_drift, time_offset_drift_ppm, time_offset_at_s);
+              gyroscope_scale_misalignment, accelerometer_scale_misalignment, gyroscope_from_accelerometer,
+              accelerometer_delay_s, bias_drift, time_offset_drift_ppm, time_offset_at_s);
 EVICAL_FIELDS(BoardState, scale, stretch, row_curvature_1_m, column_curvature_1_m, twist_1_m,
               world_from_board);
 EVICAL_FIELDS(CalibrationState, world_from_imu_rotation, imu_in_world_m, cameras, imus, board, further_boards,
               gravity_in_world_m_s2);
-EVICAL_FIELDS(CameraUncertainty, rotation_std_rad, translation_std_m, time_offset_std_s, edge_lead_std_px,
-              slow_edge_lead_std_px, intrinsics_std, time_offset_drift_std_ppm, line_delay_std_us,
-              exposure_share_std);
+EVICAL_FIELDS(CameraUncertainty, rotation_std_rad, translation_std_m, time_offset_std_s,
+              edge_localisation_bias_std_px, slow_edge_localisation_bias_std_px, intrinsics_std,
+              time_offset_drift_std_ppm, line_delay_std_us, exposure_share_std);
 EVICAL_FIELDS(ImuUncertainty, rotation_std_rad, translation_std_m, time_offset_std_s,
-              gyroscope_bias_std_rad_s, accelerometer_bias_std_m_s2, gyroscope_mapping_std,
-              accelerometer_mapping_std, gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2,
+              gyroscope_bias_std_rad_s, accelerometer_bias_std_m_s2, gyroscope_scale_misalignment_std,
+              accelerometer_scale_misalignment_std, gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2,
               gyroscope_rotation_std_rad, time_offset_drift_std_ppm, accelerometer_delay_std_s);
 EVICAL_FIELDS(BoardUncertainty, rotation_std_rad, translation_std_m, scale_std, stretch_std,
               row_curvature_std_1_m, column_curvature_std_1_m, twist_std_1_m);
@@ -67,11 +68,12 @@ EVICAL_FIELDS(CalibrationResult, status, reason, repair, causes, freed, start_ns
               notes, timing, memory_peak_mb);
 EVICAL_FIELDS(ImageCell, middle_px, circles, sigma_px);
 EVICAL_FIELDS(ImageMap, columns, rows, cells, rms_px, max_px);
-EVICAL_FIELDS(IntrinsicsResult, status, reason, advice, intrinsics, covariance, edge_lead_px,
-              edge_lead_std_px, image, reprojection_rms_px, normalised_rms, largest_tilt_deg, views_found,
-              views_used, circles_used, circles_rejected, passes, moved_px, elapsed_s);
-EVICAL_FIELDS(CircleObservation, circle, time_s, centre_px, covariance_px2, velocity_px_s, edge_lead_effect,
-              semi_axes_px, angle_rad, events, residual_rms_px, rows_below_middle, longer_exposed_s);
+EVICAL_FIELDS(IntrinsicsResult, status, reason, advice, intrinsics, covariance, edge_localisation_bias_px,
+              edge_localisation_bias_std_px, image, reprojection_rms_px, normalised_rms, largest_tilt_deg,
+              views_found, views_used, circles_used, circles_rejected, passes, moved_px, elapsed_s);
+EVICAL_FIELDS(CircleObservation, circle, time_s, centre_px, covariance_px2, velocity_px_s,
+              edge_localisation_bias_effect, semi_axes_px, angle_rad, events, residual_rms_px,
+              rows_below_middle, longer_exposed_s);
 EVICAL_FIELDS(BoardView, time_s, kind, circles);
 EVICAL_FIELDS(WindowReport, time_s, half_width_s, outcome, events, candidates, circles, tracked);
 EVICAL_FIELDS(LatticeEnds, beyond_in_view, beyond_seen, edge_in_view, edge_missing);

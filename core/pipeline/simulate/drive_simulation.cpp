@@ -25,7 +25,7 @@ ImuUncertainty sigmasOfCalibration(bool reference) {
   sigma.gyroscope_bias_std_rad_s.setConstant(2e-5);
   sigma.accelerometer_bias_std_m_s2.setConstant(2e-3);
   const Eigen::Matrix3d upper = Eigen::Matrix3d::Ones().triangularView<Eigen::Upper>();
-  sigma.gyroscope_mapping_std = sigma.accelerometer_mapping_std = 2e-4 * upper;
+  sigma.gyroscope_scale_misalignment_std = sigma.accelerometer_scale_misalignment_std = 2e-4 * upper;
   return sigma;
 }
 

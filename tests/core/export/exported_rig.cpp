@@ -43,8 +43,8 @@ ImuState imu(bool mapped, int number) {
   state.gyroscope_bias_rad_s = {0.01, -0.02, 1.0 / 70.0};
   state.accelerometer_bias_m_s2 = {0.11, 0.2, -0.3};
   if (!mapped) return state;
-  state.accelerometer_mapping << 1.011, 0.004, -0.003, 0.0, 0.992, 0.005, 0.0, 0.0, 1.003;
-  state.gyroscope_mapping << 0.997, -0.002, 0.006, 0.0, 1.004, 0.003, 0.0, 0.0, 0.991;
+  state.accelerometer_scale_misalignment << 1.011, 0.004, -0.003, 0.0, 0.992, 0.005, 0.0, 0.0, 1.003;
+  state.gyroscope_scale_misalignment << 0.997, -0.002, 0.006, 0.0, 1.004, 0.003, 0.0, 0.0, 0.991;
   state.gyroscope_from_accelerometer = quaternionExp({0.011, -0.006, 0.009});
   return state;
 }

@@ -321,7 +321,7 @@ class TestExportCameras : public QObject {
         const Eigen::VectorXd m = vector(data[sensor]["MAP_COEFF"]);
         return (Eigen::Matrix3d() << m[0], m[3], m[4], 0.0, m[1], m[5], 0.0, 0.0, m[2]).finished();
       };
-      QVERIFY((mapping("ACCE") - state.accelerometer_mapping).norm() < 1e-15);
+      QVERIFY((mapping("ACCE") - state.accelerometer_scale_misalignment).norm() < 1e-15);
       QVERIFY(
           (mapping("GYRO") * rotation(data["SO3_AtoG"]).toRotationMatrix() - state.gyroscopeMatrix()).norm() <
           1e-12);

@@ -328,7 +328,8 @@ class TestExportDataSets : public QObject {
       const Eigen::Matrix4d turn = poseOfExportDataSets(root["T_imu_cam"][i]) *
                                    imuFromCamera(result, ours[static_cast<std::size_t>(i)]).inverse();
       QVERIFY((turn.topRightCorner<3, 1>().norm()) < 1e-12);
-      const Eigen::Matrix3d theirs = imu.accelerometer_mapping * turn.topLeftCorner<3, 3>().transpose();
+      const Eigen::Matrix3d theirs =
+          imu.accelerometer_scale_misalignment * turn.topLeftCorner<3, 3>().transpose();
       QVERIFY(Eigen::Matrix3d(theirs.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-12);
       read.their_imu_from_ours = turn.topLeftCorner<3, 3>();
       QVERIFY(worstDifference_px(result, ours[static_cast<std::size_t>(i)], read) < kExportDataSetsSame_px);

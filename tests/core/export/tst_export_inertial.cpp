@@ -32,7 +32,7 @@ struct Measured {
   Eigen::Vector3d force, rate;
 };
 Measured ours(const ImuState& imu, const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
-  return {imu.accelerometer_mapping * force + imu.accelerometer_bias_m_s2,
+  return {imu.accelerometer_scale_misalignment * force + imu.accelerometer_bias_m_s2,
           imu.gyroscopeMatrix() * rate + imu.gyroscope_bias_rad_s};
 }
 
@@ -88,7 +88,7 @@ class TestExportInertial : public QObject {
                             gyro_from_imu = rowsMatrix(imu["gyroscopes"]["C_gyro_i"]);
       QVERIFY(Eigen::Matrix3d(lower.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
       QVERIFY(Eigen::Matrix3d(gyro.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
-      turns[i] = lower.inverse() * state.accelerometer_mapping;  // Kalibr's IMU frame from ours
+      turns[i] = lower.inverse() * state.accelerometer_scale_misalignment;  // Kalibr's IMU frame from ours
       QVERIFY(isRotationForExportInertial(turns[i]) && isRotationForExportInertial(gyro_from_imu));
       QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
                 return Measured{lower * (turns[i] * force) + state.accelerometer_bias_m_s2,
@@ -140,8 +140,8 @@ class TestExportInertial : public QObject {
     const YAML::Node imu = yamlOf(exported, "kalibr/imu.yaml")["imu0"],
                      camera = yamlOf(exported, "kalibr/camchain-imucam.yaml")["cam0"];
     QCOMPARE(camera["distortion_coeffs"].size(), 4U);
-    const Eigen::Matrix3d turn =
-        rowsMatrix(imu["accelerometers"]["M"]).inverse() * result.result->state.imus[0].accelerometer_mapping;
+    const Eigen::Matrix3d turn = rowsMatrix(imu["accelerometers"]["M"]).inverse() *
+                                 result.result->state.imus[0].accelerometer_scale_misalignment;
     const double worst_px =
         worstDifference_px(result, 0,
                            {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
@@ -311,7 +311,7 @@ class TestExportInertial : public QObject {
     for (int i = 0; i < 9; ++i) g(i % 3, i / 3) += gyroscope[static_cast<std::size_t>(3 + i)];
     const Eigen::Vector3d a_bias(accelerometer.data()), g_bias(gyroscope.data());
     const ImuState& state = result.result->state.imus[0];
-    const Eigen::Matrix3d turn = a * state.accelerometer_mapping;  // Basalt's IMU frame from ours
+    const Eigen::Matrix3d turn = a * state.accelerometer_scale_misalignment;  // Basalt's IMU frame from ours
     QVERIFY(isRotationForExportInertial(turn));
     QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
               return Measured{a.inverse() * (turn * force + a_bias), g.inverse() * (turn * rate + g_bias)};

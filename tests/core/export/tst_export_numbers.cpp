@@ -109,7 +109,7 @@ class TestExportNumbers : public QObject {
       const auto off = [&](const char* key, const Eigen::MatrixXd& ours) {
         return (fromMat(matAt(imu, key)) - ours).norm();
       };
-      QVERIFY(off("accelerometer_matrix", state.accelerometer_mapping) < 1e-12);
+      QVERIFY(off("accelerometer_matrix", state.accelerometer_scale_misalignment) < 1e-12);
       QVERIFY(off("gyroscope_matrix", state.gyroscopeMatrix()) < 1e-12);
       QVERIFY(off("accelerometer_bias", state.accelerometer_bias_m_s2) < 1e-12);
       QVERIFY(off("gyroscope_bias", state.gyroscope_bias_rad_s) < 1e-12);

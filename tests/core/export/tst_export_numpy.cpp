@@ -202,7 +202,7 @@ class TestExportNumpy : public QObject {
       const ImuState& state = result.result->state.imus[i];
       const std::string name = arrays.at("imus").texts[i] + ".";
       QVERIFY((matrixOf(arrays.at(name + "gyroscope_M")) - state.gyroscopeMatrix()).norm() < 1e-15);
-      QVERIFY(matrixOf(arrays.at(name + "accelerometer_M")) == state.accelerometer_mapping);
+      QVERIFY(matrixOf(arrays.at(name + "accelerometer_M")) == state.accelerometer_scale_misalignment);
       QCOMPARE(arrays.at(name + "gyroscope_bias_rad_s").numbers[2], 1.0 / 70.0);
       QCOMPARE(arrays.at(name + "accelerometer_bias_m_s2").numbers[0], 0.11);
       QCOMPARE(arrays.at(name + "time_offset_s").numbers[0], state.time_offset_s);

@@ -176,7 +176,7 @@ class TestExportRefusals : public QObject {
     QVERIFY(reason(unset, "kalibr").find("cameras.right: has values that are not finite") !=
             std::string::npos);
     unset = rig({});
-    test::ownResult(unset).state.imus[1].accelerometer_mapping(0, 2) =
+    test::ownResult(unset).state.imus[1].accelerometer_scale_misalignment(0, 2) =
         std::numeric_limits<double>::infinity();
     QVERIFY(reason(unset, "ros").find("imus.") != std::string::npos);
     NamedResult bare = rig({});

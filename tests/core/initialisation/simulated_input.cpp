@@ -92,8 +92,8 @@ Scenario makeScenario(const SimulationOptions& options) {
   imu.rate_hz = options.imu_rate_hz;
   imu.gyroscope_bias_rad_s = {0.014, -0.011, 0.009};  // 0.02 rad/s
   imu.accelerometer_bias_m_s2 = {0.2, -0.15, 0.17};   // 0.3 m/s^2
-  imu.gyroscope_mapping << 1.004, 0.002, -0.001, 0.0, 0.997, 0.0015, 0.0, 0.0, 1.002;
-  imu.accelerometer_mapping << 0.998, -0.001, 0.002, 0.0, 1.003, 0.001, 0.0, 0.0, 1.001;
+  imu.gyroscope_scale_misalignment << 1.004, 0.002, -0.001, 0.0, 0.997, 0.0015, 0.0, 0.0, 1.002;
+  imu.accelerometer_scale_misalignment << 0.998, -0.001, 0.002, 0.0, 1.003, 0.001, 0.0, 0.0, 1.001;
   scenario.imus = {imu};
   if (!options.second_imu) return scenario;
   SimulatedImu second = imu;

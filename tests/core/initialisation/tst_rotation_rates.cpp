@@ -20,7 +20,7 @@ class TestRotationRates : public QObject {
     const CameraState camera{{}, simulated_.truth.cameras[0].time_offset_s, 0.0};
     ImuState imu;
     imu.gyroscope_bias_rad_s = simulated_.truth.imus[0].gyroscope_bias_rad_s;
-    imu.gyroscope_mapping = simulated_.truth.imus[0].gyroscope_mapping;
+    imu.gyroscope_scale_misalignment = simulated_.truth.imus[0].gyroscope_scale_misalignment;
     const SessionCamera& known = simulated_.session.cameras[0];
     const auto ratesWith = [&](const CameraState& state) {
       return rotationRates({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},

@@ -41,10 +41,10 @@ BoardObservations sensorObservations(const Scenario& scenario, double lead_px = 
     for (CircleObservation& circle : view.circles) {
       const Eigen::Matrix2d sensor_from_ideal = idealPixelScale(camera, circle.centre_px).inverse();
       circle.velocity_px_s = sensor_from_ideal * circle.velocity_px_s;
-      circle.edge_lead_effect = circle.velocity_px_s.normalized();
+      circle.edge_localisation_bias_effect = circle.velocity_px_s.normalized();
       const double x = normal(generator), y = normal(generator);
-      circle.centre_px = pixelFromIdeal(camera, circle.centre_px) + lead_px * circle.edge_lead_effect +
-                         noise_px * Eigen::Vector2d(x, y);
+      circle.centre_px = pixelFromIdeal(camera, circle.centre_px) +
+                         lead_px * circle.edge_localisation_bias_effect + noise_px * Eigen::Vector2d(x, y);
       circle.covariance_px2 = noise_px * noise_px * Eigen::Matrix2d::Identity();
     }
   }
@@ -218,11 +218,11 @@ class TestIntrinsics : public QObject {
     QVERIFY(most_deg >= result.largest_tilt_deg);
   }
 
-  void edgeLead_isFoundAndDoesNoHarm() {
+  void edgeLocalisationBias_isFoundAndDoesNoHarm() {
     const Scenario truth = scenarioOf("intrinsics_davis346");
     const IntrinsicsResult result = estimateForIntrinsics(truth, sensorObservations(truth, 0.3));
-    QVERIFY(std::abs(result.edge_lead_px - 0.3) < 4.0 * result.edge_lead_std_px);
-    QVERIFY(result.edge_lead_std_px < 0.05);
+    QVERIFY(std::abs(result.edge_localisation_bias_px - 0.3) < 4.0 * result.edge_localisation_bias_std_px);
+    QVERIFY(result.edge_localisation_bias_std_px < 0.05);
     const IntrinsicsVector error =
         parametersOf(result.intrinsics) - parametersOf(truth.cameras.front().intrinsics);
     for (int i = 0; i < 8; ++i) QVERIFY(std::abs(error[i]) <= 4.0 * result.standardDeviations()[i]);
@@ -251,7 +251,7 @@ class TestIntrinsics : public QObject {
         const Eigen::Matrix2d scale = idealPixelScale(rough, circle.centre_px);
         circle.covariance_px2 = (scale * circle.covariance_px2 * scale.transpose()).eval();
         circle.velocity_px_s = scale * circle.velocity_px_s;
-        circle.edge_lead_effect = scale * circle.edge_lead_effect;
+        circle.edge_localisation_bias_effect = scale * circle.edge_localisation_bias_effect;
       }
     }
     const Resolution size = rough.resolution_px;

@@ -80,7 +80,7 @@ inline BoardObservations observeWide(const WideViews& wide, unsigned seed) {
       const double x = normal(generator), y = normal(generator);
       circle.centre_px = *pixel + wide.noise_px * Eigen::Vector2d(x, y);
       circle.velocity_px_s.setZero();
-      circle.edge_lead_effect.setZero();
+      circle.edge_localisation_bias_effect.setZero();
       circle.covariance_px2 = wide.noise_px * wide.noise_px * Eigen::Matrix2d::Identity();
       view.circles.push_back(circle);
     }

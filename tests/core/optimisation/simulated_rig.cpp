@@ -190,9 +190,9 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
       circle.covariance_px2 = stated_px * stated_px * Eigen::Matrix2d::Identity();
       circle.centre_px = *now + options.centre_sigma_px * n;
       if (!options.frames) {
-        circle.edge_lead_effect = circle.velocity_px_s.normalized();
-        circle.centre_px +=
-            camera.edge_lead_px * circle.velocity_px_s / std::hypot(circle.velocity_px_s.norm(), 5.0);
+        circle.edge_localisation_bias_effect = circle.velocity_px_s.normalized();
+        circle.centre_px += camera.edge_localisation_bias_px * circle.velocity_px_s /
+                            std::hypot(circle.velocity_px_s.norm(), 5.0);
       }
       if (random.uniform(0.0, 1.0) < options.outlier_share)
         circle.centre_px += 10.0 * random.normal3().head<2>();
@@ -230,7 +230,7 @@ ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu
         imu.gyroscopeMatrix() * (imu_from_reference * motion.angularVelocity(reference_s)) + gyroscope_bias +
         options.imu_noise * data.noise.gyroscope_density * root_rate * random.normal3();
     sample.specific_force_m_s2 =
-        imu.accelerometer_mapping * (imu_from_reference * force) + accelerometer_bias +
+        imu.accelerometer_scale_misalignment * (imu_from_reference * force) + accelerometer_bias +
         options.imu_noise * data.noise.accelerometer_density * root_rate * random.normal3();
     data.samples.push_back(sample);
     gyroscope_sum += gyroscope_bias;
@@ -264,7 +264,7 @@ void addFrames(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) 
   Random random(options.seed + kOther);
   CameraState camera = rig.truth.cameras.front();
   camera.time_offset_s += random.uniform(0.0, 5e-3);
-  camera.edge_lead_px = 0.0;
+  camera.edge_localisation_bias_px = 0.0;
   camera.reference_from_camera.translation_m += options.frames_apart_m;
   options.frames = true;
   options.window_s = 0.05;
@@ -308,11 +308,11 @@ SimulatedRig simulateRig(const RigOptions& options) {
   camera.reference_from_camera = {quaternionExp(Vector3d(1.2, -1.15, 1.25) + random.uniform3(0.2)),
                                   Vector3d(0.04, -0.03, 0.05) + random.uniform3(0.02)};
   camera.time_offset_s = random.uniform(-0.01, 0.01);
-  camera.edge_lead_px = random.uniform(-0.3, 0.3);
+  camera.edge_localisation_bias_px = random.uniform(-0.3, 0.3);
   camera.time_offset_drift_ppm = options.time_offset_drift_ppm;
   camera.line_delay_us = options.line_delay_us;
   camera.exposure_share = options.exposure_share;
-  if (options.frames) camera.edge_lead_px = 0.0;
+  if (options.frames) camera.edge_localisation_bias_px = 0.0;
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
       quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
@@ -325,8 +325,8 @@ SimulatedRig simulateRig(const RigOptions& options) {
     imu.accelerometer_bias_m_s2 = random.uniform3(0.1);
     for (int row = 0; row < 3; ++row) {
       for (int col = row; col < 3; ++col) {
-        imu.gyroscope_mapping(row, col) += random.uniform(-0.01, 0.01);
-        imu.accelerometer_mapping(row, col) += random.uniform(-0.01, 0.01);
+        imu.gyroscope_scale_misalignment(row, col) += random.uniform(-0.01, 0.01);
+        imu.accelerometer_scale_misalignment(row, col) += random.uniform(-0.01, 0.01);
       }
     }
     imu.gyroscope_from_accelerometer = quaternionExp(options.gyroscope_turn_rad * Vector3d(0.48, -0.6, 0.64));
@@ -371,15 +371,15 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     camera.reference_from_camera.translation_m += random.uniform3(0.02);
     camera.time_offset_s += time_offset_error_s;
     camera.lens.solved.reset();
-    camera.edge_lead_px = 0.0;
+    camera.edge_localisation_bias_px = 0.0;
     camera.time_offset_drift_ppm = camera.line_delay_us = camera.exposure_share = 0.0;
   }
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     ImuState& imu = state.imus[i];
     imu.gyroscope_bias_rad_s.setZero();
     imu.accelerometer_bias_m_s2.setZero();
-    imu.gyroscope_mapping.setIdentity();
-    imu.accelerometer_mapping.setIdentity();
+    imu.gyroscope_scale_misalignment.setIdentity();
+    imu.accelerometer_scale_misalignment.setIdentity();
     imu.gyroscope_from_accelerometer.setIdentity();
     imu.accelerometer_delay_s = 0.0;
     if (i == 0) continue;
@@ -425,8 +425,10 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
       errors.push_back(estimate.cameras[i].line_delay_us - truth.cameras[i].line_delay_us);
     if (truth.cameras[i].exposure_share != 0.0)
       errors.push_back(estimate.cameras[i].exposure_share - truth.cameras[i].exposure_share);
-    errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
-    errors.push_back(estimate.cameras[i].slow_edge_lead_px - truth.cameras[i].slow_edge_lead_px);
+    errors.push_back(estimate.cameras[i].edge_localisation_bias_px -
+                     truth.cameras[i].edge_localisation_bias_px);
+    errors.push_back(estimate.cameras[i].slow_edge_localisation_bias_px -
+                     truth.cameras[i].slow_edge_localisation_bias_px);
     if (!estimate.cameras[i].lens.solved) continue;
     const CameraIntrinsics &a = *estimate.cameras[i].lens.solved, &b = truth.cameras[i].lens.solved.value();
     append(a.focal_length_px - b.focal_length_px);
@@ -442,8 +444,8 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     }
     append(a.gyroscope_bias_rad_s - b.gyroscope_bias_rad_s);
     append(a.accelerometer_bias_m_s2 - b.accelerometer_bias_m_s2);
-    appendUpperTriangle(a.gyroscope_mapping - b.gyroscope_mapping);
-    appendUpperTriangle(a.accelerometer_mapping - b.accelerometer_mapping);
+    appendUpperTriangle(a.gyroscope_scale_misalignment - b.gyroscope_scale_misalignment);
+    appendUpperTriangle(a.accelerometer_scale_misalignment - b.accelerometer_scale_misalignment);
     errors.push_back(a.accelerometer_delay_s - b.accelerometer_delay_s);
     if (options.estimatesGyroscopeRotations())
       append(quaternionLog(b.gyroscope_from_accelerometer.conjugate() * a.gyroscope_from_accelerometer));

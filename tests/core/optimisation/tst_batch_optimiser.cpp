@@ -105,12 +105,12 @@ class TestBatchOptimiser : public QObject {
     QVERIFY(translationError_mm(camera, true_camera) < 0.1);
     QVERIFY2(offsetError_ms(camera, true_camera) < 4e-3,  // the accelerometer's delay costs 0.01 ms
              qPrintable(QString::number(offsetError_ms(camera, true_camera))));
-    QVERIFY(std::abs(camera.edge_lead_px - true_camera.edge_lead_px) < 1e-3);
+    QVERIFY(std::abs(camera.edge_localisation_bias_px - true_camera.edge_localisation_bias_px) < 1e-3);
     const ImuState &imu = solution.state.imus[0], &true_imu = rig.truth.imus[0];
     QVERIFY((imu.gyroscope_bias_rad_s - true_imu.gyroscope_bias_rad_s).norm() < 1e-5);
     QVERIFY((imu.accelerometer_bias_m_s2 - true_imu.accelerometer_bias_m_s2).norm() < 2e-3);
-    QVERIFY((imu.gyroscope_mapping - true_imu.gyroscope_mapping).norm() < 1e-4);
-    QVERIFY((imu.accelerometer_mapping - true_imu.accelerometer_mapping).norm() < 2e-4);
+    QVERIFY((imu.gyroscope_scale_misalignment - true_imu.gyroscope_scale_misalignment).norm() < 1e-4);
+    QVERIFY((imu.accelerometer_scale_misalignment - true_imu.accelerometer_scale_misalignment).norm() < 2e-4);
     QVERIFY((solution.state.gravity_in_world_m_s2 - rig.truth.gravity_in_world_m_s2).norm() < 2e-3);
     QVERIFY(std::abs(solution.state.gravity_in_world_m_s2.norm() - 9.81) < 1e-9);
     QVERIFY(solution.cameras[0].reprojection_rms_px < 1e-3);
@@ -208,7 +208,7 @@ class TestBatchOptimiser : public QObject {
     options.free_imu_intrinsics = false;
     const BatchSolution solution =
         optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
-    QVERIFY(solution.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());
+    QVERIFY(solution.state.imus[0].gyroscope_scale_misalignment == Eigen::Matrix3d::Identity());
   }
 
   void progress_risesToOne() {

@@ -51,8 +51,9 @@ class TestCalibrationProblem : public QObject {
     const OptimisationOptions options;
     const CalibrationProblem problem(rig.input, options, rig.truth);
     const CalibrationState state = problem.state();
-    QVERIFY(state.imus[0].gyroscope_mapping == rig.truth.imus[0].gyroscope_mapping);
-    QVERIFY(state.imus[0].accelerometer_mapping == rig.truth.imus[0].accelerometer_mapping);
+    QVERIFY(state.imus[0].gyroscope_scale_misalignment == rig.truth.imus[0].gyroscope_scale_misalignment);
+    QVERIFY(state.imus[0].accelerometer_scale_misalignment ==
+            rig.truth.imus[0].accelerometer_scale_misalignment);
     QVERIFY(state.cameras[0].reference_from_camera.translation_m ==
             rig.truth.cameras[0].reference_from_camera.translation_m);
     QVERIFY(state.gravity_in_world_m_s2 == rig.truth.gravity_in_world_m_s2);
@@ -65,11 +66,11 @@ class TestCalibrationProblem : public QObject {
     problem.build(ParameterStages::Mappings, givenWeights(rig.input));
     const CalibrationState before = problem.state();
     *blockOf(problem, QuantityOwner::Camera, "time_offset") = 0.001;
-    blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping")[2] = 0.25;  // m02
+    blockOf(problem, QuantityOwner::Imu, "gyroscope_scale_misalignment")[2] = 0.25;  // m02
     QCOMPARE(problem.state().cameras[0].time_offset_s, 0.001);
-    QCOMPARE(problem.state().imus[0].gyroscope_mapping(0, 2), 0.25);
+    QCOMPARE(problem.state().imus[0].gyroscope_scale_misalignment(0, 2), 0.25);
     // A returned state does not change.
-    QVERIFY(before.imus[0].gyroscope_mapping(0, 2) != 0.25);
+    QVERIFY(before.imus[0].gyroscope_scale_misalignment(0, 2) != 0.25);
   }
 
   void build_leavesOutCirclesThatAreNotUsed() {
@@ -139,7 +140,7 @@ class TestCalibrationProblem : public QObject {
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
     problem.build(ParameterStages::Extrinsics, givenWeights(rig.input));
-    QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping") == nullptr);
+    QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_scale_misalignment") == nullptr);
     QVERIFY(blockOf(problem, QuantityOwner::Camera, "rotation") != nullptr);
   }
 };

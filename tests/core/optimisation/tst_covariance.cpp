@@ -150,8 +150,8 @@ class TestCovariance : public QObject {
     QCOMPARE(report.cameras[0].rotation_std_rad, Eigen::Vector3d(report.standard_deviations.head<3>()));
     QCOMPARE(report.cameras[0].time_offset_std_s, report.standard_deviations[6]);
     QVERIFY(report.imus[1].translation_std_m.minCoeff() > 0.0);
-    QVERIFY(report.imus[0].gyroscope_mapping_std(0, 2) > 0.0 &&
-            report.imus[0].gyroscope_mapping_std(2, 0) == 0.0);
+    QVERIFY(report.imus[0].gyroscope_scale_misalignment_std(0, 2) > 0.0 &&
+            report.imus[0].gyroscope_scale_misalignment_std(2, 0) == 0.0);
     QVERIFY(report.gravity_direction_std_rad > 0.0);
     QCOMPARE(report.observability.size(), std::size_t{14});
     QVERIFY(std::is_sorted(report.observability.begin(), report.observability.end()));

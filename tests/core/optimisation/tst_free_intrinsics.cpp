@@ -328,7 +328,7 @@ class TestFreeIntrinsics : public QObject {
     options.free_imu_intrinsics = false;
     const BatchSolution without = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(projectionDifference(seen, without.state.cameras[0].lens.solved.value()).rms_px > 0.1);
-    QVERIFY(without.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());
+    QVERIFY(without.state.imus[0].gyroscope_scale_misalignment == Eigen::Matrix3d::Identity());
     const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     for (const IterationRecord& iteration : solution.iterations)
       if (iteration.stage == 1) QVERIFY(*iteration.cameras[0].lens.solved == seen);

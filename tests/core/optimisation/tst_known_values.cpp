@@ -18,7 +18,7 @@ const QuantityInfo& timeOffset() {
   return quantityInfo(QuantityOwner::Camera, QuantityId::TimeOffset);
 }
 const QuantityInfo& gyroscopeMapping() {
-  return quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeMapping);
+  return quantityInfo(QuantityOwner::Imu, QuantityId::GyroscopeScaleMisalignment);
 }
 
 CalibrationInput oneOfEach() {

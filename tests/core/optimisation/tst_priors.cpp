@@ -104,17 +104,18 @@ class TestPriors : public QObject {
   void imuIntrinsicsThatAreNotFree_stayAtTheirPriors() {
     test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const ImuState& truth = rig.truth.imus[0];
-    rig.input.imus[0].prior.gyroscope_mapping = KnownMapping{truth.gyroscope_mapping};
-    rig.input.imus[0].prior.accelerometer_mapping =
-        KnownMapping{truth.accelerometer_mapping, Eigen::Matrix3d::Constant(0.01)};
+    rig.input.imus[0].prior.gyroscope_scale_misalignment = KnownMapping{truth.gyroscope_scale_misalignment};
+    rig.input.imus[0].prior.accelerometer_scale_misalignment =
+        KnownMapping{truth.accelerometer_scale_misalignment, Eigen::Matrix3d::Constant(0.01)};
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
     const PriorsRun run = calibrateForPriors(rig, options);
     const ImuState& imu = run.solution.state.imus[0];
-    QVERIFY(imu.gyroscope_mapping == truth.gyroscope_mapping);
-    QVERIFY(imu.accelerometer_mapping == truth.accelerometer_mapping);
+    QVERIFY(imu.gyroscope_scale_misalignment == truth.gyroscope_scale_misalignment);
+    QVERIFY(imu.accelerometer_scale_misalignment == truth.accelerometer_scale_misalignment);
     const ImuUncertainty& sigma = run.estimate.report.imus[0];
-    QVERIFY(sigma.gyroscope_mapping_std.norm() == 0.0 && sigma.accelerometer_mapping_std.norm() == 0.0);
+    QVERIFY(sigma.gyroscope_scale_misalignment_std.norm() == 0.0 &&
+            sigma.accelerometer_scale_misalignment_std.norm() == 0.0);
     QVERIFY(run.check.doubt.empty());
     QCOMPARE(run.check.notes.size(), std::size_t{1});
     const Vector3d bias_error = imu.gyroscope_bias_rad_s - truth.gyroscope_bias_rad_s;
@@ -138,7 +139,7 @@ class TestPriors : public QObject {
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
     const PriorsRun run = calibrateForPriors(test::simulateRig(shortPriorRecording()), options);
-    QVERIFY(says(run.check.notes, "imu.gyroscope_mapping"));
+    QVERIFY(says(run.check.notes, "imu.gyroscope_scale_misalignment"));
     QVERIFY(run.check.doubt.empty());  // it is not required
   }
 
@@ -147,7 +148,8 @@ class TestPriors : public QObject {
     simulation.gravity_m_s2 = 9.79;
     test::SimulatedRig rig = test::simulateRig(simulation);
     // Scale and gravity have nearly the same effect on a resting accelerometer.
-    rig.input.imus[0].prior.accelerometer_mapping = KnownMapping{rig.truth.imus[0].accelerometer_mapping};
+    rig.input.imus[0].prior.accelerometer_scale_misalignment =
+        KnownMapping{rig.truth.imus[0].accelerometer_scale_misalignment};
     OptimisationOptions options;
     options.free_gravity_norm = true;
     CalibrationState start = test::disturbed(rig.truth, 1);

@@ -20,7 +20,7 @@ CircleObservation circleAt(int index, double time_s) {
   circle.centre_px = {100.0 / 3.0, 1e-7 * index + 20.0};
   circle.covariance_px2 << 0.01 / 3.0, -1e-4 / 7.0, -1e-4 / 7.0, 0.02 / 3.0;
   circle.velocity_px_s = {-200.0 / 3.0, 0.1};
-  circle.edge_lead_effect = {-1.0 / 3.0, 1.0 / 7.0};
+  circle.edge_localisation_bias_effect = {-1.0 / 3.0, 1.0 / 7.0};
   circle.semi_axes_px = {10.0 / 3.0, 3.0};
   circle.angle_rad = -1.0 / 3.0;
   circle.events = 123;
@@ -45,9 +45,10 @@ std::vector<BoardObservations> sampleForDetectionsCsv() {
 bool same(const CircleObservation& a, const CircleObservation& b) {
   return a.circle == b.circle && a.time_s == b.time_s && a.centre_px == b.centre_px &&
          a.covariance_px2 == b.covariance_px2 && a.velocity_px_s == b.velocity_px_s &&
-         a.edge_lead_effect == b.edge_lead_effect && a.semi_axes_px == b.semi_axes_px &&
-         a.angle_rad == b.angle_rad && a.events == b.events && a.residual_rms_px == b.residual_rms_px &&
-         a.rows_below_middle == b.rows_below_middle && a.longer_exposed_s == b.longer_exposed_s;
+         a.edge_localisation_bias_effect == b.edge_localisation_bias_effect &&
+         a.semi_axes_px == b.semi_axes_px && a.angle_rad == b.angle_rad && a.events == b.events &&
+         a.residual_rms_px == b.residual_rms_px && a.rows_below_middle == b.rows_below_middle &&
+         a.longer_exposed_s == b.longer_exposed_s;
 }
 
 bool same(const WindowReport& a, const WindowReport& b) {
@@ -93,8 +94,8 @@ class TestDetectionsCsv : public QObject {
     QTest::addColumn<QByteArray>("what");
     QTest::addColumn<QByteArray>("by");
     QTest::addColumn<QByteArray>("said");
-    QTest::newRow("column missing") << QByteArray("edge_lead_effect_x") << QByteArray("x")
-                                    << QByteArray("has no column edge_lead_effect_x");
+    QTest::newRow("column missing") << QByteArray("edge_localisation_bias_effect_x") << QByteArray("x")
+                                    << QByteArray("has no column edge_localisation_bias_effect_x");
     QTest::newRow("a number missing")
         << QByteArray(",-5.666666666666667,") << QByteArray(",") << QByteArray("columns");
     QTest::newRow("no number") << QByteArray("33.33") << QByteArray("a33.33") << QByteArray("(line 2): x_px");

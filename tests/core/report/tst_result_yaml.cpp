@@ -45,14 +45,14 @@ NamedResult sampleForResultYaml() {
     camera.reference_from_camera = {quaternionExp(Eigen::Vector3d(1.1, -0.7, 0.1 * i)),
                                     {0.01, -1.0 / 3.0, 1e-9}};
     camera.time_offset_s = 0.1 / 3.0;
-    camera.edge_lead_px = -0.021;
-    camera.slow_edge_lead_px = 0.003;
+    camera.edge_localisation_bias_px = -0.021;
+    camera.slow_edge_localisation_bias_px = 0.003;
     result.state.cameras.push_back(camera);
     ImuState imu;
     if (i == 1) imu.reference_from_imu = {quaternionExp(Eigen::Vector3d(0.0, 0.2, 0.0)), {0.1, 0.0, 0.0}};
     imu.gyroscope_bias_rad_s = {0.01, -0.02, 1.0 / 7.0};
-    imu.gyroscope_mapping(0, 1) = 0.003;
-    imu.accelerometer_mapping(2, 2) = 1.01;
+    imu.gyroscope_scale_misalignment(0, 1) = 0.003;
+    imu.accelerometer_scale_misalignment(2, 2) = 1.01;
     imu.gyroscope_from_accelerometer = quaternionExp({0.01, -0.02, 0.005});
     imu.accelerometer_delay_s = 0.01 / 3.0;
     result.state.imus.push_back(imu);
@@ -60,11 +60,11 @@ NamedResult sampleForResultYaml() {
     sigma.rotation_std_rad.setConstant(1e-4);
     sigma.translation_std_m.setConstant(2e-4);
     sigma.time_offset_std_s = 1.2e-5;
-    sigma.edge_lead_std_px = std::numeric_limits<double>::quiet_NaN();
+    sigma.edge_localisation_bias_std_px = std::numeric_limits<double>::quiet_NaN();
     result.uncertainty.cameras.push_back(sigma);
     ImuUncertainty imu_sigma;
     imu_sigma.gyroscope_bias_std_rad_s.setConstant(1e-5);
-    imu_sigma.gyroscope_mapping_std(0, 1) = 1e-4;
+    imu_sigma.gyroscope_scale_misalignment_std(0, 1) = 1e-4;
     imu_sigma.gyroscope_rotation_std_rad = {1e-4, 2e-4, 3e-4};
     result.uncertainty.imus.push_back(imu_sigma);
     CameraFit fit;
@@ -117,14 +117,15 @@ class TestResultYaml : public QObject {
   }
 
   // Frames and points have none: it is fixed at 0.
-  void edgeLead_isShownWhereItIsEstimated() {
+  void edgeLocalisationBias_isShownWhereItIsEstimated() {
     NamedResult named = sampleForResultYaml();
-    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 2);
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge localisation bias"), 2);
     CalibrationResult& result = test::ownResult(named);
-    result.state.cameras[1].edge_lead_px = result.state.cameras[1].slow_edge_lead_px = 0.0;
-    result.uncertainty.cameras[1].edge_lead_std_px = 0.0;
-    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 1);
-    QCOMPARE(QString::fromStdString(resultTable(named)).count("lead of slow edges"), 1);
+    result.state.cameras[1].edge_localisation_bias_px =
+        result.state.cameras[1].slow_edge_localisation_bias_px = 0.0;
+    result.uncertainty.cameras[1].edge_localisation_bias_std_px = 0.0;
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge localisation bias"), 1);
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge localisation bias at low speed"), 1);
   }
 
   void estimates_readBackToTheLastBit() {
@@ -144,15 +145,17 @@ class TestResultYaml : public QObject {
       QVERIFY(a.lens == b.lens);
       const auto& lens_std = written.result->uncertainty.cameras[i].intrinsics_std;
       QVERIFY(read.result->uncertainty.cameras[i].intrinsics_std == lens_std);
-      QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px &&
-              a.slow_edge_lead_px == b.slow_edge_lead_px);
+      QVERIFY(a.time_offset_s == b.time_offset_s &&
+              a.edge_localisation_bias_px == b.edge_localisation_bias_px &&
+              a.slow_edge_localisation_bias_px == b.slow_edge_localisation_bias_px);
       const ImuState &c = written.result->state.imus[i], &d = read.result->state.imus[i];
-      QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
-      QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
+      QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s &&
+              c.gyroscope_scale_misalignment == d.gyroscope_scale_misalignment);
+      QVERIFY(c.accelerometer_scale_misalignment == d.accelerometer_scale_misalignment);
       QVERIFY(c.gyroscope_from_accelerometer.coeffs() == d.gyroscope_from_accelerometer.coeffs());
       QVERIFY(c.accelerometer_delay_s == d.accelerometer_delay_s);
     }
-    QVERIFY(std::isnan(read.result->uncertainty.cameras[0].edge_lead_std_px));
+    QVERIFY(std::isnan(read.result->uncertainty.cameras[0].edge_localisation_bias_std_px));
     QVERIFY(read.result->uncertainty.correlation(0, 1) == 0.25);
     QCOMPARE(read.result->cameras[0].windows_complete, 1320);
     QVERIFY(read.result->split_half_check.has_value());

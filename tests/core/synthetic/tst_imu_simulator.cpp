@@ -32,18 +32,20 @@ class TestImuSimulator : public QObject {
     SimulatedImu& imu = scenario.imus.front();
     imu.gyroscope_bias_rad_s = {0.1, -0.2, 0.3};
     imu.accelerometer_bias_m_s2 = {-0.4, 0.5, 0.6};
-    imu.gyroscope_mapping << 1.02, 0.01, -0.02, 0.0, 0.97, 0.03, 0.0, 0.0, 1.01;
-    imu.accelerometer_mapping << 0.99, -0.01, 0.02, 0.0, 1.03, -0.03, 0.0, 0.0, 0.98;
+    imu.gyroscope_scale_misalignment << 1.02, 0.01, -0.02, 0.0, 0.97, 0.03, 0.0, 0.0, 1.01;
+    imu.accelerometer_scale_misalignment << 0.99, -0.01, 0.02, 0.0, 1.03, -0.03, 0.0, 0.0, 0.98;
     imu.gyroscope_from_accelerometer = quaternionExp({0.0, 0.0, 0.02});
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()).toRotationMatrix();  // gyroscope from IMU
     const std::vector<ImuSample> real = simulateImu(scenario, 0);
     for (std::size_t k = 0; k < real.size(); k += 50) {
-      QVERIFY((real[k].angular_rate_rad_s -
-               (imu.gyroscope_mapping * turn * ideal[k].angular_rate_rad_s + imu.gyroscope_bias_rad_s))
-                  .norm() < 1e-12);
+      QVERIFY(
+          (real[k].angular_rate_rad_s -
+           (imu.gyroscope_scale_misalignment * turn * ideal[k].angular_rate_rad_s + imu.gyroscope_bias_rad_s))
+              .norm() < 1e-12);
       QVERIFY((real[k].specific_force_m_s2 -
-               (imu.accelerometer_mapping * ideal[k].specific_force_m_s2 + imu.accelerometer_bias_m_s2))
+               (imu.accelerometer_scale_misalignment * ideal[k].specific_force_m_s2 +
+                imu.accelerometer_bias_m_s2))
                   .norm() < 1e-12);
     }
   }

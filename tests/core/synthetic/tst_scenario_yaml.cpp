@@ -94,8 +94,8 @@ class TestScenarioYaml : public QObject {
                                 << "gravity_m_s2"
                                 << "zero";
     QTest::newRow("lower triangle")
-        << "base: davis346.yaml\nimu: {gyroscope_mapping: [[1,0,0],[0.1,1,0],[0,0,1]]}\n"
-        << "imu.gyroscope_mapping"
+        << "base: davis346.yaml\nimu: {gyroscope_scale_misalignment: [[1,0,0],[0.1,1,0],[0,0,1]]}\n"
+        << "imu.gyroscope_scale_misalignment"
         << "upper triangular";
     QTest::newRow("circles touch") << "base: davis346.yaml\nboard: {radius_m: 0.04}\n"
                                    << "board"
@@ -174,7 +174,7 @@ class TestScenarioYaml : public QObject {
     QVERIFY(readIntrinsics(camera["intrinsics"]) == scenario.cameras[0].intrinsics);
     QCOMPARE(imu["gyroscope"]["bias_rad_s"].reals(3)[0], scenario.imus[0].gyroscope_bias_rad_s.x());
     QCOMPARE(imu["accelerometer"]["mapping"].items()[0].reals(3)[2],
-             scenario.imus[0].accelerometer_mapping(0, 2));
+             scenario.imus[0].accelerometer_scale_misalignment(0, 2));
     scenario.imus[0].gyroscope_from_accelerometer = quaternionExp({0.0, 0.02, 0.0});
     scenario.imus[0].accelerometer_delay_s = 0.0025;
     const YamlNode turned = YamlNode::parse(truthYaml(scenario), "truth.yaml");

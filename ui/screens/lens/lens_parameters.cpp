@@ -67,10 +67,10 @@ LensGroup numbersOf(const IntrinsicsResult& result, const std::optional<LensComp
     if (compared && compared->numbers) addDifference((*compared->numbers)[k], sigma, row);
     group.rows.push_back(row);
   }
-  if (result.edge_lead_std_px > 0.0)
+  if (result.edge_localisation_bias_std_px > 0.0)
     group.rows.push_back({QObject::tr("Edge localisation bias"),
-                          lensText(result.edge_lead_px, result.edge_lead_std_px),
-                          sigmaText(result.edge_lead_std_px),
+                          lensText(result.edge_localisation_bias_px, result.edge_localisation_bias_std_px),
+                          sigmaText(result.edge_localisation_bias_std_px),
                           "px",
                           {},
                           {}});

@@ -196,28 +196,28 @@ class TestQuantities : public QObject {
     });
   }
 
-  // Only estimates have edge leads: those of two estimates are compared, but not with a truth.
-  void edgeLeads_areComparedBetweenResults() {
+  // Only estimates have edge localisation biases: those of two estimates are compared, but not with a truth.
+  void edgeLocalisationBias_areComparedBetweenResults() {
     const NamedResult result = filledResult();
     NamedResult other = result;
     CameraState& camera = test::ownResult(other).state.cameras[0];
-    camera.edge_lead_px += 0.25;
-    camera.slow_edge_lead_px -= 0.125;
+    camera.edge_localisation_bias_px += 0.25;
+    camera.slow_edge_localisation_bias_px -= 0.125;
     const auto found = [](const TruthComparison& comparison, const std::string& name) {
       for (const QuantityDifference& each : comparison.quantities)
         if (each.name == name) return each;
       return QuantityDifference{};
     };
     const TruthComparison comparison = compareWithTruth(other, result);
-    const QuantityDifference lead = found(comparison, "left.edge_lead");
-    const QuantityDifference slow = found(comparison, "left.slow_edge_lead");
+    const QuantityDifference lead = found(comparison, "left.edge_localisation_bias");
+    const QuantityDifference slow = found(comparison, "left.slow_edge_localisation_bias");
     QVERIFY(std::abs(lead.difference - 0.25) < 1e-12 && std::abs(slow.difference + 0.125) < 1e-12);
-    QCOMPARE(lead.sigma, result.result->uncertainty.cameras[0].edge_lead_std_px);
-    QCOMPARE(slow.sigma, result.result->uncertainty.cameras[0].slow_edge_lead_std_px);
+    QCOMPARE(lead.sigma, result.result->uncertainty.cameras[0].edge_localisation_bias_std_px);
+    QCOMPARE(slow.sigma, result.result->uncertainty.cameras[0].slow_edge_localisation_bias_std_px);
     QCOMPARE(QString::fromStdString(lead.unit), QString("px"));
     NamedResult truth = result;
     test::ownResult(truth).uncertainty = {};
-    QVERIFY(found(compareWithTruth(other, truth), "left.edge_lead").name.empty());
+    QVERIFY(found(compareWithTruth(other, truth), "left.edge_localisation_bias").name.empty());
     QVERIFY(!found(compareWithTruth(other, truth), "left.time_offset").name.empty());
   }
 

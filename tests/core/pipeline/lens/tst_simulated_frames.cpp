@@ -130,7 +130,7 @@ class TestSimulatedFrames : public QObject {
     const double off_px =
         projectionDifference(scenario_.cameras.front().intrinsics, run.result.intrinsics).rms_px;
     QVERIFY2(off_px < 3.0, QByteArray::number(off_px));
-    QCOMPARE(run.result.edge_lead_px, 0.0);
+    QCOMPARE(run.result.edge_localisation_bias_px, 0.0);
   }
 
   void picturesOfAnotherSize_areRefused() {

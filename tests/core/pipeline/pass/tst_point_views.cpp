@@ -57,9 +57,9 @@ class TestPointViews : public QObject {
  private slots:
   void pointsOfOneTime_areAView_withVelocities() {
     Fixture test;
-    test.views->take(batchAt(0.0, 12));
-    test.views->take(batchAt(0.1, 12, 3.0F));
-    test.views->take(batchAt(0.2, 5, 6.0F));
+    test.views->consume(batchAt(0.0, 12));
+    test.views->consume(batchAt(0.1, 12, 3.0F));
+    test.views->consume(batchAt(0.2, 5, 6.0F));
     const BoardObservations found = test.finish();
     QVERIFY(test.faults.empty());
     QCOMPARE(found.views.size(), std::size_t{3});
@@ -74,7 +74,7 @@ class TestPointViews : public QObject {
     CameraIntrinsics lens{CameraModel::PinholeRadtan, {100, 80}, {90.0, 90.0}, {49.5, 39.5}, {}};
     lens.distortion[0] = -0.3;
     Fixture test(lens);
-    test.views->take(batchAt(0.0, 12));
+    test.views->consume(batchAt(0.0, 12));
     QVERIFY(test.finish().views[0].circles[0].centre_px.x() < 9.0);  // barrel distortion moved it inwards
   }
 
@@ -82,7 +82,7 @@ class TestPointViews : public QObject {
     Fixture test({}, 0.3);
     CameraBatch batch = batchAt(0.0, 12);
     batch.points[1].sigma_px = 0.5F;
-    test.views->take(batch);
+    test.views->consume(batch);
     const std::vector<CircleObservation> circles = test.finish().views[0].circles;
     QVERIFY(circles[0].covariance_px2.isApprox(0.09 * Eigen::Matrix2d::Identity()));
     QVERIFY(circles[1].covariance_px2.isApprox(0.25 * Eigen::Matrix2d::Identity()));
@@ -94,7 +94,7 @@ class TestPointViews : public QObject {
     batch.points.push_back({0, 12, 50.0F, 50.0F, 0.0F});  // not a point of the board
     batch.points.push_back({0, 3, 200.0F, 50.0F, 0.0F});  // outside the sensor
     batch.points.push_back({0, 5, 50.0F, 50.0F, 0.0F});   // the second one
-    test.views->take(batch);
+    test.views->consume(batch);
     QCOMPARE(test.finish().views[0].circles.size(), std::size_t{12});
     QCOMPARE(test.faults.size(), std::size_t{3});
   }
@@ -102,7 +102,7 @@ class TestPointViews : public QObject {
   void pointsOfAnotherBoard_areRefused() {
     Fixture test;
     try {
-      for (int k = 0; k < 100; ++k) test.views->take(batchAt(0.1 * k, 24));
+      for (int k = 0; k < 100; ++k) test.views->consume(batchAt(0.1 * k, 24));
       QFAIL("accepted");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
@@ -112,7 +112,7 @@ class TestPointViews : public QObject {
 
   void tooFewPoints_areNoView() {
     Fixture test;
-    test.views->take(batchAt(0.0, 3));
+    test.views->consume(batchAt(0.0, 3));
     QVERIFY(test.views->soFar().windows[0].outcome == WindowOutcome::TooFewCircles);
     QVERIFY(test.finish().views.empty());
   }

@@ -86,7 +86,7 @@ class TestSplitHalfCheck : public QObject {
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     QVERIFY(validation.windows[0] > 20 && validation.windows[1] > 20);
     QVERIFY(validation.quantities.size() > 12);
-    for (const char* name : {"left.edge_lead", "left.slow_edge_lead"})
+    for (const char* name : {"left.edge_localisation_bias", "left.slow_edge_localisation_bias"})
       QVERIFY2(
           std::any_of(validation.quantities.begin(), validation.quantities.end(),
                       [&](const QuantityDifference& each) { return each.name == name && each.sigma > 0.0; }),

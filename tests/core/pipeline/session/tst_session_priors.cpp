@@ -62,7 +62,7 @@ const char* const kPasted = R"(  cameras:
       latency_s: 0.001
       latency_std_s: 0.0001
       latency_against: right
-      edge_lead_px: 0.1
+      edge_localisation_bias_px: 0.1
       intrinsics: {model: pinhole_radtan}
       reprojection_rms_px: 0.05
       windows: {total: 100, complete: 90, partial: 0, used: 90}
@@ -119,9 +119,9 @@ class TestSessionPriors : public QObject {
     QVERIFY(*reference.gyroscope_bias->sigma == Eigen::Vector3d(1e-3, 2e-3, 3e-3));
     QVERIFY(right.translation->isGiven() && !right.rotation);
     QVERIFY(right.time_offset->isGiven());
-    QCOMPARE(right.gyroscope_mapping->value(0, 1), 0.002);
-    QCOMPARE((*right.gyroscope_mapping->sigma)(1, 2), 0.003);
-    QVERIFY(right.accelerometer_bias->isGiven() && right.accelerometer_mapping->isGiven());
+    QCOMPARE(right.gyroscope_scale_misalignment->value(0, 1), 0.002);
+    QCOMPARE((*right.gyroscope_scale_misalignment->sigma)(1, 2), 0.003);
+    QVERIFY(right.accelerometer_bias->isGiven() && right.accelerometer_scale_misalignment->isGiven());
   }
 
   void priors_writtenAndRead_areTheSame() {
@@ -159,7 +159,7 @@ class TestSessionPriors : public QObject {
     QVERIFY(session.cameras[0].prior.translation->sigma.has_value());
     QVERIFY(session.cameras[0].prior.time_offset->isGiven());
     QVERIFY(!session.imus[0].prior.rotation);
-    QVERIFY(session.imus[0].prior.gyroscope_mapping->isGiven());
+    QVERIFY(session.imus[0].prior.gyroscope_scale_misalignment->isGiven());
     QVERIFY(session.imus[0].prior.gyroscope_bias->sigma.has_value());
   }
 

@@ -1,4 +1,4 @@
-// Effect of an edge lead on a measured ellipse centre. The measurement gives the centre's shift per pixel of
+// Effect of an edge localisation bias on a measured ellipse centre. The measurement gives the centre's shift per pixel of
 // lead, which depends on the ellipse's shape, on the arcs that fired, and on the lens. The lead is one length
 // at all but the lowest speeds: slow edges, which reverse and whose bursts are joined by noise, are seen
 // slightly further behind (docs/maths.md, 9.1).
@@ -14,27 +14,29 @@
 
 namespace evical {
 
-struct EdgeLeadEffect {
+struct EdgeLocalisationBiasEffect {
   Eigen::Vector2d of_lead, of_slow;  // px per px
 };
 
 // A camera's lead, and the additional lead of edges that hardly move.
-struct EdgeLead {
+struct EdgeLocalisationBias {
   double lead_px, slow_px;
 
-  Eigen::Vector2d times(const EdgeLeadEffect& effect) const {
+  Eigen::Vector2d times(const EdgeLocalisationBiasEffect& effect) const {
     return lead_px * effect.of_lead + slow_px * effect.of_slow;
   }
 };
-inline EdgeLead edgeLeadOf(const CameraState& camera) {
-  return {camera.edge_lead_px, camera.slow_edge_lead_px};
+inline EdgeLocalisationBias edgeBiasOf(const CameraState& camera) {
+  return {camera.edge_localisation_bias_px, camera.slow_edge_localisation_bias_px};
 }
 
-inline EdgeLeadEffect edgeLeadEffect(const CameraIntrinsics& camera, const CircleObservation& circle,
-                                     double slow_edge_speed_px_s) {
+inline EdgeLocalisationBiasEffect edgeBiasEffect(const CameraIntrinsics& camera,
+                                                 const CircleObservation& circle,
+                                                 double slow_edge_speed_px_s) {
   const Eigen::Matrix2d stretch = idealPixelScale(camera, circle.centre_px);
   const double speed_px_s = (stretch.inverse() * circle.velocity_px_s).norm();
-  return {circle.edge_lead_effect, std::exp(-speed_px_s / slow_edge_speed_px_s) * circle.edge_lead_effect};
+  return {circle.edge_localisation_bias_effect,
+          std::exp(-speed_px_s / slow_edge_speed_px_s) * circle.edge_localisation_bias_effect};
 }
 
 }  // namespace evical
