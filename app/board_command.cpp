@@ -148,7 +148,8 @@ void addBoardCommand(Command& app, int& exit_code) {
       .option(
           "--paper",
           [arguments](const std::string& name) { arguments->sheet.paper = papersByName().at(name); },
-          "Paper size, with the board in the middle; by default the sheet has the size of the board")
+          "Paper, with the board in the middle (Letter: 215.9 mm x 279.4 mm); by default the sheet has the "
+          "size of the board")
       .oneOf(namesOf(papersByName()));
   command.option("--dpi", arguments->resolution_dpi, "Resolution of a .png, pixels per inch").showDefault();
   command.flag("--blink", arguments->blink,

@@ -34,6 +34,7 @@ void printEvents(const StreamSummary& stream, bool checksum) {
     print("    {:<22} not in the file; events reach {} x {}\n", "resolution", stream.seen_px.width_px,
           stream.seen_px.height_px);
   }
+  if (!stream.note.empty()) print("    {:<22} {}\n", "note", stream.note);
   if (!checksum) return;
   print("    {:<22} x {}, y {}, t {} {} (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y, stream.sum_t,
         stream.info.time_unit_ns == 1000 ? "us" : "ns");

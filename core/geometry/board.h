@@ -51,8 +51,6 @@ struct Board {
   bool hasTags() const { return type == BoardType::AprilGrid || type == BoardType::Charuco; }
 
   bool hasPattern() const { return type != BoardType::Points; }
-  // Key of the size in sessions.
-  const char* sizeKey() const { return hasPattern() ? "spacing_m" : "points_m"; }
 
   int pointCount() const;
   // Index of circles and of corners between squares; tags' corners do not have one.

@@ -115,9 +115,8 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
        std::abs(excess), sigma});
   if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
     return;
-  result.doubt = fmt::format("the board seems {:.0f} % {} than specified by {} ({:.4g} m): measure it",
-                             100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.sizeKey(),
-                             board.spacing_m);
+  result.doubt = fmt::format("the board seems {:.0f} % {} than specified (spacing {:.4g} m): measure it",
+                             100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.spacing_m);
   result.warnings.push_back(result.doubt);
 }
 

@@ -15,12 +15,15 @@ struct Paper {
   std::string name;
   double short_mm = 0.0, long_mm = 0.0;
 };
-const std::vector<Paper>& papers();  // A0 to A4
+const std::vector<Paper>& papers();  // A4, Letter, and A3 to A0: smallest first
 
 struct SheetOptions {
   double margin_m = 0.02;           // smallest distance between pattern and sheet edges
   std::optional<Paper> paper = {};  // portrait or landscape, as the board fits; absent: fits the board
 };
+
+// False if the functions below refuse the board.
+bool fitsSheet(const Board& board, const SheetOptions& options);
 
 // Throw CalibrationError (BadInput) if the board is invalid, or too large for the paper or a PDF page (5 m).
 std::string boardSvg(const Board& board, const SheetOptions& options = {}, const TagPrint& print = {});

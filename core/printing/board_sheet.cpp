@@ -108,12 +108,19 @@ std::string shortNumber(double value) {
 }
 
 const std::vector<Paper>& papers() {
-  static const std::vector<Paper> all = {{"A0", 841.0, 1189.0},
-                                         {"A1", 594.0, 841.0},
-                                         {"A2", 420.0, 594.0},
-                                         {"A3", 297.0, 420.0},
-                                         {"A4", 210.0, 297.0}};
+  static const std::vector<Paper> all = {{"A4", 210.0, 297.0}, {"Letter", 215.9, 279.4},
+                                         {"A3", 297.0, 420.0}, {"A2", 420.0, 594.0},
+                                         {"A1", 594.0, 841.0}, {"A0", 841.0, 1189.0}};
   return all;
+}
+
+bool fitsSheet(const Board& board, const SheetOptions& options) {
+  try {
+    layOut(board, options, {});
+    return true;
+  } catch (const CalibrationError&) {
+    return false;
+  }
 }
 
 BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrint& print) {

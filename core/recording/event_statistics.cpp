@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -109,7 +110,7 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
         {name, FaultKind::Encoding, 0.0,
          fmt::format("The time stamps step by {:.3g} ms: a time offset is uncertain by half of that.",
                      1e3 * step_s)});
-  if (duration_s > 0.0) findHotPixels(duration_s, faults);
+  if (duration_s > 0.0) findHotPixels(duration_s, summary, faults);
 }
 
 std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
@@ -126,7 +127,8 @@ std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
   return medianOf(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(found));
 }
 
-void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const {
+void EventStatistics::findHotPixels(double duration_s, StreamSummary& summary,
+                                    std::vector<RecordingFault>& faults) const {
   const double mean =
       static_cast<double>(numbers_.count) / numbers_.seen_px.width_px / numbers_.seen_px.height_px;
   const double least = std::max({options_.hot_pixel_hz * duration_s, options_.hot_pixel_factor * mean,
@@ -145,9 +147,12 @@ void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFaul
   if (hot.empty()) return;
   const std::size_t total = hot.size();
   hot.resize(std::min(total, kMostNamedPixels));
-  faults.push_back({numbers_.info.name, FaultKind::HotPixels, 0.0,
-                    fmt::format("{} hot pixels give {:.1f} % of the events: {}{}.", total, 100.0 * share,
-                                joined(hot), total > hot.size() ? ", ..." : "")});
+  std::string text = fmt::format("{} hot pixels give {:.1f} % of the events: {}{}.", total, 100.0 * share,
+                                 joined(hot), total > hot.size() ? ", ..." : "");
+  if (share < options_.hot_pixel_share)
+    summary.note = std::move(text);
+  else
+    faults.push_back({summary.info.name, FaultKind::HotPixels, 0.0, std::move(text)});
 }
 
 }  // namespace evical

@@ -21,7 +21,7 @@ class EventStatistics {
  private:
   unsigned rowsWith(unsigned y_px);
   void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
-  void findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const;
+  void findHotPixels(double duration_s, StreamSummary& summary, std::vector<RecordingFault>& faults) const;
   std::uint32_t neighbourMedian(int x_px, int y_px) const;
   void addFault(FaultKind kind, std::int64_t at_ns, std::string text);
 

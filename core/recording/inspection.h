@@ -30,6 +30,7 @@ struct StreamSummary {
   std::uint64_t on = 0, off = 0;
   std::uint64_t sum_x = 0, sum_y = 0, sum_t = 0;  // modulo 2^64; times in the file's own unit
   Resolution seen_px;                             // largest coordinates + 1
+  std::string note;                               // not a fault: hot pixels with few events
 
   double shortest_exposure_s = 0.0, longest_exposure_s = 0.0;  // of frames; 0: unknown
 

@@ -13,6 +13,7 @@ struct InspectionOptions {
   double hot_pixel_factor = 8.0;        // times the events of its neighbours, and of the mean pixel
   double hot_pixel_hz = 10.0;           // lowest rate of a hot pixel
   int hot_pixel_events = 100;           // fewest events that distinguish a hot pixel from chance
+  double hot_pixel_share = 0.01;        // of the events, of all hot pixels; less is a note instead of a fault
   bool operator==(const InspectionOptions&) const = default;
 };
 

@@ -54,9 +54,9 @@ void TestBadView::boardSpacing_tenPercentOff_isDoubtful_data() {
   QTest::addColumn<QString>("says");
   QTest::newRow("right") << "0.05" << QString();
   QTest::newRow("too small") << "0.0455"
-                             << "(9|10|11) % larger than specified by spacing_m";
+                             << "(9|10|11) % larger than specified .spacing 0.0455 m";
   QTest::newRow("too large") << "0.0556"
-                             << "(9|10|11) % smaller than specified by spacing_m";
+                             << "(9|10|11) % smaller than specified .spacing 0.0556 m";
 }
 
 void TestBadView::boardSpacing_tenPercentOff_isDoubtful() {
@@ -69,7 +69,7 @@ void TestBadView::boardSpacing_tenPercentOff_isDoubtful() {
   VERIFY_OUTCOME(outcome, 0);
   const QString result = QString::fromUtf8(readFile(test.result() + "/result.yaml"));
   const bool warned =
-      outcome.errors.contains(QRegularExpression("warning: .*specified by spacing_m.*measure it"));
+      outcome.errors.contains(QRegularExpression("warning: .*than specified .spacing .*measure it"));
   QVERIFY2(warned == !says.isEmpty(), qPrintable(outcome.errors));
   if (says.isEmpty()) return;
   QVERIFY2(result.contains("status: doubtful"), qPrintable(result.left(400)));

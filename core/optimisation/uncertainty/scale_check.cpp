@@ -83,22 +83,21 @@ Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& stat
 
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
   return fmt::format(
-      "accelerations make the board {0:.2g} % {1} than {6}.{7} says ({2:.4g} m), or gravity {0:.2g} "
+      "accelerations make the {6} {0:.2g} % {1} than specified (spacing {2:.4g} m), or gravity {0:.2g} "
       "% {3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
       "give gravity.latitude_deg",
       100.0 * std::abs(excess.found), excess.found > 0.0 ? "larger" : "smaller", input.board.spacing_m,
       excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()),
-      input.boardKey(0), input.board.sizeKey());
+      input.boardWords(0));
 }
 
 // If two boards' sizes contradict each other, one of them is wrong.
 std::string ratioDoubt(const CalibrationInput& input, std::size_t board, const Weighed& ratio) {
   return fmt::format(
-      "{} and {} contradict each other: measured against the first, the second is {:.2g} % {} than its "
-      "{} ({:.4g} m apart) says ({:.1f} sigmas): measure both over as many spacings as there are",
-      input.boardKey(0), input.boardKey(board), 100.0 * std::abs(ratio.found),
-      ratio.found > 0.0 ? "larger" : "smaller", input.boardAt(board).sizeKey(),
-      input.boardAt(board).spacing_m, std::abs(ratio.sigmas()));
+      "the boards {} and {} contradict each other: measured against the first, the second is {:.2g} % {} "
+      "than specified (spacing {:.4g} m, {:.1f} sigmas): measure both over as many spacings as there are",
+      input.boardName(0), input.boardName(board), 100.0 * std::abs(ratio.found),
+      ratio.found > 0.0 ? "larger" : "smaller", input.boardAt(board).spacing_m, std::abs(ratio.sigmas()));
 }
 
 std::string stretchDoubt(const std::string& board, const Weighed& stretch) {

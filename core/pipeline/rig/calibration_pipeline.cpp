@@ -398,8 +398,6 @@ class Calibration {
       result.notes.push_back(fmt::format("{}: therefore {} was set", freed.text, freed.repair->text()));
     tellRejected();
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
-    for (const InitialisationStep& step : initial_.steps)
-      result.notes.push_back(step.name + ": " + step.text());
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     Timing& timing = result.timing;

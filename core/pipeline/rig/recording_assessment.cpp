@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/initialisation/initialisation_options.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
 #include "core/optimisation/batch_optimiser.h"
@@ -24,11 +25,11 @@ namespace {
 
 const char* const kStage = "assess";
 
-// Thresholds that agree with the report's advice after a calibration.
+// Thresholds that agree with the report's advice after a calibration. The user reads the good ones.
 constexpr double kGood_s = 15.0;
 constexpr double kGoodBoard = 0.6, kFairBoard = 0.3;         // of the windows
 constexpr double kGoodCoverage = 0.6, kFairCoverage = 0.35;  // of the image
-constexpr double kGoodSpeed_px_s = 40.0, kFairSpeed_px_s = 20.0, kFast_px_s = 600.0;
+constexpr double kFairSpeed_px_s = 20.0;
 constexpr double kFairSigma = 3.0;  // times the required sigma
 
 constexpr double kGoodTurn_rad_s = 0.3, kFairTurn_rad_s = 0.1;                // RMS
@@ -79,9 +80,9 @@ class Assessor {
 
  private:
   void add(AssessedThing thing, const std::string& sensor, Light light, std::string measured,
-           const std::string& advice) {
-    result_.all.push_back(
-        {thing, sensor, light, std::move(measured), light == Light::Good ? std::string() : advice});
+           std::string required, const std::string& advice) {
+    result_.all.push_back({thing, sensor, light, std::move(measured), std::move(required),
+                           light == Light::Good ? std::string() : advice});
   }
   // If false, only the lens can be calibrated.
   bool isRig() const { return session_.imus.size() + session_.cameras.size() >= 2; }
@@ -98,7 +99,7 @@ class Assessor {
     context_.progress.stageProgress(kUntilState);
     assessAxes(&start->initial.state);
     if (!start->initial.doubt.empty())
-      add(AssessedThing::Obstacle, {}, Light::Fair, start->initial.doubt, "Measure the board again.");
+      add(AssessedThing::Obstacle, {}, Light::Fair, start->initial.doubt, {}, "Measure the board again.");
     try {
       expectSigmas(*start);
       result_.can_be_calibrated = true;
@@ -114,7 +115,8 @@ class Assessor {
       if (!camera.windows.empty())
         duration_s = std::max(duration_s, camera.windows.back().time_s - camera.windows.front().time_s);
     add(AssessedThing::Duration, {}, lightOf(duration_s, kGood_s, least_s),
-        fmt::format("{:.1f} s", duration_s), "Record 20 to 30 s of varied motion.");
+        fmt::format("{:.1f} s", duration_s), fmt::format("{:g} s", kGood_s),
+        "Record 20 to 30 s of varied motion.");
   }
 
   html::Measures measured() const {
@@ -131,7 +133,7 @@ class Assessor {
     add(AssessedThing::Board, camera.camera, lightOf(measures.detectionRate(), kGoodBoard, kFairBoard),
         fmt::format("{:.0f} % of {} {}", 100.0 * measures.detectionRate(), measures.windows,
                     camera.kind == CameraKind::Events ? "windows" : "frames"),
-        html::remedyForMissed(measures));
+        fmt::format("{:.0f} %", 100.0 * kGoodBoard), html::remedyForMissed(measures));
     if (measures.views == 0) return;
     result_.board_seen = true;
     if (!measures.cells.empty()) {
@@ -139,6 +141,7 @@ class Assessor {
       add(AssessedThing::Coverage, camera.camera,
           lightOf(measures.coveredShare(), kGoodCoverage, kFairCoverage),
           fmt::format("{:.0f} % of the image", 100.0 * measures.coveredShare()),
+          fmt::format("{:.0f} %", 100.0 * kGoodCoverage),
           empty.empty() ? "Move the board through the whole image, into its corners."
                         : "Move the board through the whole image. Hardly covered: " + empty + ".");
     }
@@ -152,10 +155,11 @@ class Assessor {
     for (const BoardView& view : camera.views)
       for (const CircleObservation& circle : view.circles) speeds_px_s.push_back(circle.velocity_px_s.norm());
     const double speed_px_s = medianOf(std::move(speeds_px_s));
-    const bool fast = speed_px_s > kFast_px_s;
+    const bool fast = speed_px_s > kFastSpeed_px_s;
     add(AssessedThing::Speed, camera.camera,
         fast ? Light::Fair : lightOf(speed_px_s, kGoodSpeed_px_s, kFairSpeed_px_s),
         fmt::format("{:.0f} px/s", speed_px_s),
+        fmt::format("{:g} to {:g} px/s", kGoodSpeed_px_s, kFastSpeed_px_s),
         fast ? "Move more slowly: circles should cross the image in one or two seconds."
              : "Move faster: circles should cross the image in one or two seconds.");
   }
@@ -168,7 +172,8 @@ class Assessor {
       for (const std::string& each : found->advice) advice += (advice.empty() ? "" : ". ") + each;
       add(AssessedThing::Lens, session_.cameras[k].name,
           found->status == CalibrationStatus::Ok ? Light::Good : Light::Fair,
-          fmt::format("projection sigma {:.2g} px", found->image.rms_px), advice);
+          fmt::format("projection sigma {:.2g} px", found->image.rms_px),
+          fmt::format("{:g} px", session_.options.intrinsics->needed_projection_px), advice);
     }
   }
 
@@ -189,6 +194,7 @@ class Assessor {
       const auto index = static_cast<std::size_t>(axis);
       add(thing, imu.name, lightOf(least, good, fair),
           fmt::format("{:.2g}, {:.2g}, {:.2g} {}", spread.x(), spread.y(), spread.z(), unit),
+          fmt::format("{:g} each", good),
           motion.along_camera ? std::string(remedies[index])
                               : fmt::format("{} the {} axis of {} more.", verb, "xyz"[index], imu.name));
     };
@@ -223,7 +229,8 @@ class Assessor {
       const Light light = sigma <= needed                ? Light::Good
                           : sigma <= kFairSigma * needed ? Light::Fair
                                                          : Light::Poor;
-      add(thing, sigmas.sensor, light, fmt::format("\u00b1{:.2g} {}, required {:.2g}", sigma, unit, needed),
+      add(thing, sigmas.sensor, light, fmt::format("\u00b1{:.2g} {}", sigma, unit),
+          fmt::format("{:g} {}", needed, unit),
           fmt::format("{} The weakest direction is {}.", remedy, weakest));
     };
     say(AssessedThing::Rotation, sigmas.rotation_deg, options.needed_rotation_deg, "deg",
@@ -237,7 +244,7 @@ class Assessor {
 
   void addObstacle(const CalibrationError& error) {
     if (!result_.board_seen) return;  // already reported, and the cause of all other problems
-    add(AssessedThing::Obstacle, error.place(), Light::Poor, error.problem(), error.advice());
+    add(AssessedThing::Obstacle, error.place(), Light::Poor, error.problem(), {}, error.advice());
   }
 
   // Obstacles and expected sigmas decide; other measures reduce the light to Fair at most.

@@ -28,11 +28,15 @@ enum class AssessedThing {
   Obstacle,  // prevents a calibration, or makes its result doubtful
 };
 
+// Range of a good median speed of the circles, for event cameras.
+inline constexpr double kGoodSpeed_px_s = 40.0, kFastSpeed_px_s = 600.0;
+
 struct Assessed {
   AssessedThing thing = AssessedThing::Duration;
   std::string sensor;  // empty: the whole recording
   Light light = Light::Good;
   std::string measured;  // "12.0 s"
+  std::string required;  // for a Good light: "15 s"; empty for an Obstacle
   std::string advice;    // a sentence; empty if the light is Good
 };
 

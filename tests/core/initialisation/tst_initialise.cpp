@@ -183,8 +183,9 @@ class TestInitialise : public QObject {
     QTest::addColumn<QString>("says");
     QTest::newRow("right") << 1.0 << QString();
     QTest::newRow("10 % too small") << 1.0 / 1.1
-                                    << "seems (9|10|11) % larger than specified by spacing_m \\(0.04545 m\\)";
-    QTest::newRow("10 % too large") << 1.0 / 0.9 << "seems (9|10|11) % smaller than specified by spacing_m";
+                                    << "seems (9|10|11) % larger than specified \\(spacing 0.04545 m\\)";
+    QTest::newRow("10 % too large") << 1.0 / 0.9
+                                    << "seems (9|10|11) % smaller than specified \\(spacing 0.05556 m\\)";
   }
   void initialise_withWrongSpacing_saysSo() {
     QFETCH(double, given);

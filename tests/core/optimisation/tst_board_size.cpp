@@ -96,8 +96,8 @@ class TestBoardSize : public QObject {
   void boardThatIsFarOff_isDoubted_data() {
     QTest::addColumn<double>("scale");
     QTest::addColumn<QString>("words");
-    QTest::newRow("larger") << 1.015 << "larger than board.spacing_m";
-    QTest::newRow("smaller") << 0.985 << "smaller than board.spacing_m";
+    QTest::newRow("larger") << 1.015 << "larger than specified (spacing ";
+    QTest::newRow("smaller") << 0.985 << "smaller than specified (spacing ";
   }
   void boardThatIsFarOff_isDoubted() {
     QFETCH(double, scale);

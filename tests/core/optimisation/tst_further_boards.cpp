@@ -90,8 +90,8 @@ class TestFurtherBoards : public QObject {
     board.spacing_m *= 1.02;
     board.radius_m *= 1.02;
     const std::string doubt = solve(rig, 2, test::withoutPixelDelay()).estimate.scale_doubt;
-    QVERIFY2(doubt.find("boards.board and boards.tags contradict each other") == 0, doubt.c_str());
-    QVERIFY2(doubt.find("smaller than its spacing_m") != std::string::npos, doubt.c_str());
+    QVERIFY2(doubt.find("the boards board and tags contradict each other") == 0, doubt.c_str());
+    QVERIFY2(doubt.find("smaller than specified (spacing ") != std::string::npos, doubt.c_str());
   }
 };
 

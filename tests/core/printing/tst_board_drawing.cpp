@@ -230,7 +230,7 @@ void TestBoardDrawing::papers_holdBoardsOfAllTypes() {
 
 void TestBoardDrawing::boardLargerThanItsPaper_isRefusedWithASpacingThatFits() {
   Board b = boardOf(BoardType::Checkerboard, 6, 9, 0.0);
-  const SheetOptions sheet{0.01, papers().back()};
+  const SheetOptions sheet{0.01, papers().front()};  // A4
   try {
     boardPdf(b, sheet);
     QFAIL("drawn");
@@ -240,7 +240,9 @@ void TestBoardDrawing::boardLargerThanItsPaper_isRefusedWithASpacingThatFits() {
     QCOMPARE(std::sscanf(advice.c_str() + advice.find("a spacing of"), "a spacing of %lf", &fits_mm), 1);
     b.spacing_m = 1e-3 * fits_mm;
     boardPdf(b, sheet);
+    QVERIFY(fitsSheet(b, sheet));
     b.spacing_m += 2e-4;
+    QVERIFY(!fitsSheet(b, sheet));
     QVERIFY_EXCEPTION_THROWN(boardPdf(b, sheet), CalibrationError);
   }
 }

@@ -57,6 +57,7 @@ class TestInspection : public QObject {
   void manyGaps_areSummedUp();
   void summary_matchesTheRecording();
   void eventFaults_areFound();
+  void fewEventsOfHotPixels_areANote();
   void json_holdsTheContractsKeys();
   void frames_areCountedWithTheirExposures();
   void untimedPictures_areToldSo();
@@ -185,6 +186,24 @@ void TestInspection::eventFaults_areFound() {
   QCOMPARE(inspection.streams[0].backward_steps, std::uint64_t{1});
   const std::string& text = inspection.faults.at(3).text;
   QVERIFY2(text.find("1 hot pixels") == 0 && text.find("(17, 23)") != std::string::npos, text.c_str());
+}
+
+void TestInspection::fewEventsOfHotPixels_areANote() {
+  Recording recording = sampleRecording(200'000);
+  for (std::size_t i = 0; i < recording.events.size(); i += 500) {
+    recording.events[i].x_px = 17;
+    recording.events[i].y_px = 23;
+  }
+  writeAll(*createBag(path("hot.bag"), sampleStreams(), true), recording);
+  InspectionOptions strict;
+  strict.hot_pixel_share = 0.001;
+  const Inspection faulty = inspectRecording(*openRecording(path("hot.bag")), strict);
+  QVERIFY(kinds(faulty.faults).contains("hot_pixels") && faulty.streams[0].note.empty());
+  const Inspection inspection = inspectRecording(*openRecording(path("hot.bag")));
+  QVERIFY(!kinds(inspection.faults).contains("hot_pixels"));
+  const std::string& note = inspection.streams[0].note;
+  QVERIFY2(note.find("1 hot pixels give 0.2 %") == 0, note.c_str());
+  QVERIFY(inspectionJson(inspection, false).find(note) != std::string::npos);
 }
 
 void TestInspection::json_holdsTheContractsKeys() {

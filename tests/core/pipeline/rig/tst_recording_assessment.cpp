@@ -37,11 +37,11 @@ const Assessed* find(const RecordingAssessment& assessment, AssessedThing thing)
 QString textOf(const RecordingAssessment& assessment) {
   QString text;
   for (const Assessed& one : assessment.all)
-    text +=
-        QString("%1 %2: %3 (%4) %5\n")
-            .arg(QString::fromStdString(one.sensor), nameOf(one.thing), QString::fromStdString(one.measured))
-            .arg(static_cast<int>(one.light))
-            .arg(QString::fromStdString(one.advice));
+    text += QString("%1 %2: %3, required %4 (%5) %6\n")
+                .arg(QString::fromStdString(one.sensor), nameOf(one.thing),
+                     QString::fromStdString(one.measured), QString::fromStdString(one.required))
+                .arg(static_cast<int>(one.light))
+                .arg(QString::fromStdString(one.advice));
   return text;
 }
 
@@ -115,7 +115,10 @@ class TestRecordingAssessment : public QObject {
   void goodRecording_hasGoodLightsOnly() {
     const RecordingAssessment assessment = assess("davis346", 20.0);
     for (const Assessed& one : assessment.all)
-      QVERIFY2(one.light == Light::Good && one.advice.empty(), qPrintable(textOf(assessment)));
+      QVERIFY2(one.light == Light::Good && one.advice.empty() && !one.required.empty(),
+               qPrintable(textOf(assessment)));
+    QCOMPARE(find(assessment, AssessedThing::Speed)->required, std::string("40 to 600 px/s"));
+    QCOMPARE(find(assessment, AssessedThing::Rotation)->required, std::string("0.1 deg"));
     QCOMPARE(assessment.light, Light::Good);
     QVERIFY(assessment.can_be_calibrated && assessment.board_seen);
   }
@@ -140,6 +143,7 @@ class TestRecordingAssessment : public QObject {
   void twoSeconds_areTooShort() {
     const RecordingAssessment assessment = assess("davis346", 2.0);
     QCOMPARE(lightOf(assessment, AssessedThing::Duration), Light::Poor);
+    QCOMPARE(find(assessment, AssessedThing::Duration)->required, std::string("15 s"));
     QVERIFY(adviceOf(assessment, AssessedThing::Duration).contains("20 to 30 s"));
     QCOMPARE(assessment.light, Light::Poor);
     QVERIFY(!assessment.can_be_calibrated);
