@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps before a recording: printing and measuring a board, and the instructions for the motion.
+#include "core/pipeline/rig/recording_assessment.h"
 #include "core/pipeline/session/session.h"
 #include "core/printing/blink_page.h"
 #include "core/printing/board_drawing.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/clipped_text.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/document/printed_board.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_form.h"
+#include "ui/screens/board/measured_form.h"
 #include "ui/screens/board/print_board_dialog.h"
 #include "ui/screens/recording/how_to_record_dialog.h"
 #include "ui/screens/recording/motion_picture.h"
@@ -20,7 +23,12 @@
 #include <QFile>
 #include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QPushButton>
+#include <QScopeGuard>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSet>
 #include <QSpinBox>
 #include <QToolButton>
 
@@ -40,6 +48,19 @@ QString saidBy(const QWidget& dialog) {
   for (const QLabel* const label : dialog.findChildren<QLabel*>())
     if (label->isVisibleTo(&dialog)) all += label->text() + '\n';
   return all;
+}
+
+void openLastStep(const QWidget& dialog) {
+  auto* const step = dialog.findChild<QToolButton*>("after_printing");
+  QVERIFY(!dialog.findChild<QCheckBox*>("is_measured")->isVisible());
+  QTest::mouseClick(step, Qt::LeftButton);
+  QVERIFY(dialog.findChild<QCheckBox*>("is_measured")->isVisible());
+}
+
+void chooseType(const PrintBoardDialog& dialog, int type) {
+  auto* const types = dialog.findChild<BoardForm*>()->findChild<QComboBox*>();
+  types->setCurrentIndex(type);
+  emit types->activated(type);
 }
 
 }  // namespace
@@ -71,9 +92,7 @@ class TestBeforeRecording : public QObject {
     WindowFixture test;
     showPrintBoard(&test.window, test.window.workbench());
     auto* const dialog = test.child<PrintBoardDialog>();
-    auto* const types = dialog->findChild<BoardForm*>()->findChild<QComboBox*>();
-    types->setCurrentIndex(type);
-    emit types->activated(type);
+    chooseType(*dialog, type);
     dialog->findChild<QComboBox*>("paper")->setCurrentText("A2");
     const Board board = dialog->board();
     QCOMPARE(static_cast<int>(board.type), type);
@@ -89,6 +108,7 @@ class TestBeforeRecording : public QObject {
                                                    : blinkPage(board, options.margin_m, dialog->tagPrint());
     QVERIFY(contentOfBeforeRecording(file) == expected);
     QVERIFY(saidBy(*dialog).contains(file));
+    QVERIFY(dialog->findChild<QCheckBox*>("is_measured")->isVisible());  // the next step
   }
 
   void measuredLength_arrivesInTheSession() {
@@ -97,10 +117,12 @@ class TestBeforeRecording : public QObject {
     QVERIFY(!test.document().boardConfirmed());
     showPrintBoard(&test.window, test.window.workbench());
     auto* const dialog = test.child<PrintBoardDialog>();
+    openLastStep(*dialog);
     dialog->findChild<QCheckBox*>("is_measured")->click();
     QCOMPARE(dialog->findChild<QSpinBox*>("measured_circles")->value(), 6);  // of 11 staggered rows
     type(dialog->findChild<QLineEdit*>("measured_length"), "502.5");
     QTest::mouseClick(dialog->findChild<QPushButton*>("take_board"), Qt::LeftButton);
+    QVERIFY(saidBy(*dialog).contains("The session uses this board, with its measured length"));
     const Session& session = test.document().session();
     QVERIFY(session.measured.has_value());
     QCOMPARE(session.measured->spacings, 10);
@@ -121,9 +143,11 @@ class TestBeforeRecording : public QObject {
     auto* const dialog = test.child<PrintBoardDialog>();
     QVERIFY(dialog != nullptr && dialog->isVisible());
     dialog->findChild<BoardForm*>()->findChildren<QSpinBox*>().at(0)->setValue(9);
+    openLastStep(*dialog);
     dialog->findChild<QCheckBox*>("is_measured")->click();
     type(dialog->findChild<QLineEdit*>("measured_length"), "161");
     QTest::mouseClick(dialog->findChild<QPushButton*>("take_board"), Qt::LeftButton);
+    QVERIFY(saidBy(*dialog).contains("for the next recording that you open"));
     const Session recorded = readSession(simulatedSession().toStdString());
     test.window.files().open(QString::fromStdString(recorded.recording.string()));
     QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
@@ -135,12 +159,74 @@ class TestBeforeRecording : public QObject {
   void paperThatIsTooSmall_isSaid_andNothingIsOffered() {
     PrintBoardDialog dialog(Board{}, nullptr);
     dialog.show();
+    QCOMPARE(dialog.findChild<QComboBox*>("paper")->currentText(), QString("A1"));  // smallest that it fits
     dialog.findChild<QComboBox*>("paper")->setCurrentText("A4");
     QVERIFY2(saidBy(dialog).contains("A4") && saidBy(dialog).contains("larger paper"),
              qPrintable(saidBy(dialog)));
     QVERIFY(!dialog.findChild<QPushButton*>("save_board")->isEnabled());
     dialog.findChild<QComboBox*>("paper")->setCurrentText("A0");
     QVERIFY(dialog.findChild<QPushButton*>("save_board")->isEnabled());
+  }
+
+  void usualPaperOfTheCountry_isProposed_withABoardThatFitsIt_data() {
+    QTest::addColumn<QLocale>("locale");
+    QTest::addColumn<QString>("paper");
+    QTest::addColumn<double>("spacing_m");
+    QTest::newRow("Germany") << QLocale(QLocale::German, QLocale::Germany) << "A4" << 0.021;
+    QTest::newRow("United Kingdom") << QLocale(QLocale::English, QLocale::UnitedKingdom) << "A4" << 0.021;
+    QTest::newRow("United States") << QLocale(QLocale::English, QLocale::UnitedStates) << "Letter" << 0.02;
+  }
+  void usualPaperOfTheCountry_isProposed_withABoardThatFitsIt() {
+    QFETCH(const QLocale, locale);
+    QFETCH(const QString, paper);
+    QFETCH(const double, spacing_m);
+    const auto restored = qScopeGuard([before = QLocale()] { QLocale::setDefault(before); });
+    QLocale::setDefault(locale);
+    WindowFixture test;
+    showPrintBoard(&test.window, test.window.workbench());
+    auto* const dialog = test.child<PrintBoardDialog>();
+    auto* const papers = dialog->findChild<QComboBox*>("paper");
+    QCOMPARE(papers->currentText(), paper);
+    QCOMPARE(papers->itemText(0) + papers->itemText(1) + papers->itemText(2), QString("A4LetterA3"));
+    QCOMPARE(papers->itemText(papers->count() - 1), QString("Size of the board"));
+    QVERIFY(std::abs(dialog->board().spacing_m - spacing_m) < 1e-9);
+    QVERIFY(dialog->findChild<QPushButton*>("save_board")->isEnabled());
+  }
+
+  void dialog_fitsASmallDisplay_withAllFieldsOfAllTypes() {
+    WindowFixture test;
+    showPrintBoard(&test.window, test.window.workbench());
+    auto* const dialog = test.child<PrintBoardDialog>();
+    openLastStep(*dialog);
+    for (int type = 0; type < static_cast<int>(kPatternNames.size()); ++type) {
+      chooseType(*dialog, type);
+      spin(100);
+      QVERIFY2(dialog->width() <= 1024 && dialog->height() <= 660,  // less the window's title
+               qPrintable(QString("%1 x %2").arg(dialog->width()).arg(dialog->height())));
+      for (const QScrollArea* const area : dialog->findChildren<QScrollArea*>())
+        QVERIFY(area->verticalScrollBar()->maximum() == 0 && area->horizontalScrollBar()->maximum() == 0);
+      QVERIFY2(clippedTexts(*dialog).isEmpty(), qPrintable(clippedTexts(*dialog).join('\n')));
+      QSet<int> left_edges;
+      for (const QLabel* const label : dialog->findChildren<QLabel*>())
+        if (const QWidget* const field = label->buddy();
+            field && field->isVisible() && !dialog->findChild<MeasuredForm*>()->isAncestorOf(field))
+          left_edges << field->mapTo(dialog, QPoint()).x();
+      QCOMPARE(left_edges.size(), 1);
+    }
+  }
+
+  void save_offersTheFormats() {
+    PrintBoardDialog dialog(Board{}, nullptr);
+    dialog.show();
+    QString path;
+    connect(&dialog, &PrintBoardDialog::fileRequested, &dialog,
+            [&path](const BoardFile& file) { path = file.path; });
+    const QList<QAction*> formats = dialog.findChild<QPushButton*>("save_board")->menu()->actions();
+    QCOMPARE(formats.size(), 3);
+    QCOMPARE(formats[1]->text(), QString("SVG..."));
+    answerFileDialog(scratch_.filePath("chosen.svg"));
+    formats[1]->trigger();
+    QCOMPARE(path, scratch_.filePath("chosen.svg"));
   }
 
   void folderThatIsNotThere_isSaid() {
@@ -187,6 +273,23 @@ class TestBeforeRecording : public QObject {
       for (const QImage& other : seen) QVERIFY2(now != other, qPrintable(motion.name));
       seen.push_back(now);
     }
+  }
+
+  void motions_areSteppedThrough() {
+    HowToRecordDialog dialog(Motion::Reduced, nullptr);
+    dialog.show();
+    const auto* const picture = dialog.findChild<MotionPicture*>();
+    auto* const previous = dialog.findChild<QToolButton*>("previous_motion");
+    auto* const next = dialog.findChild<QToolButton*>("next_motion");
+    QVERIFY(!previous->isEnabled());
+    QTest::mouseClick(next, Qt::LeftButton);
+    QCOMPARE(picture->accessibleName(), shownMotions()[1].title);
+    QTest::mouseClick(previous, Qt::LeftButton);
+    QCOMPARE(picture->accessibleName(), shownMotions()[0].title);
+    dialog.showMotion(shownMotions().back().name);
+    QVERIFY(!next->isEnabled());
+    // The program rates recordings by the same numbers.
+    QVERIFY(saidBy(dialog).contains(QString("%1 to %2").arg(kGoodSpeed_px_s).arg(kFastSpeed_px_s)));
   }
 
   // The displayed motion must follow the advice itself.

@@ -266,11 +266,32 @@ class TestBoardsForm : public QObject {
     BoardsFormFixture test;
     Session session = test.session();
     session.board = boardOfPoints({{-0.1, 0.0}, {0.1, 0.0}, {0.0, 0.1}, {0.1, 0.2}});
+    test.click("board_more");
     QVERIFY(test.find<QCheckBox>("blinks")->isVisible());
     test.document.edit(session, "Points");
     QVERIFY(!test.find<QCheckBox>("blinks")->isVisible());
     test.document.undoStack().undo();
     QVERIFY(test.find<QCheckBox>("blinks")->isVisible());
+  }
+
+  void rarelyNeededRows_areFolded_unlessTheSessionUsesThem() {
+    BoardsFormFixture test;
+    auto* const more = test.find<QToolButton>("board_more");
+    auto* const blinks = test.find<QCheckBox>("blinks");
+    auto* const measured = test.form()->findChild<QCheckBox*>();
+    QVERIFY(more->isVisible() && !blinks->isVisible() && !measured->isVisible());
+    test.click("board_more");
+    QVERIFY(blinks->isVisible() && measured->isVisible());
+    test.click("board_more");
+    QVERIFY(!blinks->isVisible() && !measured->isVisible());
+    Session session = test.session();
+    session.board_blinks = true;
+    test.document.edit(session, "Flashes");
+    QVERIFY(blinks->isVisible() && blinks->isChecked() && !more->isEnabled());
+    session.board_blinks = false;
+    session.measured = MeasuredLength{10, 0.5, 0.0005};
+    test.document.edit(session, "Measured");
+    QVERIFY(measured->isVisible() && measured->isChecked() && !more->isEnabled());
   }
 
   // They come from a file: shown, but neither chosen nor counted here.

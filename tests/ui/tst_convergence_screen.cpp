@@ -8,6 +8,7 @@
 #include <QComboBox>
 #include <QLabel>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace evical;
@@ -110,8 +111,13 @@ class TestConvergenceScreen : public QObject {
     screen.show();
     screen.setRun(run_);
     settle();
-    const QStringList lines = screen.findChild<QLabel*>("stages")->text().split('\n');
-    QCOMPARE(lines.size(), run_->result.iterations.back().stage);
+    const auto* const stages = screen.findChild<QLabel*>("stages");
+    QCOMPARE(stages->text().count("Stage "), run_->result.iterations.back().stage);
+    QVERIFY2(stages->text().startsWith("Stage 1: trajectory, ") && stages->text().endsWith(": new weights") &&
+                 stages->text().size() < 150,
+             qPrintable(stages->text()));
+    QVERIFY(stages->height() < 2 * stages->fontMetrics().height());
+    const QStringList lines = stages->toolTip().split("</p><p>").mid(0, run_->result.iterations.back().stage);
     QVERIFY2(lines[0].contains("trajectory") && lines[0].contains("time offset") &&
                  lines[0].contains("gravity") && lines[0].contains("gyroscope bias"),
              qPrintable(lines[0]));
@@ -120,6 +126,23 @@ class TestConvergenceScreen : public QObject {
     QVERIFY2(!lines[1].contains("bias"), qPrintable(lines[1]));
     QVERIFY2(lines.back().contains("estimated noise"), qPrintable(lines.back()));
     QVERIFY(panel(screen, kCost).toolTip().contains("jumps"));
+  }
+
+  // A stage's first step has no length.
+  void valuesWithoutALogarithm_areNoHoles() {
+    auto run = std::make_shared<CalibrationRun>(*run_);
+    auto& iterations = run->result.iterations;
+    iterations[1].step = 0.0;
+    ConvergenceScreen screen;
+    screen.setRun(run);
+    settle();
+    const auto rows = rowsOf(panel(screen, kStep));
+    const auto holes =
+        std::count_if(rows.begin(), rows.end(), [](const Row& row) { return std::isnan(row.y); });
+    QCOMPARE(static_cast<int>(holes), iterations.back().stage - 1);  // between stages
+    const auto positive = std::count_if(iterations.begin(), iterations.end(),
+                                        [](const IterationRecord& record) { return record.step > 0.0; });
+    QCOMPARE(static_cast<std::ptrdiff_t>(rows.size()), positive + holes);
   }
 
   void need_isDrawnAboutTheFinalValue() {

@@ -12,9 +12,11 @@
 #include "ui/detection/window_panel.h"
 #include "ui/theme/theme.h"
 
+#include <QCheckBox>
 #include <QPainter>
 #include <QRegularExpression>
 #include <QSignalSpy>
+#include <QToolButton>
 
 #include <algorithm>
 #include <atomic>
@@ -194,9 +196,30 @@ class TestDetectionScreen : public QObject {
       screen.setMode(mode);
       QTest::qWait(300);
       QTRY_VERIFY_WITH_TIMEOUT(count.match(screen.view().caption()).hasMatch(), 20000 * kSlowdown);
+      QCOMPARE(screen.view().caption().count("events"), 1);
       counts << count.match(screen.view().caption()).captured(1).trimmed();
     }
     QVERIFY2(!counts[0].isEmpty() && counts.count(counts[0]) == 3, qPrintable(counts.join(" / ")));
+  }
+
+  void someLayers_areBehindAButton() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    const auto offered = [&](const QString& name) {
+      for (const QCheckBox* const box : screen.findChildren<QCheckBox*>())
+        if (box->text() == name) return box->isVisible();
+      return false;
+    };
+    for (const char* const name : {"Ellipses", "Centres", "Grid", "Prediction"}) QVERIFY(offered(name));
+    for (const char* const name : {"Flow vectors", "Pairs", "Reprojection"}) QVERIFY(!offered(name));
+    auto* const more = screen.findChild<QToolButton*>("more_layers");
+    more->click();
+    for (const char* const name : {"Ellipses", "Flow vectors", "Pairs", "Reprojection"})
+      QVERIFY(offered(name));
+    screen.setLayerVisible(Layer::Pairs, true);
+    more->click();
+    QVERIFY(offered("Pairs") && !offered("Reprojection"));  // what is shown can be hidden
   }
 
   void analysis_saysWhereItWasLost() {

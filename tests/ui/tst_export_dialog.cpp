@@ -12,7 +12,9 @@
 #include <QDesktopServices>
 #include <QDialogButtonBox>
 #include <QFile>
+#include <QHeaderView>
 #include <QLabel>
+#include <QMap>
 #include <QPushButton>
 
 #include <algorithm>
@@ -75,14 +77,47 @@ class TestExportDialog : public QObject {
 
   void eachTarget_hasItsLine_andVioIsMarked() {
     const ExportDialog dialog({scratch_.filePath("new"), {}, false}, nullptr);
-    const auto* const list = dialog.findChild<QTreeWidget*>("targets");
-    QCOMPARE(static_cast<std::size_t>(list->topLevelItemCount()), exportTargets().size());
-    for (int row = 0; row < list->topLevelItemCount(); ++row) {
-      const ExportTarget& target = exportTargets()[static_cast<std::size_t>(row)];
-      const QTreeWidgetItem* const item = list->topLevelItem(row);
-      QVERIFY(item->text(1).contains(target.use));
-      QCOMPARE(item->text(1).startsWith("VIO"), target.inertial_odometry);
+    QMap<QString, const QTreeWidgetItem*> lines;
+    for (QTreeWidgetItemIterator at(dialog.findChild<QTreeWidget*>("targets")); *at; ++at)
+      lines[(*at)->data(0, Qt::UserRole).toString()] = *at;
+    QVERIFY(lines.remove("") == 1);  // "More"
+    QCOMPARE(static_cast<std::size_t>(lines.size()), exportTargets().size());
+    for (const ExportTarget& target : exportTargets()) {
+      QVERIFY(lines.contains(target.name));
+      QVERIFY(lines[target.name]->text(1).contains(target.use));
+      QCOMPARE(lines[target.name]->text(1).startsWith("VIO"), target.inertial_odometry);
     }
+  }
+
+  void rareTargets_areFolded_untilTheyAreWantedOrChosen() {
+    ExportDialog dialog({scratch_.filePath("new"), {"openvins", "opencv"}, false}, nullptr);
+    auto* const list = dialog.findChild<QTreeWidget*>("targets");
+    QCOMPARE(list->topLevelItemCount(), 6);
+    QTreeWidgetItem* const more = list->topLevelItem(5);
+    QCOMPARE(more->text(0), QString("More (%1)").arg(exportTargets().size() - 5));
+    QVERIFY(!more->isExpanded());
+    dialog.show();
+    for (const bool shown : {true, false}) {
+      QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(more).center());
+      QCOMPARE(more->isExpanded(), shown);
+    }
+    dialog.findChild<QPushButton*>("select_all")->click();
+    QVERIFY(more->isExpanded());
+    const ExportDialog chosen({scratch_.filePath("new"), {"numpy"}, false}, nullptr);
+    QVERIFY(chosen.findChild<QTreeWidget*>("targets")->topLevelItem(5)->isExpanded());
+  }
+
+  void columns_areWholeInAWindowOf1280() {
+    ExportDialog dialog({scratch_.filePath("new"), {"numpy"}, false}, nullptr);
+    dialog.resize(1240, 600);
+    dialog.show();
+    const auto* const list = dialog.findChild<QTreeWidget*>("targets");
+    QVERIFY2(list->header()->length() <= list->viewport()->width(),
+             qPrintable(QString::number(list->header()->length())));
+    for (QTreeWidgetItemIterator at(dialog.findChild<QTreeWidget*>("targets")); *at; ++at)
+      for (int column = 0; (*at)->parent() && column < list->columnCount(); ++column)
+        QVERIFY2(list->fontMetrics().horizontalAdvance((*at)->text(column)) < list->columnWidth(column),
+                 qPrintable((*at)->text(column)));
   }
 
   void folder_isJudgedWhileItIsTyped_data() {
@@ -130,6 +165,7 @@ class TestExportDialog : public QObject {
     for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
       applyTheme(*qApp, appearance);
       ExportDialog dialog({scratch_.filePath("drive_calibration"), {"openvins", "ros"}, true}, nullptr);
+      dialog.resize(1100, 600);
       dialog.show();
       ExportNotice notice;
       notice.showOutcome({"/data/drive_calibration",

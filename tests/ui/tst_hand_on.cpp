@@ -174,6 +174,13 @@ class TestHandOn : public QObject {
   void pose_isShownInAllWays() {
     PosePanel panel;
     panel.setResult(rig_);
+    panel.show();
+    const auto visible = [&](const char* name) { return panel.findChild<QLabel*>(name)->isVisible(); };
+    for (const char* const always : {"translation", "quaternion"}) QVERIFY(visible(always));
+    for (const bool shown : {false, true}) {
+      for (const char* const more : {"rotation_vector", "angles", "matrix"}) QCOMPARE(visible(more), shown);
+      QTest::mouseClick(panel.findChild<QToolButton*>("more_rotations"), Qt::LeftButton);
+    }
     const auto shown = [&](const char* name) { return panel.findChild<QLabel*>(name)->text().simplified(); };
     QCOMPARE(shown("direction"), QString("Transforms points of left to imu: p_imu = R p_left + t"));
     QCOMPARE(shown("translation"), QString("30.0000 0.0000 40.0000"));
@@ -216,7 +223,10 @@ class TestHandOn : public QObject {
     auto* const warning = panel.findChild<QLabel*>("angles_warning");
     QVERIFY(warning->isHidden());
     panel.setResult(locked);
-    QVERIFY(!warning->isHidden());
+    panel.show();
+    QVERIFY(!warning->isVisible());  // like the angles
+    panel.findChild<QToolButton*>("more_rotations")->click();
+    QVERIFY(warning->isVisible());
     QCOMPARE(warning->text(), QString("Angles are not unique here: use the quaternion"));
     QuantityTable table;
     table.setGroups(parameterGroups(locked), false);

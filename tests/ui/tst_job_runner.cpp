@@ -5,6 +5,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/slowdown.h"
+#include "ui/window/job_status.h"
 
 #include <QSignalSpy>
 
@@ -45,6 +46,23 @@ class TestJobRunner : public QObject {
   Q_OBJECT
 
  private slots:
+  void status_ofAnEndedJob_isForgottenOnReset_butNotOfARunningOne() {
+    JobRunnerWatched test;
+    JobStatus status(test.runner);
+    QVERIFY(test.runner.start("Export", {}, [](const RunContext&) {}));
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QCOMPARE(status.text(), QString("Export: done"));
+    status.reset();
+    QCOMPARE(status.text(), QString("Ready"));
+    test.finished.clear();
+    QVERIFY(test.runner.start("Calibration", {}, workUntilStopped));
+    status.reset();
+    QVERIFY(status.text() != "Ready");
+    test.runner.cancel();
+    QCOMPARE(test.outcome(), JobOutcome::Cancelled);
+    QCOMPARE(status.text(), QString("Calibration: cancelled"));
+  }
+
   void work_runsInAnotherThread() {
     JobRunnerWatched test;
     std::thread::id worker;

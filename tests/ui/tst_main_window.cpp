@@ -151,6 +151,53 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.close());
   }
 
+  void pagesWithoutContent_areGrey_withTheReason() {
+    WindowFixture test;
+    auto* const list = test.child<QListWidget>("navigation");
+    const auto enabled = [list](const QString& title) {
+      const QListWidgetItem* const item = list->findItems(title, Qt::MatchStartsWith).front();
+      return bool(item->flags() & Qt::ItemIsEnabled);
+    };
+    const auto shown = [list](const QString& text) {
+      const auto items = list->findItems(text, Qt::MatchStartsWith);
+      return !items.isEmpty() && !items.front()->isHidden();
+    };
+    QVERIFY(enabled("Start") && !enabled("Recording") && !enabled("Result"));
+    QVERIFY(shown("Open a recording first") && !shown("Check a result"));
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QVERIFY(enabled("Recording") && enabled("Detection") && !enabled("Trajectory") && !enabled("Result"));
+    QVERIFY(shown("Press Calibrate"));
+    QCOMPARE(list->findItems("Result", Qt::MatchExactly).front()->toolTip(),
+             QString("Press Calibrate to fill grey pages"));
+    const QListWidgetItem* const more = list->findItems("More", Qt::MatchExactly).front();
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(more).center());
+    QVERIFY(shown("Check a result") && enabled("Check a result"));
+    test.window.calibrate();
+    QVERIFY(enabled("Trajectory"));  // filled live
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(enabled("Trajectory") && enabled("Result") && !shown("Press Calibrate"));
+    test.window.workbench().lens.setAim(CalibrationAim::Camera);
+    QVERIFY(!enabled("Trajectory") && shown("Grey pages are for rigs only"));
+  }
+
+  void recentFiles_haveNameDateAndVerdict() {
+    WindowFixture test;
+    auto* const recent = test.child<QTreeWidget>("recent");
+    QVERIFY(!recent->isVisible());
+    const QString session = copyOfSimulatedSession(scratch_.path());
+    test.window.files().open(session);
+    QCOMPARE(recent->topLevelItemCount(), 1);
+    QCOMPARE(recent->topLevelItem(0)->text(0), QFileInfo(session).dir().dirName());
+    QCOMPARE(recent->topLevelItem(0)->text(2), QString("not calibrated"));
+    test.window.calibrate();
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QCOMPARE(recent->topLevelItem(0)->text(2),
+             QString(statusName(test.document().last().run->result.status)));
+    QVERIFY(recent->topLevelItem(0)->toolTip(0).contains(session));
+    WindowFixture later;
+    QCOMPARE(later.child<QTreeWidget>("recent")->topLevelItem(0)->text(2), recent->topLevelItem(0)->text(2));
+  }
+
   void demo_isSimulatedOnTheSpot_andCanBeCancelled() {
     WindowFixture test;
     double fraction = 0.0;

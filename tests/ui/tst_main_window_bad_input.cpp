@@ -19,6 +19,7 @@
 #include "ui/scene/view3d.h"
 #include "ui/screens/recording/stream_table.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/recent_files.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
@@ -272,7 +273,7 @@ class TestMainWindowBadInput : public QObject {
     test.window.files().open(bad);
     QVERIFY(test.child<ErrorPanel>()->isVisible());
     QVERIFY(!test.document().hasSession());
-    QVERIFY(test.window.files().recentFiles().isEmpty());
+    QVERIFY(recentFiles().isEmpty());
   }
 
   void filesThatAreNoRecording_data() {
@@ -301,7 +302,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY2(panel->text().contains(QFileInfo(path).fileName()), qPrintable(panel->text()));
     QVERIFY2(panel->text().contains("What to do"), qPrintable(panel->text()));
     QVERIFY(!test.document().hasSession());
-    QVERIFY(test.window.files().recentFiles().isEmpty());
+    QVERIFY(recentFiles().isEmpty());
   }
 
   // The front end succeeds; then the IMU samples turn out to be from another time.

@@ -40,9 +40,10 @@ void pressKey(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
 struct Opened : WindowFixture {
   explicit Opened(const QString& session) { window.files().open(session); }
   DetectionScreen& detection() { return *child<DetectionScreen>(); }
-  void choosePage(int row) {
+  void choosePage(const QString& title) {
     auto* const list = child<QListWidget>("navigation");
-    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(list->item(row)).center());
+    const QListWidgetItem* const item = list->findItems(title, Qt::MatchExactly).front();
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(item).center());
   }
   void keysOfDetectionWork() {
     DetectionScreen& screen = detection();
@@ -77,7 +78,7 @@ class TestMainWindowKeys : public QObject {
 
   void detection_hasItsKeys_afterThePageWasChosenByMouse_orALayerClicked() {
     Opened test(copyOfSimulatedSession(scratch_.path()));
-    test.choosePage(static_cast<int>(test.window.screenNames().indexOf("detection")));
+    test.choosePage("Detection");
     QCOMPARE(test.screen(), QString("detection"));
     test.keysOfDetectionWork();
     auto* const layer = test.detection().findChild<QCheckBox*>();
@@ -190,6 +191,8 @@ class TestMainWindowKeys : public QObject {
     auto* const contents = guide->findChild<QListWidget*>("contents");
     auto* const browser = guide->findChild<QTextBrowser*>();
     QVERIFY(contents->count() >= 6);
+    QCOMPARE(contents->horizontalScrollBar()->maximum(), 0);  // long headings end with dots
+    QCOMPARE(contents->item(2)->toolTip(), contents->item(2)->text());
     contents->setCurrentRow(3);
     const QString top = browser->cursorForPosition({30, 24}).block().text();
     QCOMPARE(top, contents->item(3)->text());

@@ -186,6 +186,11 @@ class TestMaintainPage : public QObject {
       QCOMPARE(row.childCount(), static_cast<int>(quantity.numbers.size()));
       QCOMPARE(row.text(FindingTable::kVerdict), QString(verdictWords(quantity.verdict())));
     }
+    test.window.resize(1280, 800);
+    spin(100);
+    const int end_px =
+        table->columnViewportPosition(FindingTable::kNow) + table->columnWidth(FindingTable::kNow);
+    QVERIFY2(end_px <= table->viewport()->width(), qPrintable(QString::number(end_px)));
     const auto* const steps = test.child<StepTable>();
     QVERIFY(steps->isVisible());
     QCOMPARE(steps->topLevelItemCount(), 1);

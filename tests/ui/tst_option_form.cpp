@@ -15,6 +15,7 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QLineEdit>
+#include <QScrollArea>
 #include <QSignalSpy>
 #include <QToolButton>
 
@@ -213,9 +214,11 @@ class TestOptionForm : public QObject {
     }
     QCOMPARE(test.form.shownOptions(), common);
     auto* const button = test.form.findChild<QToolButton*>("expert");
-    QVERIFY(button && button->text().contains(QString("(%1)").arg(all.size() - common.size())));
+    QVERIFY(button);
+    QCOMPARE(button->text(), QString("More options (%1)").arg(all.size() - common.size()));
     QTest::mouseClick(button, Qt::LeftButton);
     QCOMPARE(test.form.shownOptions(), all);
+    QCOMPARE(button->text(), QString("Fewer options"));
     QTest::mouseClick(button, Qt::LeftButton);
     QCOMPARE(test.form.shownOptions(), common);
   }
@@ -307,6 +310,22 @@ class TestOptionForm : public QObject {
     QVERIFY(test.form.grab().save(
         evical::ui::test::screenshotPath("option_form_%1.png").arg(QTest::currentDataTag())));
     applyTheme(*qApp, Appearance::Light);
+  }
+
+  void everyOption_isWholeAtTheLeastWidth() {
+    OptionFormFixture test;
+    test.form.showExpert(true);
+    for (QToolButton* const heading : test.form.findChildren<QToolButton*>("group"))
+      heading->setChecked(true);
+    test.form.resize(test.form.minimumWidth(), 700);
+    QTest::qWait(50);
+    const int room_px = test.form.findChild<QScrollArea*>()->viewport()->width();
+    for (const OptionRow& row : documentedOptions()) {
+      const OptionEditor* const editor = test.form.editor(QString::fromStdString(row.name));
+      const int end_px = editor->mapTo(editor->window(), QPoint(editor->width(), 0)).x();
+      QVERIFY2(editor->isVisible() && end_px <= room_px + 8, row.name.c_str());
+      QVERIFY2(editor->minimumSizeHint().width() <= editor->width(), row.name.c_str());
+    }
   }
 
   void form_fitsIntoItsDock() {

@@ -11,6 +11,7 @@
 #include "ui/screens/board/board_drawing.h"
 #include "ui/screens/board/board_form.h"
 #include "ui/screens/recording/camera_form.h"
+#include "ui/screens/recording/check_card.h"
 #include "ui/screens/recording/imu_form.h"
 #include "ui/screens/recording/stream_table.h"
 #include "ui/screens/recording/time_range_form.h"
@@ -19,6 +20,8 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTemporaryDir>
@@ -57,6 +60,21 @@ struct RecordingScreenFixture {
     box->setCurrentIndex(box->findData(static_cast<int>(role)));
     emit box->activated(box->currentIndex());
   }
+  // An assessment with all criteria, on the card.
+  void assess() {
+    RecordingAssessment assessment;
+    for (int thing = 0; thing < static_cast<int>(AssessedThing::Obstacle); ++thing)
+      assessment.all.push_back(
+          {static_cast<AssessedThing>(thing), "left", Light::Fair, "1 s", "2 s", "Record for longer."});
+    assessment.board_seen = assessment.can_be_calibrated = true;
+    screen.checkCard()->setAssessment(assessment);
+    QApplication::processEvents();
+  }
+  QScrollArea* page() {
+    return qobject_cast<QScrollArea*>(screen.checkCard()->parentWidget()->parentWidget()->parentWidget());
+  }
+  int top(QWidget* widget) { return widget->mapTo(&screen, QPoint()).y(); }
+  int bottom(QWidget* widget) { return top(widget) + widget->height(); }
   static void type(QLineEdit* field, const QString& text) {
     field->selectAll();
     QTest::keyClicks(field, text);
@@ -90,6 +108,60 @@ class TestRecordingScreen : public QObject {
     QVERIFY(all.contains("events, 346 x 260 px"));
     QVERIFY(all.contains("1000.0 Hz"));
     QCOMPARE(test.streams()->role(all.indexOf("/davis_left/events") == 0 ? 0 : 1), StreamRole::Camera);
+  }
+
+  void fewHotPixels_areNoWarning() {
+    RecordingScreenFixture test;
+    const auto faultsOf = [&](StreamRole role) {
+      return test.streams()->item(test.streams()->role(0) == role ? 0 : 1, 6);
+    };
+    const QTableWidgetItem* const note = faultsOf(StreamRole::Camera);
+    QVERIFY2(note->text().contains("hot pixels"), qPrintable(note->text()));
+    QVERIFY(note->icon().isNull() && note->toolTip().contains("No faults found"));
+    QVERIFY(!faultsOf(StreamRole::Imu)->icon().isNull());
+    Inspection faulty = *test.inspection;
+    faulty.faults = {{faulty.streams[0].info.name, FaultKind::HotPixels, 0.0, "Many hot pixels."}};
+    test.screen.addInspection("other.bag", std::make_shared<Inspection>(faulty));
+    QCOMPARE(test.streams()->item(2, 6)->text(), QString("Many hot pixels."));
+    QVERIFY(!test.streams()->item(2, 6)->icon().isNull());
+  }
+
+  void detailsOfTheCheck_leaveTheForms() {
+    RecordingScreenFixture test;
+    test.assess();
+    auto* const form = test.screen.findChild<BoardForm*>();
+    test.screen.checkCard()->findChild<QToolButton*>("check_details")->click();
+    QApplication::processEvents();
+    QVERIFY2(test.screen.checkCard()->text().contains("1 s, required 2 s"),
+             qPrintable(test.screen.checkCard()->text()));
+    QVERIFY(form->isVisible() && form->height() > 100);
+    QVERIFY(test.top(form) > test.bottom(test.screen.checkCard()));
+    QVERIFY(test.page()->verticalScrollBar()->maximum() > 0);
+  }
+
+  // A window of 1280 x 800.
+  void lensOfACamera_isSeenWithoutScrolling() {
+    RecordingScreenFixture test;
+    test.screen.resize(1027, 685);
+    test.assess();
+    QCOMPARE(test.page()->verticalScrollBar()->maximum(), 0);
+    const auto fields = test.screen.findChild<CameraForm*>()->findChildren<NumberField*>();
+    int seen = 0;
+    for (const NumberField* const field : fields) {
+      if (!field->isVisible()) continue;
+      QVERIFY2(field->visibleRegion().boundingRect() == field->rect(), qPrintable(field->accessibleName()));
+      ++seen;
+    }
+    QCOMPARE(seen, 11);  // two each of resolution, focal length and principal point; five coefficients
+  }
+
+  void smallPage_scrolls() {
+    RecordingScreenFixture test;
+    test.screen.resize(900, 300);
+    QApplication::processEvents();
+    QVERIFY(test.page()->verticalScrollBar()->maximum() > 0);
+    QVERIFY(test.top(test.screen.findChild<TimeRangeForm*>()) >= test.bottom(test.streams()));
+    QCOMPARE(test.page()->horizontalScrollBar()->maximum(), 0);
   }
 
   void role_ignored_takesTheSensorOut_andBack() {
@@ -150,8 +222,8 @@ class TestRecordingScreen : public QObject {
     RecordingScreenFixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
     QComboBox* const type = form->findChildren<QComboBox*>().at(0);
-    NumberField *const radius = form->findChildren<NumberField*>().at(3),
-                       *const tag = form->findChildren<NumberField*>().at(4);
+    NumberField *const radius = form->findChildren<NumberField*>().at(1),
+                       *const tag = form->findChildren<NumberField*>().at(2);
     QVERIFY(radius->isVisible() && !tag->isVisible());
     const auto choose = [&](const QString& name) {
       type->setCurrentText(name);
@@ -205,8 +277,8 @@ class TestRecordingScreen : public QObject {
     auto* const form = test.screen.findChild<BoardForm*>();
     auto* const measured = form->findChild<QCheckBox*>();
     NumberField* const spacing = form->findChildren<NumberField*>().at(0);
-    NumberField *const length = form->findChildren<NumberField*>().at(1),
-                       *const sigma = form->findChildren<NumberField*>().at(2);
+    NumberField *const length = form->findChildren<NumberField*>().at(3),
+                       *const sigma = form->findChildren<NumberField*>().at(4);
     QSpinBox* const spacings = form->findChildren<QSpinBox*>().at(2);
     QVERIFY(!measured->isChecked() && spacing->isEnabled() && !length->isVisible());
     measured->click();
@@ -408,6 +480,8 @@ class TestRecordingScreen : public QObject {
       box->setCurrentIndex(index);
       emit box->activated(index);
     };
+    QVERIFY(formOf(first)->findChild<QComboBox*>("shutter")->isHidden());  // of events
+    QVERIFY(!formOf("frames")->findChild<QComboBox*>("shutter")->isHidden());
     choose("shutter", 1);
     QVERIFY(test.session.cameras[1].shutter == Shutter::Rolling);
     choose("same_sensor_as", 1);

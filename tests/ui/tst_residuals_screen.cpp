@@ -59,6 +59,7 @@ class TestResidualsScreen : public QObject {
   void threshold_draggedInTheChartIsTheSpinBoxs();
   void rejecting_improvesTheCalibration();
   void click_onABarSelectsItsTime();
+  void manyPoints_areThinned();
   void pictures();
 };
 
@@ -141,6 +142,27 @@ void TestResidualsScreen::click_onABarSelectsItsTime() {
                     chart->mapFromParent(chart_panel.pixelAt(2.0, 0.02).toPoint()));
   QCOMPARE(selected.count(), 1);
   QVERIFY(std::abs(selected[0][0].toDouble() - 2.0) < 0.03);
+}
+
+void TestResidualsScreen::manyPoints_areThinned() {
+  ResidualsScreen screen;
+  fill(screen);
+  const auto scatter = [&] {
+    for (PlotPanel* const panel : screen.findChildren<PlotPanel*>())
+      if (panel->title() == "Residuals") return panel;
+    qFatal("no such chart");
+  };
+  QVERIFY(scatter()->toolTip().startsWith("Wheel: zoom"));
+  auto many = std::make_shared<CalibrationRun>(*run_);
+  std::vector<CircleResidual>& residuals = many->result.circle_residuals;
+  while (residuals.size() < 20'000) {
+    const std::vector<CircleResidual> once = residuals;
+    residuals.insert(residuals.end(), once.begin(), once.end());
+  }
+  QSignalSpy ready(&screen, &ResidualsScreen::ready);
+  screen.setRun(many);
+  QVERIFY(ready.wait(30'000 * kSlowdown));
+  QVERIFY2(scatter()->toolTip().startsWith("One of "), qPrintable(scatter()->toolTip()));
 }
 
 void TestResidualsScreen::pictures() {

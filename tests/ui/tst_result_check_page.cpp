@@ -9,11 +9,13 @@
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/screens/assessment/finding_table.h"
+#include "ui/screens/assessment/old_result_row.h"
 #include "ui/screens/assessment/result_check_screen.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
 
+#include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QProgressBar>
@@ -99,11 +101,31 @@ class TestResultCheckPage : public QObject {
     QVERIFY(field(test, "old_result").isEmpty());
   }
 
+  void run_isShownByItsTitle_withItsPathAsToolTip() {
+    QWidget page;
+    auto* const grid = new QGridLayout(&page);
+    OldResultRow row("row", *grid, &page);
+    const auto* const field = page.findChild<QLineEdit*>("row");
+    const QString tip = field->toolTip();
+    row.setKeptRuns({{"Run of today: ok", "/runs/1"}});
+    row.proposePath("/runs/1");
+    QCOMPARE(field->text(), QString("Run of today: ok"));
+    QVERIFY(field->toolTip().startsWith(QDir::toNativeSeparators("/runs/1") + '\n'));
+    QCOMPARE(row.path(), QString("/runs/1"));
+    row.setKeptRuns({{"Best: ok", "/runs/1"}});  // renamed
+    QCOMPARE(field->text(), QString("Best: ok"));
+    QCOMPARE(row.path(), QString("/runs/1"));
+    row.setPath("/another/result");
+    QCOMPARE(field->text(), QDir::toNativeSeparators("/another/result"));
+    QCOMPARE(field->toolTip(), tip);
+  }
+
   void story() {
     WindowFixture test;
     calibrate(test);
-    QTRY_VERIFY_WITH_TIMEOUT(!field(test, "old_result").isEmpty(), kPatience_ms);
-    QVERIFY(QFile::exists(field(test, "old_result") + "/result.yaml"));
+    const OldResultRow& result = test.child<ResultCheckScreen>()->result();
+    QTRY_VERIFY_WITH_TIMEOUT(field(test, "old_result").startsWith("Run of "), kPatience_ms);
+    QVERIFY(QFile::exists(result.path() + "/result.yaml"));
     QVERIFY(field(test, "new_recording").isEmpty());  // the result's own recording gives no new information
     cancelled(test);
 
@@ -159,6 +181,11 @@ class TestResultCheckPage : public QObject {
       QVERIFY(!row.text(FindingTable::kDetectable).isEmpty() && !row.text(FindingTable::kChange).isEmpty());
     }
     QVERIFY(table->allText().contains("Detectable"));
+    test.window.resize(1280, 800);
+    spin(100);
+    const int end_px =
+        table->columnViewportPosition(FindingTable::kNow) + table->columnWidth(FindingTable::kNow);
+    QVERIFY2(end_px <= table->viewport()->width(), qPrintable(QString::number(end_px)));
     QVERIFY(screen->findChild<QListWidget*>("check_result_notes")->count() >=
             static_cast<int>(check.advice.size() + check.notes.size()));
   }

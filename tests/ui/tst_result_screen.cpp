@@ -55,7 +55,7 @@ class TestResultScreen : public QObject {
 
   void parameters_haveUnitsThatPeopleUse() {
     const std::vector<ParameterGroup> groups = parameterGroups(result_);
-    QCOMPARE(groups.size(), std::size_t{4});  // the camera's, the IMU's, the board's, gravity's
+    QCOMPARE(groups.size(), std::size_t{6});  // pose, lens and details of the camera, IMU, board, gravity
     QCOMPARE(find(groups, "board.scale")->value, result_.result->state.board.scale);
     const ParameterRow* const offset = find(groups, "left.time_offset");
     QVERIFY(offset);
@@ -64,6 +64,22 @@ class TestResultScreen : public QObject {
     QCOMPARE(find(groups, "left.translation.x")->value,
              1e3 * result_.result->state.cameras[0].reference_from_camera.translation_m.x());
     QVERIFY(!find(groups, "left.translation.x")->difference);
+  }
+
+  void poseAndTimeOffset_areShownFirst_andTheRestIsFolded() {
+    const std::vector<ParameterGroup> groups = parameterGroups(result_);
+    for (const ParameterGroup& group : groups) QCOMPARE(group.folded, &group != &groups.front());
+    for (const ParameterRow& row : groups.front().rows)
+      QVERIFY2(!row.name.contains("Focal") && !row.name.contains("drift"), qPrintable(row.name));
+    ResultScreen screen;
+    screen.setResult(result_);
+    auto* const table = screen.findChild<QTreeWidget*>();
+    QVERIFY(table->topLevelItem(0)->isExpanded());
+    QVERIFY(!table->topLevelItem(1)->isExpanded());
+    table->topLevelItem(1)->setExpanded(true);
+    screen.setReference(truth_, "truth.yaml");
+    QVERIFY(table->topLevelItem(1)->isExpanded());  // as the user chose
+    QVERIFY(table->topLevelItem(2)->text(0).contains("differences up to"));
   }
 
   void repairOfTheFirstReason_isOffered() {
@@ -189,6 +205,14 @@ class TestResultScreen : public QObject {
     QVERIFY(picture.pixelColor(red).red() > picture.pixelColor(red).blue() + 60);
     QCOMPARE(view.textAt(blue), QString("left: edge localisation bias and left: time offset: -0.900"));
     QVERIFY(view.textAt(QPoint(2, 2)).isEmpty());
+    QTest::mouseClick(&view, Qt::LeftButton, {}, blue);
+    QCOMPARE(view.pinnedText(), view.textAt(blue));
+    QVERIFY(view.grab().toImage() != picture);
+    QTest::mouseClick(&view, Qt::LeftButton, {}, red);
+    QCOMPARE(view.pinnedText(), view.textAt(red));
+    QTest::mouseClick(&view, Qt::LeftButton, {}, red);
+    QVERIFY(view.pinnedText().isEmpty());
+    QCOMPARE(view.grab().toImage(), picture);
   }
 
   void observability_isSaidInWords() {

@@ -156,6 +156,7 @@ class TestStories : public QObject {
     QTest::mouseClick(test.child<QPushButton>("print_board_button"), Qt::LeftButton);
     auto* const dialog = test.child<PrintBoardDialog>();
     QVERIFY(dialog != nullptr && dialog->isVisible());
+    QTest::mouseClick(dialog->findChild<QToolButton*>("after_printing"), Qt::LeftButton);
     dialog->findChild<QCheckBox*>("is_measured")->click();
     type(dialog->findChild<QLineEdit*>("measured_length"), QString::number(1e3 * 10 * board.spacing_m));
     QTest::mouseClick(dialog->findChild<QPushButton*>("take_board"), Qt::LeftButton);

@@ -151,6 +151,25 @@ class TestTimeline : public QObject {
     QVERIFY(inkAt(9.54, high, theme().bad) >= 4);  // it protrudes
   }
 
+  // One window of two thousand has half a pixel.
+  void missedWindow_isWideEnoughToBeSeen() {
+    Timeline timeline;
+    timeline.resize(1000, 132);
+    timeline.setRange(0.0, 10.0);
+    std::vector<WindowReport> windows;
+    for (int k = 0; k < 2000; ++k) {
+      windows.push_back(
+          window(0.0025 + 0.005 * k, k == 800 ? WindowOutcome::NoLattice : WindowOutcome::Complete));
+      windows.back().half_width_s = 0.0025;
+    }
+    timeline.setWindows(windows);
+    const QImage image = timeline.grab().toImage();
+    const int x = at(timeline, windows[800].time_s).x(), y = timeline.height() - 31;  // near the row's top
+    int columns = 0;
+    for (int k = x - 10; k <= x + 10; ++k) columns += image.pixelColor(k, y) == theme().bad ? 1 : 0;
+    QCOMPARE(columns, 4);
+  }
+
   void unusedParts_areFaded() {
     Timeline timeline;
     fill(timeline);

@@ -3,10 +3,14 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "tests/ui/shown_trajectory.h"
+#include "ui/scene/trajectory_scene.h"
 #include "ui/theme/theme.h"
 
 #include <QElapsedTimer>
 #include <QSignalSpy>
+
+#include <vtkNew.h>
+#include <vtkRenderer.h>
 
 #include <algorithm>
 
@@ -33,6 +37,7 @@ class TestTrajectoryScreen : public QObject {
   void layers_comeAndGo();
   void throughTheCamera_showsWhatItSees();
   void kindsOfCameras_haveColoursAndALegend();
+  void gravity_differsFromTheTrajectory();
   void theme_changesThePicture();
   void picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWas();
   void screenshots();
@@ -191,6 +196,21 @@ void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
   }
   QVERIFY2(scene[0] < 5 && scene[1] > 50, qPrintable(QString("%1 and %2").arg(scene[0]).arg(scene[1])));
   QVERIFY2(corner[0] == 0 && corner[1] > 50, qPrintable(QString("%1 and %2").arg(corner[0]).arg(corner[1])));
+}
+
+void TestTrajectoryScreen::gravity_differsFromTheTrajectory() {
+  for (const bool dark : {false, true}) {
+    setPalette(dark);
+    const vtkNew<vtkRenderer> renderer;
+    TrajectoryScene scene(renderer);
+    scene.setBoard(example_.session.board);
+    scene.setGravity(Vector3d(0.0, 9.81, 0.0));
+    const SceneLabel label = scene.labels().back();
+    QCOMPARE(label.text, QString("gravity"));
+    QVERIFY(distance(label.colour, theme().panel) > 200.0);
+    for (double share = 0.0; share <= 1.0; share += 0.1)
+      QVERIFY(distance(label.colour, ColourScale{{}, 1.0, dark}.colourOf(share)) > 60.0);
+  }
 }
 
 void TestTrajectoryScreen::theme_changesThePicture() {

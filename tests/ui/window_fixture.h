@@ -72,11 +72,8 @@ inline void answerExportDialog(const QStringList& targets, const QString& folder
     auto* const dialog = qobject_cast<ExportDialog*>(QApplication::activeModalWidget());
     if (dialog == nullptr) return answerExportDialog(targets, folder);
     dialog->findChild<QLineEdit*>("folder")->setText(folder);
-    const auto* const list = dialog->findChild<QTreeWidget*>("targets");
-    for (int row = 0; row < list->topLevelItemCount(); ++row) {
-      QTreeWidgetItem* const item = list->topLevelItem(row);
-      if (targets.contains(item->data(0, Qt::UserRole).toString())) item->setCheckState(0, Qt::Checked);
-    }
+    for (QTreeWidgetItemIterator at(dialog->findChild<QTreeWidget*>("targets")); *at; ++at)
+      if (targets.contains((*at)->data(0, Qt::UserRole).toString())) (*at)->setCheckState(0, Qt::Checked);
     dialog->accept();
   });
 }

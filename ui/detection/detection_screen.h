@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+class QBoxLayout;
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
@@ -98,7 +99,7 @@ class DetectionScreen : public QWidget {
   void setPlaying(bool playing);
   void step(int direction);  // to the next window or frame (+1) or the one before (-1)
   void stepToMissed(int direction);
-  void setWindowsListed(bool listed);  // list of windows; replaces layers and verdict if space is short
+  void setWindowsListed(bool listed);  // list of windows; replaces the layers if space is short
 
  signals:
   void timeSelected(double time_s);  // by the user, or by playing
@@ -113,6 +114,8 @@ class DetectionScreen : public QWidget {
  private:
   QWidget* makeToolBar();
   QWidget* makeSidePanel();
+  QWidget* makeLayers();
+  void layOutLayers();
   QWidget* makeTransport();
   QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
   void makeWindowList();
@@ -180,12 +183,14 @@ class DetectionScreen : public QWidget {
   Timeline* timeline_ = nullptr;
   WindowPanel* panel_ = nullptr;
   WindowList* list_ = nullptr;
-  QWidget* side_ = nullptr;
+  QBoxLayout* sides_ = nullptr;
+  QWidget *side_ = nullptr, *layers_part_ = nullptr;
   std::optional<RejectedTimes> rejections_;
   std::optional<bool> list_wanted_;  // none: depends on the space
   QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr, *picture_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
   QToolButton *play_button_ = nullptr, *follow_button_ = nullptr, *list_button_ = nullptr;
+  QToolButton* more_layers_ = nullptr;
   QPushButton* look_for_ = nullptr;
   QLabel *status_ = nullptr, *fade_label_ = nullptr, *verdict_title_ = nullptr;
   QGridLayout* layer_grid_ = nullptr;

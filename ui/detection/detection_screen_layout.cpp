@@ -25,7 +25,12 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kSideWidth_px = 272;
+// In the order of the page. The first ones are always offered, the others behind a button.
+constexpr std::array kLayerOrder = {Layer::Ellipses,   Layer::Centres, Layer::Grid,
+                                    Layer::Prediction, Layer::Flow,    Layer::Clusters,
+                                    Layer::Pairs,      Layer::Circles, Layer::Reprojection};
+static_assert(kLayerOrder.size() == kLayerCount);
+constexpr std::size_t kFirstLayers = 4;
 
 // Several colours are drawn side by side.
 QIcon swatch(const std::vector<QColor>& colours, double pixel_ratio) {
@@ -69,9 +74,12 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   middle->addWidget(view_, 1);
   middle->addWidget(companion_view_, 1);
   makeWindowList();
-  middle->addWidget(list_);
   side_ = makeSidePanel();
-  middle->addWidget(side_);
+  sides_ = new QBoxLayout(QBoxLayout::LeftToRight);
+  sides_->setSpacing(8);
+  sides_->addWidget(list_, 2);
+  sides_->addWidget(side_, 1);
+  middle->addLayout(sides_);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 6, 8, 4);
   layout->setSpacing(4);
@@ -154,16 +162,30 @@ QWidget* DetectionScreen::makeToolBar() {
 
 QWidget* DetectionScreen::makeSidePanel() {
   auto* side = new QWidget;
-  side->setFixedWidth(kSideWidth_px);
   auto* column = new QVBoxLayout(side);
   column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(2);
+  column->addWidget(makeLayers());
+  verdict_title_ = sectionTitle({});
+  column->addWidget(verdict_title_);
+  panel_ = new WindowPanel;
+  column->addWidget(panel_, 1);
+  return side;
+}
+
+QWidget* DetectionScreen::makeLayers() {
+  layers_part_ = new QWidget;
+  auto* column = new QVBoxLayout(layers_part_);
+  column->setContentsMargins(0, 0, 0, 6);
   column->setSpacing(2);
   column->addWidget(sectionTitle(tr("Layers")));
   layer_grid_ = new QGridLayout;
   layer_grid_->setVerticalSpacing(2);
-  for (std::size_t k = 0; k < kLayerCount; ++k) {
-    const LayerWords words = layerWords(static_cast<Layer>(k));
-    auto* box = new QCheckBox(words.name, side);
+  layer_boxes_.resize(kLayerCount);
+  for (const Layer layer : kLayerOrder) {
+    const auto k = static_cast<std::size_t>(layer);
+    const LayerWords words = layerWords(layer);
+    auto* box = new QCheckBox(words.name, layers_part_);
     box->setToolTip(words.help);
     box->setChecked(layers_.test(k));
     connect(box, &QCheckBox::toggled, this, [this, k](bool on) {
@@ -171,16 +193,34 @@ QWidget* DetectionScreen::makeSidePanel() {
       request();
       refresh();
     });
-    layer_boxes_.push_back(box);
+    layer_boxes_[k] = box;
   }
   column->addLayout(layer_grid_);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(false);
-  column->addSpacing(6);
-  verdict_title_ = sectionTitle({});
-  column->addWidget(verdict_title_);
-  panel_ = new WindowPanel;
-  column->addWidget(panel_, 1);
-  return side;
+  more_layers_ = new QToolButton;
+  more_layers_->setObjectName("more_layers");
+  more_layers_->setCheckable(true);
+  connect(more_layers_, &QToolButton::toggled, this, &DetectionScreen::layOutLayers);
+  column->addWidget(more_layers_, 0, Qt::AlignLeft);
+  return layers_part_;
+}
+
+// Visible layers are offered in any case, so that they can be hidden.
+void DetectionScreen::layOutLayers() {
+  const bool frames = framesInView(), more = more_layers_->isChecked();
+  int place = 0;
+  for (std::size_t i = 0; i < kLayerOrder.size(); ++i) {
+    const Layer layer = kLayerOrder[i];
+    QCheckBox* const box = layer_boxes_[static_cast<std::size_t>(layer)];
+    const bool offered = frames ? isOfFrames(layer) : i < kFirstLayers || more || shown(layer);
+    layer_grid_->removeWidget(box);
+    box->setVisible(offered);
+    if (!offered) continue;
+    layer_grid_->addWidget(box, place / 2, place % 2);
+    ++place;
+  }
+  more_layers_->setVisible(!frames);
+  more_layers_->setText(more ? tr("Fewer layers") : tr("More layers"));
 }
 
 QWidget* DetectionScreen::makeTransport() {
@@ -239,16 +279,7 @@ void DetectionScreen::adaptTo(CameraKind kind) {
   mode_box_->setVisible(!frames);
   verdict_title_->setText(frames ? tr("This frame") : tr("This window"));
   view_->setAccessibleName(frames ? tr("Frame") : tr("Events"));
-  std::vector<QCheckBox*> shown;
-  for (std::size_t k = 0; k < kLayerCount; ++k) {
-    QCheckBox* const box = layer_boxes_[k];
-    layer_grid_->removeWidget(box);
-    box->setVisible(!frames || isOfFrames(static_cast<Layer>(k)));
-    if (!frames || isOfFrames(static_cast<Layer>(k))) shown.push_back(box);
-  }
-  const int rows = (static_cast<int>(shown.size()) + 1) / 2;
-  for (int k = 0; k < static_cast<int>(shown.size()); ++k)
-    layer_grid_->addWidget(shown[static_cast<std::size_t>(k)], k % rows, k / rows);
+  layOutLayers();
 }
 
 void DetectionScreen::applyColours() {

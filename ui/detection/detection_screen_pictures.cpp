@@ -111,15 +111,10 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
     text += tr("    frame %L1 of %L2")
                 .arg(static_cast<qulonglong>(label->number))
                 .arg(static_cast<qulonglong>(label->count));
-  const auto drawn = static_cast<qulonglong>(frame.events);
-  if (frame.window_events && *frame.window_events != frame.events)
-    text += tr("    %L1 events in the window, %L2 drawn")
-                .arg(static_cast<qulonglong>(*frame.window_events))
-                .arg(drawn);
-  else if (frame.window_events)
-    text += tr("    %L1 events in the window").arg(drawn);
+  if (frame.window_events)
+    text += tr("    %L1 events in the window").arg(static_cast<qulonglong>(*frame.window_events));
   else if (!frame.photograph || frame.events > 0)
-    text += tr("    %L1 events").arg(drawn);
+    text += tr("    %L1 events").arg(static_cast<qulonglong>(frame.events));
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include "ui/detection/window_list.h"
 
 #include <QHBoxLayout>
+#include <QLabel>
 #include <QResizeEvent>
 #include <QSignalBlocker>
 #include <QToolButton>
@@ -18,6 +19,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kRoomForBoth_px = 1350;                   // for the list, the layers and a picture between them
+constexpr int kSideWidth_px = 272;                      // of layers and verdict
 constexpr double kListShare = 0.455;                    // of the page
 constexpr int kListLeast_px = 330, kListMost_px = 360;  // leaves a picture of 1000 px at a width of 1920
 
@@ -56,6 +58,7 @@ void DetectionScreen::addListButton(QHBoxLayout* row) {
 }
 
 void DetectionScreen::addMissedButtons(QHBoxLayout* row) {
+  row->addWidget(new QLabel(tr("Missed")));
   connect(addButton(row, "missed-before", tr("Previous missed window (Shift+M)")), &QToolButton::clicked,
           this, [this] { stepToMissed(-1); });
   connect(addButton(row, "missed-next", tr("Next missed window (M)")), &QToolButton::clicked, this,
@@ -70,9 +73,13 @@ void DetectionScreen::setWindowsListed(bool listed) {
 void DetectionScreen::layOutSides() {
   const bool room = width() >= kRoomForBoth_px;
   const bool listed = list_wanted_.value_or(room);
-  list_->setFixedWidth(std::clamp(static_cast<int>(kListShare * width()), kListLeast_px, kListMost_px));
+  const int list_px = std::clamp(static_cast<int>(kListShare * width()), kListLeast_px, kListMost_px);
+  list_->setFixedWidth(list_px);
   list_->setVisible(listed);
-  side_->setVisible(room || !listed);
+  // In a narrow window the list takes the place of the layers, above the verdict.
+  sides_->setDirection(room ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
+  side_->setFixedWidth(listed && !room ? list_px : kSideWidth_px);
+  layers_part_->setVisible(room || !listed);
   const QSignalBlocker quiet(list_button_);
   list_button_->setChecked(listed);
 }

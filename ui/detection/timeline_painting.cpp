@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kHeader_px = 25.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
 constexpr double kFoundMarkHeight = 0.7;  // of the row
+constexpr double kLeastMissed_px = 4.0;   // narrower marks are easily overlooked
 
 QString rateText(double events_s) {
   if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
@@ -225,8 +226,13 @@ std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
   std::vector<ColumnCounts> columns(static_cast<std::size_t>(area.width()) + 1, ColumnCounts{});
   for (auto window = firstEndingAfter(visible_begin_s_); window != windows_.end(); ++window) {
     if (window->time_s - window->half_width_s > visible_end_s_) break;
-    const double from = xOf(window->time_s - window->half_width_s) - area.left();
-    const double to = xOf(endOfWindow(*window)) - area.left();
+    double from = xOf(window->time_s - window->half_width_s) - area.left();
+    double to = xOf(endOfWindow(*window)) - area.left();
+    if (const double lacking = kLeastMissed_px - (to - from);
+        lacking > 0.0 && windowClass(window->outcome) == WindowClass::Missed) {
+      from -= 0.5 * lacking;
+      to += 0.5 * lacking;
+    }
     // Wide windows are separated by one pixel.
     const double gap = to - from > 4.0 ? 1.0 : 0.0;
     const auto begin = static_cast<std::size_t>(std::max(0.0, std::round(from)));

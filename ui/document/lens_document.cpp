@@ -17,6 +17,8 @@ LensDocument::LensDocument(CalibrationDocument& document, QObject* parent)
     file_.reset();
     emit runChanged();
     emit othersChanged();
+    if (std::exchange(had_session_, document_.hasSession()) && !document_.session().imus.empty())
+      setAim(CalibrationAim::Rig);
   });
   connect(&document_, &CalibrationDocument::sessionChanged, this, &LensDocument::othersChanged);
 }

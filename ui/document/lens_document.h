@@ -38,7 +38,8 @@ class LensDocument : public QObject {
  public:
   explicit LensDocument(CalibrationDocument& document, QObject* parent = nullptr);
 
-  // Kept in a new session, for the calibration of one camera after another.
+  // The first session keeps the choice made before it. A later one keeps it, for the calibration of one camera
+  // after another, unless it has an IMU: then the aim is the rig.
   CalibrationAim aim() const { return aim_; }
   void setAim(CalibrationAim aim);
   std::size_t camera() const;  // index in the session, 0 if it has no camera of the name
@@ -69,6 +70,7 @@ class LensDocument : public QObject {
  private:
   CalibrationDocument& document_;
   CalibrationAim aim_ = CalibrationAim::Rig;
+  bool had_session_ = false;
   QString camera_;
   LensRecord last_;
   std::optional<OtherLens> file_;

@@ -19,7 +19,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kDot_px = 8, kInput_px = 92, kUnit_px = 30;
+constexpr int kDot_px = 8, kInput_px = 80, kUnit_px = 40;
 
 QString text(const std::string& utf8) {
   return QString::fromStdString(utf8);
@@ -106,13 +106,11 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   grid->setVerticalSpacing(2);
   grid->setColumnStretch(1, 1);
   grid->addWidget(dot_, 0, 0);
-  grid->addWidget(name_, 0, 1);
-  grid->addWidget(input, 0, 2, Qt::AlignRight);
-  auto* const unit = new QLabel(text(row.unit), this);
-  unit->setFixedWidth(std::max(kUnit_px, unit->sizeHint().width()));  // keeps most fields in one column
-  grid->addWidget(unit, 0, 3);
+  grid->addWidget(name_, 0, 1, 1, toggle_ != nullptr ? 2 : 3);
   grid->addWidget(reset_, 0, 4);
-  if (OptionSlider::fits(row)) makeSlider(*grid, 1);
+  if (toggle_ != nullptr) grid->addWidget(toggle_, 0, 3);
+  if (choice_ != nullptr) grid->addWidget(choice_, 1, 1, 1, 4);
+  if (number_ != nullptr) placeNumber(*grid);
   for (QLabel* const line : {help_, idle_, problem_}) grid->addWidget(line, grid->rowCount(), 1, 1, 4);
   idle_->hide();
   problem_->hide();
@@ -120,7 +118,16 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   setRow(row);
 }
 
-void OptionEditor::makeSlider(QGridLayout& grid, int row) {
+// Below the name, so that the row is narrow: slider, field and unit.
+void OptionEditor::placeNumber(QGridLayout& grid) {
+  if (OptionSlider::fits(row_)) makeSlider(grid);
+  auto* const unit = new QLabel(text(row_.unit), this);
+  unit->setFixedWidth(std::max(kUnit_px, unit->sizeHint().width()));  // keeps most fields in one column
+  grid.addWidget(number_, 1, 2);
+  grid.addWidget(unit, 1, 3, 1, 2);
+}
+
+void OptionEditor::makeSlider(QGridLayout& grid) {
   slider_ = new OptionSlider(row_, this);
   slider_->setAccessibleName(tr("%1, slider").arg(shownName(row_)));
   slider_->setToolTip(rangeText(row_));
@@ -128,7 +135,7 @@ void OptionEditor::makeSlider(QGridLayout& grid, int row) {
   connect(slider_, &OptionSlider::turned, this, [this](const QString& number) {
     if (number != text(row_.value)) emit edited(text(row_.name), number);
   });
-  grid.addWidget(slider_, row, 1, 1, 4);
+  grid.addWidget(slider_, 1, 1);
 }
 
 QString OptionEditor::helpText() const {

@@ -45,7 +45,8 @@ class OptionEditor : public QWidget {
 
  private:
   QWidget* makeInput();
-  void makeSlider(QGridLayout& grid, int row);
+  void placeNumber(QGridLayout& grid);
+  void makeSlider(QGridLayout& grid);
   QString helpText() const;
   void showValue();
   void showChanged();

@@ -53,7 +53,7 @@ OptionForm::OptionForm(QWidget* parent)
   layout->addWidget(nothing_);
   layout->addWidget(makeList(), 1);
   layout->addWidget(expert_);
-  constexpr int kLeast_px = 300;
+  constexpr int kLeast_px = 270;  // fits the widest row, one with a long unit
   setMinimumWidth(kLeast_px);
 }
 
@@ -165,8 +165,7 @@ void OptionForm::filter() {
   const auto count = std::count_if(editors_.begin(), editors_.end(), [](const auto& editor) {
     return editor.second->row().level == Level::Expert;
   });
-  expert_->setText(expert_->isChecked() ? tr("Hide expert options")
-                                        : tr("Show expert options (%1)").arg(count));
+  expert_->setText(expert_->isChecked() ? tr("Fewer options") : tr("More options (%1)").arg(count));
   expert_->setIcon(icon(expert_->isChecked() ? "up" : "down"));
   expert_->setVisible(search_->text().trimmed().isEmpty() && !only_changed_->isChecked());
   nothing_->setVisible(!any && !groups_.empty());

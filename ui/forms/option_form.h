@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Form of all options, made from the option tables: groups, search, help, reset, and a badge on changed ones.
-// Common options are first; a button shows the expert options. The form stores no values: it shows rows and
+// Common options are first; a button also shows the expert ones. Tuning options are not in the rows. The form stores no values: it shows rows and
 // emits edits.
 #pragma once
 

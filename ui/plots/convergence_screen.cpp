@@ -27,11 +27,6 @@ const QString kAxisNames[] = {"x", "y", "z"};
 constexpr double kDot_px = 5.0;
 const char* const kUnits[] = {"deg", "mm", "ms"};
 
-// Positive values only, for the logarithm; others are gaps.
-double positive(double value) {
-  return value > 0.0 ? value : std::numeric_limits<double>::quiet_NaN();
-}
-
 std::size_t lastStageBegin(const std::vector<IterationRecord>& iterations) {
   std::size_t begin = iterations.size() - 1;
   while (begin > 0 && iterations[begin - 1].stage == iterations.back().stage) --begin;
@@ -89,7 +84,6 @@ QWidget* ConvergenceScreen::makeContent() {
   stages_->setObjectName("stages");
   stages_->setWordWrap(true);
   stages_->setTextFormat(Qt::PlainText);
-  stages_->setToolTip(stagesHelp());
   grid->addWidget(stages_, 1, 0, 1, 3);
   const QString iteration = tr("iteration");
   const PlotAxes axes[kPanels] = {
@@ -168,7 +162,7 @@ void ConvergenceScreen::draw() {
     marks.push_back({static_cast<double>(k) - 0.5, QString::number(iterations_[k].stage)});
   }
   for (PlotPanel* panel : panels_) panel->setMarks(marks);
-  stages_->setText(stageLines(iterations_).join('\n'));
+  showStages();
   drawProgress();
   drawParameters();
   drawNeeds();
@@ -179,6 +173,17 @@ void ConvergenceScreen::draw() {
                               .arg(marks.size())
                               .arg(run_->result.timing.optimise_s, 0, 'f', 1)
                         : tr("iteration %1, stage %2").arg(iterations_.size()).arg(iterations_.back().stage));
+}
+
+void ConvergenceScreen::showStages() {
+  QStringList names;
+  QString help;
+  for (const StageWords& stage : stageWords(iterations_)) {
+    names << stage.name;
+    help += QStringLiteral("<p>%1</p>").arg(stage.help);  // wraps, unlike plain text
+  }
+  stages_->setText(names.join(QStringLiteral("     ")));
+  stages_->setToolTip(help + QStringLiteral("<p>%1</p>").arg(stagesHelp()));
 }
 
 void ConvergenceScreen::listCameras() {
@@ -209,8 +214,10 @@ void ConvergenceScreen::drawProgress() {
         x.push_back(static_cast<double>(k) - 0.5);
         y.push_back(std::numeric_limits<double>::quiet_NaN());
       }
+      const double value = iterations_[k].*members[panel];
+      if (!(value > 0.0)) continue;  // no logarithm
       x.push_back(static_cast<double>(k));
-      y.push_back(positive(iterations_[k].*members[panel]));
+      y.push_back(value);
     }
     PlotPanel& chart = *panels_[static_cast<std::size_t>(panel)];
     chart.setData(series_[panel].lines[0], x, y);

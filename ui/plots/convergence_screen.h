@@ -48,6 +48,7 @@ class ConvergenceScreen : public QWidget {
   QWidget* makeBar();
   QWidget* makeContent();
   void addParameterSeries(Panel panel, const QStringList& names);
+  void showStages();
   void listCameras();
   void drawSoon();
   void draw();

@@ -172,6 +172,7 @@ void ResidualsScreen::makeScatter() {
         Kind::Outline,
         {.name = tr("%1 sigma").arg(k + 1), .colour = PlotColour::Text, .width_px = 1.4, .in_legend = false});
   }
+  scatter_help_ = scatter_->toolTip();
   connect(scatter_, &PlotPanel::clicked, this, &ResidualsScreen::selectNearest);
 }
 
@@ -266,8 +267,9 @@ void ResidualsScreen::drawScatter() {
     scatter_->setData(scatter_series_.ellipses[k], x, y);
   }
   const Eigen::Vector2d sigma = statistics_->covariance_px2.diagonal().cwiseSqrt();
-  const QString thinned = every > 1 ? tr(", 1 of %1 drawn").arg(every) : QString();
-  scatter_->setNote(tr("\u03c3 %1, %2 px").arg(sigma.x(), 0, 'g', 3).arg(sigma.y(), 0, 'g', 3) + thinned);
+  scatter_->setNote(tr("\u03c3 %1, %2 px").arg(sigma.x(), 0, 'g', 3).arg(sigma.y(), 0, 'g', 3));
+  const QString thinned = every > 1 ? tr("One of %1 used circles is drawn.\n").arg(every) : QString();
+  scatter_->setToolTip(thinned + scatter_help_);
   const double reach = kScatterReach * std::max(sigma.maxCoeff(), 1e-6);
   scatter_->setXRange(-reach, reach);
   scatter_->setYRange(-reach, reach);

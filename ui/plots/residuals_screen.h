@@ -93,6 +93,7 @@ class ResidualsScreen : public QWidget {
   QDoubleSpinBox* threshold_ = nullptr;
   QLabel *camera_label_ = nullptr, *count_ = nullptr;
   QToolButton* show_window_ = nullptr;
+  QString scatter_help_;  // without the share of drawn points
   QPushButton* recalibrate_ = nullptr;
 };
 

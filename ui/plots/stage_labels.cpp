@@ -2,6 +2,7 @@
 #include "ui/plots/stage_labels.h"
 
 #include <QCoreApplication>
+#include <QStringList>
 
 #include <array>
 
@@ -35,22 +36,28 @@ QString grouped(const std::vector<std::string>& released) {
 
 }  // namespace
 
-QStringList stageLines(const std::vector<IterationRecord>& iterations) {
-  QStringList lines;
+std::vector<StageWords> stageWords(const std::vector<IterationRecord>& iterations) {
+  std::vector<StageWords> stages;
   int stage = 0;
   for (const IterationRecord& record : iterations) {
     if (record.stage == stage) continue;
     const bool first = stage == 0;
     stage = record.stage;
     const QString freed = grouped(record.released);
+    const auto count = static_cast<int>(record.released.size());
+    const QString quantities = count == 1 ? tr("1 quantity") : tr("%1 quantities").arg(count);
     if (first)
-      lines << tr("Stage %1: trajectory; %2").arg(stage).arg(freed);
-    else if (!freed.isEmpty())
-      lines << tr("Stage %1: + %2").arg(stage).arg(freed);
+      stages.push_back({tr("Stage %1: trajectory, %2").arg(stage).arg(quantities),
+                        tr("Stage %1: trajectory; %2").arg(stage).arg(freed)});
+    else if (count > 0)
+      stages.push_back(
+          {tr("Stage %1: + %2").arg(stage).arg(quantities), tr("Stage %1: + %2").arg(stage).arg(freed)});
     else
-      lines << tr("Stage %1: the same, weighted by the estimated noise, until convergence").arg(stage);
+      stages.push_back(
+          {tr("Stage %1: new weights").arg(stage),
+           tr("Stage %1: the same, weighted by the estimated noise, until convergence").arg(stage)});
   }
-  return lines;
+  return stages;
 }
 
 QString stagesHelp() {

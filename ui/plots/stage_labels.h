@@ -5,14 +5,16 @@
 #include "core/data/calibration_result.h"
 
 #include <QString>
-#include <QStringList>
 
 #include <vector>
 
 namespace evical::ui {
 
-// One per stage: "Stage 2: + gyroscope scale and misalignment".
-QStringList stageLines(const std::vector<IterationRecord>& iterations);
+struct StageWords {
+  QString name;  // "Stage 2: + 1 quantity"
+  QString help;  // "Stage 2: + gyroscope scale and misalignment"
+};
+std::vector<StageWords> stageWords(const std::vector<IterationRecord>& iterations);
 
 QString stagesHelp();  // reason for the jump of the cost between stages
 QString neededHelp();  // lines and bands in the charts of parameters

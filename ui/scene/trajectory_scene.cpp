@@ -346,7 +346,7 @@ std::vector<SceneLabel> TrajectoryScene::labels() const {
   }
   if (isVisible(SceneLayer::Gravity) && d_->gravity_m_s2) {
     const Vector3d below = d_->arrowEnd() - 0.03 * d_->unit_m() * d_->up();
-    labels.push_back({below, QStringLiteral("gravity"), theme().warning});
+    labels.push_back({below, QStringLiteral("gravity"), theme().text});
   }
   return labels;
 }
@@ -457,7 +457,7 @@ void TrajectoryScene::buildSurroundings() {
   addGrid(ground, centre, up, Vector3d::UnitX(), gridSpacing_m(),
           static_cast<int>(std::ceil(box.radius() / gridSpacing_m())));
   if (d_->gravity_m_s2) {
-    gravity.setColour(theme().warning);
+    gravity.setColour(theme().text);
     addArrow(gravity, d_->arrowStart(), d_->arrowEnd());
   }
   const Vector3d in_front(0.0, 0.0, -0.005 * d_->unit_m());  // of the board's circles

@@ -13,11 +13,15 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QScreen>
 #include <QSettings>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
 
 namespace evical::ui {
 namespace {
@@ -26,7 +30,28 @@ enum Column { kProgram, kUse, kFiles, kColumns };
 
 const char* const kTargetsKey = "export/targets";
 const char* const kCheckKey = "export/check";
-const char* const kAlways = "kalibr";
+constexpr const char* kAlways = "kalibr";
+// Most common targets: Kalibr's files, two VIO programs, robots, and the user's own programs.
+constexpr std::array<std::string_view, 5> kCommon = {kAlways, "openvins", "vins-fusion", "ros", "opencv"};
+
+bool hasName(const auto& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+QTreeWidgetItem* exportItemOf(const ExportTarget& target) {
+  const bool always = target.name == std::string_view(kAlways);
+  const QString program = QString::fromUtf8(target.program), files = QString::fromUtf8(target.files);
+  const QString what = QObject::tr(target.use);
+  const QString use = target.inertial_odometry ? QObject::tr("VIO - %1").arg(what) : what;
+  auto* const item =
+      new QTreeWidgetItem({always ? QObject::tr("%1 (always)").arg(program) : program, use, files});
+  item->setData(kProgram, Qt::UserRole, QString(target.name));
+  if (target.inertial_odometry) item->setForeground(kUse, theme().accent);
+  for (int column = 0; column < kColumns; ++column) item->setToolTip(column, what + "\n" + files);
+  item->setFlags(always ? Qt::ItemIsEnabled | Qt::ItemIsSelectable
+                        : Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
+  return item;
+}
 
 QPushButton* button(const QString& object_name, const QString& text, const QString& tip, QWidget* parent) {
   auto* const made = new QPushButton(text, parent);
@@ -103,8 +128,8 @@ ExportDialog::ExportDialog(const ExportRequest& proposal, QWidget* parent)
   layout->addWidget(makeSelectionRow());
   layout->addWidget(check_);
   layout->addWidget(buttons);
-  constexpr int kWidth_px = 860, kHeight_px = 600;
-  resize(kWidth_px, kHeight_px);
+  constexpr int kAround_px = 60, kHeight_px = 600;  // margins and scroll bar
+  resize(std::min(fitColumns() + kAround_px, screen()->availableGeometry().width()), kHeight_px);
   judgeFolder();
 }
 
@@ -152,35 +177,47 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
   targets_->setAccessibleName(tr("Programs to write files for"));
   targets_->setColumnCount(kColumns);
   targets_->setHeaderLabels({tr("Program"), tr("For"), tr("Files")});
-  targets_->setRootIsDecorated(false);
   targets_->setUniformRowHeights(true);
+  auto* const more = new QTreeWidgetItem;
   for (const ExportTarget& target : exportTargets()) {
-    const std::string name = target.name;
-    const bool always = name == kAlways;
-    const QString program = QString::fromUtf8(target.program), files = QString::fromUtf8(target.files);
-    const QString use = target.inertial_odometry ? tr("VIO - %1").arg(tr(target.use)) : tr(target.use);
-    auto* const item =
-        new QTreeWidgetItem(targets_, {always ? tr("%1 (always)").arg(program) : program, use, files});
-    item->setData(kProgram, Qt::UserRole, QString::fromStdString(name));
-    item->setData(kUse, Qt::UserRole, target.inertial_odometry);
-    if (target.inertial_odometry) item->setForeground(kUse, theme().accent);
-    for (int column = 0; column < kColumns; ++column) item->setToolTip(column, tr(target.use) + "\n" + files);
-    const bool checked = always || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
-    item->setFlags(always ? Qt::ItemIsEnabled | Qt::ItemIsSelectable
-                          : Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
-    item->setCheckState(kProgram, checked ? Qt::Checked : Qt::Unchecked);
+    items_.push_back(exportItemOf(target));
+    hasName(kCommon, target.name) ? targets_->addTopLevelItem(items_.back()) : more->addChild(items_.back());
   }
-  for (const int column : {kProgram, kUse}) targets_->resizeColumnToContents(column);
+  more->setText(kProgram, tr("More (%1)").arg(more->childCount()));
+  more->setToolTip(kProgram, tr("Show the other programs"));
+  targets_->addTopLevelItem(more);
+  more->setFirstColumnSpanned(true);
+  // A click anywhere on the line folds it, not only one on its arrow.
+  targets_->setExpandsOnDoubleClick(false);
+  connect(targets_, &QTreeWidget::itemClicked, this, [more](const QTreeWidgetItem* item) {
+    if (item == more) more->setExpanded(!more->isExpanded());
+  });
+  checkTargets([&](const ExportTarget& target) { return hasName(chosen, target.name); });
+}
+
+int ExportDialog::fitColumns() {
+  QTreeWidgetItem* const more = items_.back()->parent();
+  const bool shown = more->isExpanded();
+  more->setExpanded(true);  // widths are those of shown lines
+  targets_->header()->setStretchLastSection(false);
+  for (int column = 0; column < kColumns; ++column) targets_->resizeColumnToContents(column);
+  more->setExpanded(shown);
+  return targets_->header()->length();
+}
+
+void ExportDialog::checkTargets(const std::function<bool(const ExportTarget&)>& wanted) {
+  for (std::size_t k = 0; k < items_.size(); ++k) {
+    const ExportTarget& target = exportTargets()[k];
+    const bool checked = wanted(target) || target.name == std::string_view(kAlways);
+    items_[k]->setCheckState(kProgram, checked ? Qt::Checked : Qt::Unchecked);
+    if (checked && items_[k]->parent()) items_[k]->parent()->setExpanded(true);
+  }
 }
 
 void ExportDialog::select(Selection selection) {
-  for (int row = 0; row < targets_->topLevelItemCount(); ++row) {
-    QTreeWidgetItem* const item = targets_->topLevelItem(row);
-    const bool wanted = selection == Selection::All ||
-                        (selection == Selection::Odometry && item->data(kUse, Qt::UserRole).toBool()) ||
-                        item->data(kProgram, Qt::UserRole).toString() == kAlways;
-    item->setCheckState(kProgram, wanted ? Qt::Checked : Qt::Unchecked);
-  }
+  checkTargets([selection](const ExportTarget& target) {
+    return selection == Selection::All || (selection == Selection::Odometry && target.inertial_odometry);
+  });
 }
 
 void ExportDialog::chooseFolder() {
@@ -205,11 +242,8 @@ void ExportDialog::judgeFolder() {
 
 ExportRequest ExportDialog::request() const {
   ExportRequest request{QDir::fromNativeSeparators(folder_->text().trimmed()), {}, check_->isChecked()};
-  for (int row = 0; row < targets_->topLevelItemCount(); ++row) {
-    const QTreeWidgetItem* const item = targets_->topLevelItem(row);
-    if (item->checkState(kProgram) == Qt::Checked)
-      request.targets.push_back(item->data(kProgram, Qt::UserRole).toString().toStdString());
-  }
+  for (std::size_t k = 0; k < items_.size(); ++k)
+    if (items_[k]->checkState(kProgram) == Qt::Checked) request.targets.emplace_back(exportTargets()[k].name);
   return request;
 }
 

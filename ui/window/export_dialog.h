@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dialog for the folder of a result and the programs to export to, one line each. Kalibr's files are always
-// written.
+// Dialog for the folder of a result and the programs to export to, one line each: the common ones, and the
+// others below "More". Kalibr's files are always written.
 #pragma once
 
 #include "core/pipeline/session/session.h"
 
 #include <QDialog>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ class QLabel;
 class QLineEdit;
 class QPushButton;
 class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace evical {
+struct ExportTarget;
+}
 
 namespace evical::ui {
 
@@ -45,15 +51,18 @@ class ExportDialog : public QDialog {
   enum class Selection { All, Odometry, None };
 
   void fillTargets(const std::vector<std::string>& chosen);
+  int fitColumns();  // width of all columns
   QWidget* makeFolderRow();
   QWidget* makeSelectionRow();
   void select(Selection selection);
+  void checkTargets(const std::function<bool(const ExportTarget&)>& wanted);
   void chooseFolder();
   void judgeFolder();
 
   QLineEdit* folder_;
   QLabel* hint_;
   QTreeWidget* targets_;
+  std::vector<QTreeWidgetItem*> items_;  // in the order of exportTargets()
   QCheckBox* check_;
   QPushButton* ok_ = nullptr;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notice of an export: its folder, its files, and what was refused. Above the screens, until it is dismissed.
+// Notice of an export: its folder, its files, and what was refused. Below the screens, which keep their
+// places, until it is dismissed.
 #pragma once
 
 #include <QFrame>

@@ -37,10 +37,14 @@ JobStatus::JobStatus(const JobRunner& runner, QWidget* parent)
   layout->addStretch();
   // Fixed size: the text changes many times a second, which must not trigger layouts of the window.
   keepSize(*time_left_, tr("%1 %, about %2 left").arg("888").arg(durationText(3599.0)));
-  what_->setText(tr("Ready"));
+  reset();
   connect(&runner_, &JobRunner::started, this, &JobStatus::begin);
   connect(&runner_, &JobRunner::progressed, this, &JobStatus::setProgress);
   connect(&runner_, &JobRunner::finished, this, &JobStatus::end);
+}
+
+void JobStatus::reset() {
+  if (!runner_.running()) what_->setText(tr("Ready"));
 }
 
 void JobStatus::begin(const QString& title) {
@@ -48,11 +52,9 @@ void JobStatus::begin(const QString& title) {
   bar_->setValue(0);
   bar_->show();
   time_left_->clear();
-  elapsed_s_ = 0.0;
 }
 
 void JobStatus::setProgress(const JobProgress& progress) {
-  elapsed_s_ = progress.elapsed_s;
   bar_->setValue(static_cast<int>(1000.0 * progress.fraction));
   if (runner_.cancelling()) {
     what_->setText(tr("Cancelling..."));
@@ -68,9 +70,10 @@ void JobStatus::setProgress(const JobProgress& progress) {
                                                        .arg(durationText(progress.remaining_s)));
 }
 
+// Without a duration: that of a result includes the detections that it uses, and is on its page.
 void JobStatus::end(JobOutcome outcome) {
   const QString title = runner_.title();
-  what_->setText(outcome == JobOutcome::Done ? tr("%1: done in %2 s").arg(title).arg(elapsed_s_, 0, 'f', 1)
+  what_->setText(outcome == JobOutcome::Done        ? tr("%1: done").arg(title)
                  : outcome == JobOutcome::Cancelled ? tr("%1: cancelled").arg(title)
                                                     : tr("%1: failed").arg(title));
   bar_->hide();

@@ -18,6 +18,7 @@ class JobStatus : public QWidget {
   explicit JobStatus(const JobRunner& runner, QWidget* parent = nullptr);
 
   QString text() const;
+  void reset();  // forgets the last job, unless one is running
 
  private:
   void begin(const QString& title);
@@ -28,7 +29,6 @@ class JobStatus : public QWidget {
   QLabel* what_;
   QProgressBar* bar_;
   QLabel* time_left_;
-  double elapsed_s_ = 0.0;
 };
 
 // "25 s", "3 min 20 s"

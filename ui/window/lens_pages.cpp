@@ -126,7 +126,6 @@ void wireLens(LensScreen& screen, Workbench& workbench, LensFiles& files) {
 }  // namespace
 
 void wireLensPages(const Pages& pages, Workbench& workbench, LensFiles& files) {
-  wireAim(pages.start->aim(), workbench);
   wireAim(pages.recording->aim(), workbench);
   wireRigPages(pages, workbench);
   wireLensRecording(*pages.recording, workbench);

@@ -11,8 +11,6 @@
 #include "ui/scene/trajectory_screen.h"
 #include "ui/screens/result/result_screen.h"
 #include "ui/screens/result/runs_panel.h"
-#include "ui/screens/verdict_icon.h"
-#include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/export_notice.h"
@@ -22,6 +20,7 @@
 #include "ui/window/log_panel.h"
 #include "ui/window/page_stack.h"
 #include "ui/window/session_files.h"
+#include "ui/window/side_bar.h"
 #include "ui/window/steps_panel.h"
 
 #include <QAction>
@@ -29,7 +28,6 @@
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDropEvent>
-#include <QListWidget>
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
@@ -39,10 +37,11 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include <algorithm>
+
 namespace evical::ui {
 namespace {
 
-constexpr int kSideBar_px = 236;
 constexpr int kLaidOut_turns = 3;  // until pages have their content and layout
 // Increased when docks or tool bars change, so that a saved older layout is ignored.
 constexpr int kLayoutVersion = 2;
@@ -64,7 +63,9 @@ MainWindow::MainWindow(const QString& version)
   makeCentre();
   makeDocks();
   makeActions();
-  statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
+  auto* const status = new JobStatus(workbench_.runner, this);
+  statusBar()->addWidget(status, 1);
+  connect(&workbench_.document, &CalibrationDocument::sessionReplaced, status, &JobStatus::reset);
   wirePages(pages_, workbench_, *files_, *lens_files_);
   wireRuns(*runs_, *pages_.result, workbench_);
   connect(runs_, &RunsPanel::comparisonRequested, this, [this] { showScreen("result"); });
@@ -75,7 +76,7 @@ MainWindow::MainWindow(const QString& version)
   wireSteps();
   wireLens();
   restoreLayout();
-  navigation_->setCurrentRow(0);
+  side_bar_->showPage(0);
   showState();
 }
 
@@ -92,43 +93,19 @@ void MainWindow::makeCentre() {
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
-  column->addWidget(exported_);
   column->addWidget(stack_, 1);
+  column->addWidget(exported_);  // below: the page must not move under the mouse
   auto* const row = new QWidget(this);
   auto* const layout = new QHBoxLayout(row);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(0);
-  layout->addWidget(makeSideBar());
+  steps_ = new StepsPanel(this);
+  side_bar_ = new SideBar(entries_, steps_, this);
+  connect(side_bar_, &SideBar::pageChosen, this, &MainWindow::turnTo);
+  connect(side_bar_, &SideBar::pageClicked, this, [this] { stack_->currentWidget()->setFocus(); });
+  layout->addWidget(side_bar_);
   layout->addWidget(pages, 1);
   setCentralWidget(row);
-}
-
-QWidget* MainWindow::makeSideBar() {
-  constexpr int kIcon_px = 20, kEntry_px = 33;
-  navigation_ = new QListWidget(this);
-  navigation_->setObjectName("navigation");
-  navigation_->setAccessibleName(tr("Screens"));
-  navigation_->setIconSize(QSize(kIcon_px, kIcon_px));
-  navigation_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    auto* const item = new QListWidgetItem(icon(entries_[i].icon_name), entries_[i].title, navigation_);
-    item->setToolTip(tr("%1 (%2)").arg(entries_[i].title, keyOfPage(i).toString(QKeySequence::NativeText)));
-    item->setSizeHint(QSize(0, kEntry_px));
-  }
-  navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
-  connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
-  // Connected to the mouse; the list's arrow keys select the next page.
-  connect(navigation_, &QListWidget::clicked, this, [this] { stack_->currentWidget()->setFocus(); });
-  steps_ = new StepsPanel(this);
-  auto* const bar = new QFrame(this);
-  bar->setObjectName("sidebar");
-  bar->setFixedWidth(kSideBar_px);
-  auto* const layout = new QVBoxLayout(bar);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(0);
-  layout->addWidget(navigation_);
-  layout->addWidget(steps_, 1);
-  return bar;
 }
 
 void MainWindow::makeDocks() {
@@ -164,7 +141,7 @@ bool MainWindow::showScreen(const QString& name) {
   const qsizetype index = screenNames().indexOf(name);
   if (index < 0) return false;
   result_is_due_ = false;
-  navigation_->setCurrentRow(static_cast<int>(index));
+  side_bar_->showPage(static_cast<int>(index));
   return true;
 }
 
@@ -358,7 +335,7 @@ void MainWindow::showState() {
   actions_.cancel->setVisible(running);
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
-  showVerdictBadge();
+  showPages();
   actions_.save->setEnabled(document.modified() || (document.hasSession() && document.file().isEmpty()));
   actions_.save_as->setEnabled(document.hasSession());
   const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
@@ -371,14 +348,26 @@ void MainWindow::showState() {
                                            : tr("There is no result yet: press Calibrate"));
 }
 
-// Mark next to the Result page's name, by colour and shape: it shows the outcome on any page.
-void MainWindow::showVerdictBadge() {
-  const qsizetype row = screenNames().indexOf("result");
-  QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
-  const QString& title = entries_[static_cast<std::size_t>(row)].title;
-  const std::optional<CalibrationStatus> status = lastStatus();
-  item.setIcon(status ? verdictIcon(*status) : icon(entries_[static_cast<std::size_t>(row)].icon_name));
-  item.setText(status ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(*status))) : title);
+// Why a page with this need has no content; empty: it has. A running calibration fills pages.
+QString MainWindow::whyGrey(PageNeed need) const {
+  if (need == PageNeed::Nothing) return {};
+  if (!workbench_.document.hasSession()) return tr("Open a recording first");
+  if (need == PageNeed::RunOfRig && workbench_.lens.aim() == CalibrationAim::Camera)
+    return tr("Grey pages are for rigs only");
+  const bool calibrating = workbench_.calibration.running() || workbench_.intrinsics.running();
+  if (need == PageNeed::Session || calibrating || lastStatus()) return {};
+  return tr("Press Calibrate to fill grey pages");
+}
+
+void MainWindow::showPages() {
+  std::vector<QString> reasons;
+  for (const PageEntry& entry : entries_) reasons.push_back(whyGrey(entry.need));
+  const auto first =
+      std::find_if(reasons.begin(), reasons.end(), [](const QString& r) { return !r.isEmpty(); });
+  side_bar_->setReasons(reasons, first == reasons.end() ? QString() : *first);
+  for (std::size_t i = 0; i < entries_.size(); ++i) actions_.pages[i]->setEnabled(reasons[i].isEmpty());
+  side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")), lastStatus());
+  steps_->setVisible(workbench_.document.hasSession());
 }
 
 void MainWindow::restoreLayout() {
@@ -387,7 +376,7 @@ void MainWindow::restoreLayout() {
   constexpr int kFrame_px = 48;  // title bar, not drawn yet
   const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
   resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
-  constexpr int kLog_px = 190, kParameters_px = 320;
+  constexpr int kLog_px = 190, kParameters_px = 280;
   resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
   resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);
   restoreGeometry(settings.value("window/geometry").toByteArray());

@@ -12,7 +12,6 @@
 
 class QAction;
 class QDockWidget;
-class QListWidget;
 class QStackedWidget;
 
 namespace evical::ui {
@@ -24,6 +23,7 @@ class LogPanel;
 class OptionForm;
 class RunsPanel;
 class SessionFiles;
+class SideBar;
 class StepsPanel;
 
 class MainWindow : public QMainWindow {
@@ -51,7 +51,6 @@ class MainWindow : public QMainWindow {
 
  private:
   void makeCentre();
-  QWidget* makeSideBar();
   void makeDocks();
   void makeActions();
   void makeFileMenu();
@@ -72,7 +71,8 @@ class MainWindow : public QMainWindow {
   std::optional<CalibrationStatus> lastStatus() const;
   void wireSteps();
   void showState();
-  void showVerdictBadge();
+  QString whyGrey(PageNeed need) const;
+  void showPages();
   void showProblem(const QString& what_was_tried, const JobError& error);
   void restoreLayout();
   void saveLayout();
@@ -82,7 +82,7 @@ class MainWindow : public QMainWindow {
   LensFiles* lens_files_;
   Pages pages_;
   std::vector<PageEntry> entries_;
-  QListWidget* navigation_ = nullptr;
+  SideBar* side_bar_ = nullptr;
   QStackedWidget* stack_ = nullptr;
   StepsPanel* steps_ = nullptr;
   ErrorPanel* error_ = nullptr;
@@ -94,6 +94,7 @@ class MainWindow : public QMainWindow {
   struct Actions {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;
+    std::vector<QAction*> pages;
     QAction *calibrate, *cancel;
     QAction *guide, *keys, *about;
   } actions_{};

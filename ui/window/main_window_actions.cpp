@@ -4,6 +4,7 @@
 #include "ui/window/about.h"
 #include "ui/window/main_window.h"
 #include "ui/window/print_board.h"
+#include "ui/window/recent_files.h"
 #include "ui/window/recording_check.h"
 #include "ui/window/session_files.h"
 #include "ui/window/user_guide.h"
@@ -73,8 +74,8 @@ void MainWindow::makeFileMenu() {
   QMenu* const recent = menu->addMenu(icon("recent"), tr("Open re&cent"));
   connect(recent, &QMenu::aboutToShow, this, [this, recent] {
     recent->clear();
-    for (const QString& file : files_->recentFiles())
-      recent->addAction(file, files_, [this, file] { files_->open(file); });
+    for (const RecentFile& file : recentFiles())
+      recent->addAction(file.path, files_, [this, path = file.path] { files_->open(path); });
     recent->setEnabled(!recent->isEmpty());
   });
   menu->addSeparator();
@@ -124,6 +125,7 @@ void MainWindow::makeViewMenu() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     QAction* const action = menu->addAction(icon(entries_[i].icon_name), entries_[i].title);
     action->setShortcut(keyOfPage(i));
+    actions_.pages.push_back(action);
     connect(action, &QAction::triggered, this, [this, name = entries_[i].name] {
       showScreen(name);
       stack_->currentWidget()->setFocus();

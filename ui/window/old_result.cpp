@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/old_result.h"
 
+#include "core/report/result_yaml.h"
 #include "ui/screens/assessment/old_result_row.h"
 #include "ui/screens/result/runs_panel.h"
 #include "ui/window/page_work.h"
@@ -16,12 +17,13 @@ namespace evical::ui {
 namespace {
 
 void propose(OldResultRow& row, const Workbench& workbench) {
-  row.proposePath(QString::fromStdString(workbench.history.folderOf(workbench.document.last().run).string()));
   std::vector<std::pair<QString, QString>> runs;
   for (const RunSummary& run : workbench.history.runs())
-    runs.emplace_back(titleOf(run), QString::fromStdString(run.folder.string()));
+    runs.emplace_back(QString("%1: %2").arg(titleOf(run), statusName(run.status)),
+                      QString::fromStdString(run.folder.string()));
   std::reverse(runs.begin(), runs.end());  // newest first
   row.setKeptRuns(runs);
+  row.proposePath(QString::fromStdString(workbench.history.folderOf(workbench.document.last().run).string()));
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
 #include "ui/window/print_board.h"
+#include "ui/window/recent_files.h"
 #include "ui/window/recording_check.h"
 #include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
@@ -32,7 +33,7 @@ namespace evical::ui {
 namespace {
 
 void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
-  start.setRecentFiles(files.recentFiles());
+  start.setRecentFiles(recentFiles());
   QObject::connect(&start, &StartScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
   QObject::connect(&start, &StartScreen::openSessionRequested, &files, &SessionFiles::chooseSession);
   QObject::connect(&start, &StartScreen::printBoardRequested, &start,
@@ -45,7 +46,8 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
     files.openDemo();
   });
   QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::open);
-  QObject::connect(&files, &SessionFiles::recentFilesChanged, &start, &StartScreen::setRecentFiles);
+  QObject::connect(&files, &SessionFiles::recentFilesChanged, &start,
+                   [&start] { start.setRecentFiles(recentFiles()); });
   QObject::connect(&files, &SessionFiles::demoRunning, &start, &StartScreen::setDemoRunning);
   QObject::connect(&workbench.runner, &JobRunner::progressed, &start,
                    [&start](const JobProgress& progress) { start.setDemoProgress(progress.fraction); });
@@ -143,21 +145,23 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
     pages.of_rigs.push_back(new RigPage(page, what, parent));
     return pages.of_rigs.back();
   };
-  return {{"start", QObject::tr("Start"), "home", pages.start},
-          {"recording", QObject::tr("Recording"), "recording", pages.recording},
-          {"detection", QObject::tr("Detection"), "detection", pages.detection},
-          {"trajectory", QObject::tr("Trajectory"), "trajectory",
-           of_rig(pages.trajectory, QObject::tr("Trajectories belong"))},
-          {"convergence", QObject::tr("Convergence"), "convergence",
-           of_rig(pages.convergence, QObject::tr("Convergence belongs"))},
-          {"signals", QObject::tr("Signals"), "signals",
-           of_rig(pages.signal_curves, QObject::tr("Signals belong"))},
-          {"residuals", QObject::tr("Residuals"), "residuals",
-           of_rig(pages.residuals, QObject::tr("Residuals belong"))},
-          {"result", QObject::tr("Result"), "result", pages.results},
-          {"check-result", QObject::tr("Check a result"), "check", pages.result_check},
-          {"repeat", QObject::tr("Several recordings"), "compare", pages.repeat},
-          {"maintain", QObject::tr("IMUs over time"), "imu", pages.maintain}};
+  constexpr PageGroup kThis = PageGroup::ThisRecording, kMore = PageGroup::More;
+  const auto tr = [](const char* text) { return QObject::tr(text); };
+  return {{"start", tr("Start"), "home", pages.start},
+          {"recording", tr("Recording"), "recording", pages.recording, kThis, PageNeed::Session},
+          {"detection", tr("Detection"), "detection", pages.detection, kThis, PageNeed::Session},
+          {"trajectory", tr("Trajectory"), "trajectory", of_rig(pages.trajectory, tr("Trajectories belong")),
+           kThis, PageNeed::RunOfRig},
+          {"convergence", tr("Convergence"), "convergence",
+           of_rig(pages.convergence, tr("Convergence belongs")), kThis, PageNeed::RunOfRig},
+          {"signals", tr("Signals"), "signals", of_rig(pages.signal_curves, tr("Signals belong")), kThis,
+           PageNeed::RunOfRig},
+          {"residuals", tr("Residuals"), "residuals", of_rig(pages.residuals, tr("Residuals belong")), kThis,
+           PageNeed::RunOfRig},
+          {"result", tr("Result"), "result", pages.results, kThis, PageNeed::Run},
+          {"check-result", tr("Check a result"), "check", pages.result_check, kMore},
+          {"repeat", tr("Several recordings"), "compare", pages.repeat, kMore},
+          {"maintain", tr("IMUs over time"), "imu", pages.maintain, kMore}};
 }
 
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The screens, in the order of the navigation: buildPages creates them, wirePages connects them with the
+// The screens, in the order of the side bar: buildPages creates them, wirePages connects them with the
 // workbench and with each other. Screens themselves depend on neither.
 #pragma once
 
@@ -50,11 +50,17 @@ struct Pages {
   std::vector<RigPage*> of_rigs;                    // wrappers of the pages that are for rigs only
 };
 
-// A page in the navigation.
+// Heading of the side bar under which a page is listed, and what the page needs to have content.
+enum class PageGroup { None, ThisRecording, More };
+enum class PageNeed { Nothing, Session, Run, RunOfRig };
+
+// A page in the side bar.
 struct PageEntry {
   QString name;  // for --screenshot
   QString title, icon_name;
   QWidget* widget = nullptr;
+  PageGroup group = PageGroup::None;
+  PageNeed need = PageNeed::Nothing;
 };
 
 // Ctrl+1 to Ctrl+9, Ctrl+0, then Ctrl+Shift+1 and so on.

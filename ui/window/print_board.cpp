@@ -24,14 +24,24 @@ Dialog* opened(QWidget* window) {
   return dialog;
 }
 
+// Usual board with the largest spacing, in whole millimetres, that fits the usual paper.
+Board boardForUsualPaper() {
+  Board board;
+  const double radius = board.radius_m / board.spacing_m;
+  SheetOptions sheet;
+  sheet.paper = usualPaper();
+  for (int spacing_mm = 50; !fitsSheet(board, sheet); --spacing_mm) {
+    board.spacing_m = 1e-3 * spacing_mm;
+    board.radius_m = radius * board.spacing_m;
+  }
+  return board;
+}
+
 // Board of the session, else the last printed one.
 Board boardToPrint(const Workbench& workbench) {
   if (workbench.document.hasSession()) return workbench.document.session().board;
   if (const auto last = lastPrintedBoard()) return last->board;
-  Board small;  // the usual board, on a sheet that fits most printers
-  small.spacing_m = 0.02;
-  small.radius_m = 0.008;
-  return small;
+  return boardForUsualPaper();
 }
 
 void take(const PrintedBoard& printed, Workbench& workbench) {
@@ -64,9 +74,10 @@ void showPrintBoard(QWidget* window, Workbench& workbench) {
   auto* const dialog = new PrintBoardDialog(boardToPrint(workbench), window);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   writeFor(dialog);
-  QObject::connect(dialog, &PrintBoardDialog::boardTaken, window,
-                   [&workbench](const Board& board, const std::optional<MeasuredLength>& measured) {
+  QObject::connect(dialog, &PrintBoardDialog::boardTaken, dialog,
+                   [&workbench, dialog](const Board& board, const std::optional<MeasuredLength>& measured) {
                      take({board, measured}, workbench);
+                     dialog->setTaken(workbench.document.hasSession());
                    });
   dialog->resize(kWidth_px, kHeight_px);
   dialog->show();

@@ -11,6 +11,7 @@
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/printed_board.h"
 #include "ui/window/page_work.h"
+#include "ui/window/recent_files.h"
 
 #include <QDesktopServices>
 #include <QDir>
@@ -30,8 +31,6 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kMostRecent = 10;
-const char* const kRecentKey = "recent_files";
 const char* const kFolderKey = "last_folder";
 const char* const kReport = "report.html";
 
@@ -119,6 +118,8 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
     exportEveryResult(false);
     export_targets_.reset();
   });
+  connect(&workbench_.document, &CalibrationDocument::runsChanged, this, &SessionFiles::rememberRun);
+  connect(&workbench_.lens, &LensDocument::runChanged, this, &SessionFiles::rememberRun);
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this, [this] {
     if (every_result_folder_.isEmpty()) return;
     // After all receivers have handled the run: an export is a separate job.
@@ -182,6 +183,7 @@ void SessionFiles::runOpened(const SavedRun& saved) {
     return;
   }
   remember(QDir(folder).filePath("result.yaml"));
+  rememberVerdict(QDir(folder).filePath("result.yaml"), saved.run->result.status);
   inspectSession();
   emit opened();
   QStringList missing;
@@ -431,20 +433,24 @@ QString SessionFiles::lastFolder() const {
   return QSettings().value(kFolderKey, QDir::homePath()).toString();
 }
 
-QStringList SessionFiles::recentFiles() const {
-  QStringList files = QSettings().value(kRecentKey).toStringList();
-  files.removeIf([](const QString& file) { return !QFile::exists(file); });
-  return files;
+void SessionFiles::remember(const QString& file) {
+  rememberOpened(file);
+  QSettings().setValue(kFolderKey, QFileInfo(file).path());
+  emit recentFilesChanged();
 }
 
-void SessionFiles::remember(const QString& file) {
-  QSettings settings;
-  QStringList files = recentFiles();
-  files.removeAll(file);
-  files.prepend(file);
-  settings.setValue(kRecentKey, files.mid(0, kMostRecent));
-  settings.setValue(kFolderKey, QFileInfo(file).path());
-  emit recentFilesChanged(recentFiles());
+// For the open session or recording.
+void SessionFiles::rememberRun() {
+  const CalibrationDocument& document = workbench_.document;
+  const LensDocument& lens = workbench_.lens;
+  const bool of_camera = lens.aim() == CalibrationAim::Camera && lens.last().run;
+  if (!of_camera && !document.last().run) return;
+  const CalibrationStatus verdict =
+      of_camera ? lens.last().run->result.status : document.last().run->result.status;
+  rememberVerdict(document.file(), verdict);
+  if (document.file().isEmpty())
+    rememberVerdict(QString::fromStdString(document.session().recording.string()), verdict);
+  emit recentFilesChanged();
 }
 
 }  // namespace evical::ui

@@ -52,11 +52,10 @@ class SessionFiles : public QObject {
 
   // False if the user wants to keep unsaved changes.
   bool mayDiscard();
-  QStringList recentFiles() const;
 
  signals:
   void opened();
-  void recentFilesChanged(const QStringList& files);
+  void recentFilesChanged();
   void demoRunning(bool running);
   void exported(const evical::ui::ExportOutcome& outcome);
   void exportsEveryResult(bool does);
@@ -69,6 +68,7 @@ class SessionFiles : public QObject {
   void runOpened(const SavedRun& saved);
   bool saveTo(const QString& file);
   void remember(const QString& file);
+  void rememberRun();
   void recordingInspected(const QString& recording, const Inspection& inspection);
   void furtherRecordingInspected(const QString& recording, const Inspection& inspection);
   void takeResolutions(const QString& recording, const Inspection& inspection);

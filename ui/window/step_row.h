@@ -18,6 +18,7 @@ class StepRow : public QWidget {
   StepRow(const QString& title, bool sub_step, QWidget* parent);
 
   StepState state() const { return state_; }
+  bool isSubStep() const { return sub_step_; }
   void setState(StepState state);
   void setFraction(double fraction);
   void setTime(double time_s);

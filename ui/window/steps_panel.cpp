@@ -66,6 +66,7 @@ StepsPanel::StepsPanel(QWidget* parent) : QWidget(parent) {
 void StepsPanel::reset() {
   for (const auto& [key, old] : rows_) delete old;
   rows_.clear();
+  sub_steps_shown_ = false;
   stage_.clear();
   stage_begin_s_ = elapsed_s_ = 0.0;
   counted_s_ = timed_s_ = -1.0;
@@ -98,7 +99,13 @@ StepRow* StepsPanel::addRow(const QString& key, const QString& title,
   StepRow* const next = rowAfter(key, step_of);
   layout_->insertWidget(next ? layout_->indexOf(next) : layout_->count() - 1, added);  // before the stretch
   rows_[key] = added;
+  added->setVisible(!added->isSubStep() || sub_steps_shown_);
   return added;
+}
+
+void StepsPanel::showSubSteps(bool shown) {
+  sub_steps_shown_ = shown;
+  for (const auto& [key, row] : rows_) row->setVisible(!row->isSubStep() || shown);
 }
 
 // Unknown steps are added at the end of their stage.
@@ -145,6 +152,7 @@ void StepsPanel::startStage(const QString& stage) {
   }
   stage_ = stage;
   stage_begin_s_ = elapsed_s_;
+  showSubSteps(true);
   if (StepRow* const now = row(stage)) {
     now->setState(StepState::Running);
     now->setFraction(0.0);
@@ -219,6 +227,7 @@ void StepsPanel::finish(JobOutcome outcome) {
                    : outcome == JobOutcome::Cancelled ? StepState::Cancelled
                                                       : StepState::Failed);
   }
+  if (outcome == JobOutcome::Done) showSubSteps(false);
 }
 
 // Removes steps that this kind of rig does not need.

@@ -41,6 +41,7 @@ class StepsPanel : public QWidget {
 
  private:
   void dropUnusedSteps();
+  void showSubSteps(bool shown);  // only while they run: they are details
   void addStages();
   void startPass(const QString& stage);
   // `step_of`: the stage of this step; none: it is a stage.
@@ -52,6 +53,7 @@ class StepsPanel : public QWidget {
 
   QVBoxLayout* layout_;
   std::map<QString, StepRow*> rows_;
+  bool sub_steps_shown_ = false;
   CalibrationAim aim_ = CalibrationAim::Rig;
   QString stage_;
   double stage_begin_s_ = 0.0, elapsed_s_ = 0.0;

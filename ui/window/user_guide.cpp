@@ -10,6 +10,7 @@
 #include <QListWidget>
 #include <QScrollBar>
 #include <QSplitter>
+#include <QStyledItemDelegate>
 #include <QTextBlock>
 #include <QTextBrowser>
 #include <QTextCursor>
@@ -36,16 +37,28 @@ void scrollTo(QTextBrowser& browser, int block) {
   browser.verticalScrollBar()->setValue(static_cast<int>(top_px));
 }
 
+// Rows as wide as the list: a longer heading ends with dots, and the list does not scroll sideways.
+class HeadingDelegate final : public QStyledItemDelegate {
+ public:
+  using QStyledItemDelegate::QStyledItemDelegate;
+  QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+    return {1, QStyledItemDelegate::sizeHint(option, index).height()};
+  }
+};
+
 // Parts of the guide, as links.
 QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
   auto* const contents = new QListWidget(parent);
   contents->setObjectName("contents");
   contents->setAccessibleName(QObject::tr("Contents"));
+  contents->setItemDelegate(new HeadingDelegate(contents));
+  contents->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   for (QTextBlock block = browser->document()->begin(); block.isValid(); block = block.next()) {
     const int level = block.blockFormat().headingLevel();
     if (level < 2) continue;
     auto* const entry = new QListWidgetItem(block.text(), contents);
     entry->setData(Qt::UserRole, block.blockNumber());
+    entry->setToolTip(block.text());
   }
   QObject::connect(contents, &QListWidget::currentItemChanged, browser, [browser](QListWidgetItem* entry) {
     if (entry != nullptr) scrollTo(*browser, entry->data(Qt::UserRole).toInt());

@@ -88,8 +88,8 @@ FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("finding_table");
   setAccessibleName(tr("Change of each quantity"));
   setColumnCount(kColumns);
-  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), QString(QChar(0x3c3)),
-                   tr("At the edge"), tr("Detectable"), tr("Required"), tr("Before"), tr("Now, alone")});
+  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Before"), tr("Now, alone"),
+                   QString(QChar(0x3c3)), tr("At the edge"), tr("Detectable"), tr("Required")});
   headerItem()->setToolTip(kSource, tr("Source: stops, another IMU, or the trajectory"));
   headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
   headerItem()->setToolTip(kEdge, tr("Shift of points at the image's edge, in pixels"));

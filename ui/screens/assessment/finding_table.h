@@ -18,12 +18,12 @@ class FindingTable : public CopyTable {
     kVerdict,
     kSource,
     kChange,
+    kBefore,
+    kNow,  // the columns up to here are visible at 1280 px
     kSigmas,
     kEdge,
     kDetectable,
     kRequired,
-    kBefore,
-    kNow,
     kColumns
   };
 

@@ -16,6 +16,9 @@ OldResultRow::OldResultRow(const QString& object_name, QGridLayout& grid, QWidge
 }
 
 void OldResultRow::setKeptRuns(const std::vector<std::pair<QString, QString>>& runs) {
+  std::map<QString, QString> titles;
+  for (const auto& [title, folder] : runs) titles[folder] = title;
+  setTitles(titles);
   menu_->clear();
   menu_->addAction(icon("folder"), tr("A result's &folder..."), this, &OldResultRow::folderRequested);
   menu_->addAction(icon("open"), tr("A &result.yaml..."), this, &OldResultRow::fileRequested);

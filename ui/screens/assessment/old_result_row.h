@@ -15,7 +15,7 @@ class OldResultRow : public PathRow {
  public:
   OldResultRow(const QString& object_name, QGridLayout& grid, QWidget* parent);
 
-  // By title and folder; listed after the entries for files.
+  // By title and folder; listed after the entries for files, and shown by their titles.
   void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
 
  signals:

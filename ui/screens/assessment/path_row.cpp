@@ -14,7 +14,10 @@ namespace evical::ui {
 
 PathRow::PathRow(const QString& object_name, const QString& title, const QString& tip, QGridLayout& grid,
                  QWidget* parent)
-    : QObject(parent), field_(new QLineEdit(parent)), choose_(new QPushButton(tr("Choose..."), parent)) {
+    : QObject(parent),
+      field_(new QLineEdit(parent)),
+      choose_(new QPushButton(tr("Choose..."), parent)),
+      tip_(tip) {
   const QString name = QString(title).remove('&');
   auto* const label = new QLabel(title, parent);
   label->setBuddy(field_);
@@ -30,21 +33,43 @@ PathRow::PathRow(const QString& object_name, const QString& title, const QString
   grid.addWidget(field_, row, 1);
   grid.addWidget(choose_, row, 2);
   connect(choose_, &QPushButton::clicked, this, &PathRow::chooseRequested);
-  connect(field_, &QLineEdit::textEdited, this, [this] { by_hand_ = true; });
+  connect(field_, &QLineEdit::textEdited, this, [this] {
+    by_hand_ = true;
+    field_->setToolTip(tip_);
+  });
   connect(field_, &QLineEdit::textChanged, this, &PathRow::changed);
 }
 
 QString PathRow::path() const {
-  return QDir::fromNativeSeparators(field_->text().trimmed());
+  const QString text = field_->text();
+  return text == shownAs(path_) ? path_ : QDir::fromNativeSeparators(text.trimmed());
+}
+
+QString PathRow::shownAs(const QString& path) const {
+  const auto found = titles_.find(path);
+  return found == titles_.end() ? QDir::toNativeSeparators(path) : found->second;
+}
+
+void PathRow::show(const QString& path) {
+  path_ = path;
+  const QString native = QDir::toNativeSeparators(path), shown = shownAs(path);
+  field_->setText(shown);
+  field_->setToolTip(shown == native ? tip_ : native + '\n' + tip_);
+}
+
+void PathRow::setTitles(const std::map<QString, QString>& titles) {
+  const bool typed = path() != path_;
+  titles_ = titles;
+  if (!typed) show(path_);
 }
 
 void PathRow::setPath(const QString& path) {
   by_hand_ = true;
-  field_->setText(QDir::toNativeSeparators(path));
+  show(path);
 }
 
 void PathRow::proposePath(const QString& path) {
-  if (!by_hand_ || field_->text().isEmpty()) field_->setText(QDir::toNativeSeparators(path));
+  if (!by_hand_ || field_->text().isEmpty()) show(path);
 }
 
 void PathRow::setMenu(QMenu* menu) {

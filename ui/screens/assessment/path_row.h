@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Row for a file or folder in a form: typed, dropped, or chosen in a dialog that the receiver opens.
+// Row for a file or folder in a form: typed, dropped, or chosen in a dialog that the receiver opens. The field
+// shows the title of a path that has one; its tool tip has the path.
 #pragma once
 
+#include <QString>
 #include <QWidget>
+
+#include <map>
 
 class QGridLayout;
 class QLabel;
@@ -21,9 +25,10 @@ class PathRow : public QObject {
           QWidget* parent);
 
   QString path() const;
-  void setPath(const QString& path);      // like an edit of the user
-  void proposePath(const QString& path);  // unless the user has set one
-  void setMenu(QMenu* menu);              // of the button, instead of the dialog
+  void setPath(const QString& path);                         // like an edit of the user
+  void proposePath(const QString& path);                     // unless the user has set one
+  void setTitles(const std::map<QString, QString>& titles);  // by path
+  void setMenu(QMenu* menu);                                 // of the button, instead of the dialog
   void setPlaceholder(const QString& text);
   void setEnabled(bool enabled);
 
@@ -32,8 +37,13 @@ class PathRow : public QObject {
   void changed();
 
  private:
+  QString shownAs(const QString& path) const;
+  void show(const QString& path);
+
   QLineEdit* field_;
   QPushButton* choose_;
+  QString tip_, path_;  // path_: the last one that was set; the user may have typed another
+  std::map<QString, QString> titles_;
   bool by_hand_ = false;
 };
 

@@ -17,7 +17,7 @@ ResultCheckScreen::ResultCheckScreen(QWidget* parent)
            tr("Calibrate the new recording, and test each quantity's change"),
            tr("Move the rig in front of the board for about ten seconds, as for a calibration, and "
               "choose that recording above. It is calibrated again and compared with the old "
-              "result. Each quantity is reported as unchanged, changed, or cannot tell (the "
+              "result. The verdict on each quantity is \"unchanged\", \"changed\", or \"cannot tell\" (the "
               "recording is too weak).")},
           parent),
       result_(new OldResultRow("old_result", grid(), this)),

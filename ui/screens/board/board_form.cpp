@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/board/board_form.h"
 
+#include "ui/forms/form_label.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_drawing.h"
+#include "ui/theme/theme.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -15,6 +17,7 @@
 #include <QSignalBlocker>
 #include <QSpinBox>
 #include <QStandardItemModel>
+#include <QToolButton>
 #include <QVBoxLayout>
 
 namespace evical::ui {
@@ -32,9 +35,8 @@ QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
 }
 
 QLabel* problemLabel(QWidget* parent) {
-  auto* const label = new QLabel(parent);
+  auto* const label = new FormLabel({}, parent);
   label->setProperty("role", "problem");
-  label->setWordWrap(true);
   return label;
 }
 
@@ -93,7 +95,9 @@ BoardForm::BoardForm(QWidget* parent)
       cols_(countBox(1, tr("Number of circles, corners, tags or squares in a line"), this)),
       spacing_mm_(new NumberField(0.1, 10'000.0, this)),
       radius_mm_(new NumberField(0.01, 10'000.0, this)),
+      more_(new QToolButton(this)),
       is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
+      blinks_(new QCheckBox(tr("The board flashes (screen or lamps)"), this)),
       length_mm_(new NumberField(0.1, 100'000.0, this)),
       spacings_(countBox(
           1,
@@ -103,7 +107,7 @@ BoardForm::BoardForm(QWidget* parent)
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
-      seen_by_(new QLabel(this)),
+      seen_by_(new FormLabel({}, this)),
       name_problem_(problemLabel(this)),
       problem_(problemLabel(this)),
       drawing_(new BoardDrawing(this)) {
@@ -124,10 +128,10 @@ BoardForm::BoardForm(QWidget* parent)
   form_->addRow(tr("Rows"), rows_);
   form_->addRow(tr("Columns"), cols_);
   form_->addRow(tr("Spacing [mm]"), spacing_mm_);
-  addMeasure(*form_);
   form_->addRow(tr("Radius [mm]"), radius_mm_);
   form_->addRow(tr("Tag [mm]"), tag_mm_);
   form_->addRow(tr("Circles"), circles_);
+  addMore();
   form_->setContentsMargins(0, 0, 4, 0);
   auto* const row = new QHBoxLayout;
   row->addWidget(new FieldsArea(form_, this));
@@ -153,7 +157,6 @@ void BoardForm::addName() {
   name_->setObjectName("board_name");
   seen_by_->setObjectName("seen_by");
   name_problem_->setObjectName("name_problem");
-  seen_by_->setWordWrap(true);
   name_->setToolTip(tr("Name of the board in the session and in the cameras' forms"));
   seen_by_->setToolTip(tr("Cameras that see this board, as set in the cameras' forms"));
   form_->addRow(tr("Name"), name_);
@@ -181,14 +184,32 @@ void BoardForm::setNameProblem(const QString& text) {
   form_->setRowVisible(name_problem_, !text.isEmpty());
 }
 
-void BoardForm::addMeasure(QFormLayout& form) {
+void BoardForm::addMore() {
+  more_->setObjectName("board_more");
+  more_->setText(tr("More"));
+  more_->setToolTip(tr("For a length that was measured, and for a board that flashes"));
+  more_->setCheckable(true);
+  more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  form_->addRow(more_);
+  form_->setAlignment(more_, Qt::AlignLeft);
+  connect(more_, &QToolButton::toggled, this, &BoardForm::showRows);
+  addMeasure();
+  blinks_->setObjectName("blinks");
+  blinks_->setToolTip(
+      tr("For the intrinsics of one event camera at rest. Any type of board is suitable if it "
+         "flashes."));
+  form_->addRow(blinks_);
+  connect(blinks_, &QCheckBox::clicked, this, &BoardForm::blinkingChosen);
+}
+
+void BoardForm::addMeasure() {
   is_measured_->setToolTip(tr("A length over the whole board is about ten times as accurate as one spacing"));
   length_mm_->setToolTip(tr("Between the centres of two circles in one line, as far apart as possible"));
   length_std_mm_->setToolTip(tr("Standard deviation of the measured length; 0: exact"));
-  form.addRow(is_measured_);
-  form.addRow(tr("Length [mm]"), length_mm_);
-  form.addRow(tr("Number of spacings"), spacings_);
-  form.addRow(tr("Sigma [mm]"), length_std_mm_);
+  form_->addRow(is_measured_);
+  form_->addRow(tr("Length [mm]"), length_mm_);
+  form_->addRow(tr("Number of spacings"), spacings_);
+  form_->addRow(tr("Sigma [mm]"), length_std_mm_);
   connect(is_measured_, &QCheckBox::clicked, this, [this] { sayMeasured("measured"); });
   connect(length_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.length_m"); });
   connect(spacings_, &QSpinBox::valueChanged, this, [this] { sayMeasured("measured.spacings"); });
@@ -224,14 +245,32 @@ void BoardForm::showType() {
   type_->setCurrentIndex(index);
 }
 
+void BoardForm::setBlinking(bool offered, bool blinking) {
+  blinking_offered_ = offered;
+  blinks_->setChecked(blinking);
+  showRows();
+}
+
+void BoardForm::foldMore() {
+  more_->setChecked(false);
+}
+
 // Rows that do not apply to the board are hidden.
 void BoardForm::showRows() {
+  const bool used = measured_.has_value() || blinks_->isChecked();
+  if (used && !more_->isChecked()) return more_->setChecked(true);  // calls this function
+  const bool more = more_->isChecked();
+  more_->setEnabled(!used);
+  more_->setIcon(icon(more ? "down" : "right"));
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
                                static_cast<QWidget*>(length_std_mm_)})
     form_->setRowVisible(field, measured_.has_value());
-  for (QWidget* const field : {static_cast<QWidget*>(rows_), static_cast<QWidget*>(cols_),
-                               static_cast<QWidget*>(spacing_mm_), static_cast<QWidget*>(is_measured_)})
-    form_->setRowVisible(field, board_.hasPattern() && !(numbers_only_ && field == is_measured_));
+  for (QWidget* const field :
+       {static_cast<QWidget*>(rows_), static_cast<QWidget*>(cols_), static_cast<QWidget*>(spacing_mm_)})
+    form_->setRowVisible(field, board_.hasPattern());
+  form_->setRowVisible(more_, board_.hasPattern() && !numbers_only_);
+  form_->setRowVisible(is_measured_, board_.hasPattern() && !numbers_only_ && more);
+  form_->setRowVisible(blinks_, blinking_offered_ && more);
   form_->setRowVisible(radius_mm_, board_.hasCircles());
   form_->setRowVisible(circles_, board_.hasCircles());
   form_->setRowVisible(tag_mm_, board_.hasTags());

@@ -15,6 +15,7 @@ class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QSpinBox;
+class QToolButton;
 
 namespace evical::ui {
 
@@ -28,6 +29,8 @@ class BoardForm : public QWidget {
   explicit BoardForm(QWidget* parent = nullptr);
 
   void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
+  void setBlinking(bool offered, bool blinking);
+  void foldMore();  // rows that few boards need, except if they are used
   // For a board that is not yet printed: without a measured length and without the drawing.
   void showNumbersOnly();
   // Empty: the only board, which needs no name.
@@ -38,19 +41,21 @@ class BoardForm : public QWidget {
  signals:
   void renamed(const QString& name);  // to the typed text
   void edited(const evical::Board& board, const QString& field);
+  void blinkingChosen(bool blinking);
   // Measured length that determines the spacing; none if the spacing is given directly.
   void measured(const std::optional<evical::MeasuredLength>& measured, const QString& field);
 
  private:
   void addName();
-  void addMeasure(QFormLayout& form);
+  void addMore();
+  void addMeasure();
   void showType();
   void showRows();
   void say(const QString& field);
   void sayMeasured(const QString& field);
 
   Board board_;
-  bool numbers_only_ = false;
+  bool numbers_only_ = false, blinking_offered_ = false;
   std::optional<MeasuredLength> measured_;
   QFormLayout* form_;
   QString named_;
@@ -60,7 +65,8 @@ class BoardForm : public QWidget {
   QSpinBox* cols_;
   NumberField* spacing_mm_;
   NumberField* radius_mm_;
-  QCheckBox* is_measured_;
+  QToolButton* more_;
+  QCheckBox *is_measured_, *blinks_;
   NumberField* length_mm_;
   QSpinBox* spacings_;
   NumberField* length_std_mm_;

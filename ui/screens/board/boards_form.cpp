@@ -6,7 +6,6 @@
 #include "ui/screens/board/board_chooser.h"
 #include "ui/screens/board/board_form.h"
 
-#include <QCheckBox>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -37,19 +36,11 @@ std::size_t chosenAfter(const std::vector<std::string>& before, const std::vecto
 }  // namespace
 
 BoardsForm::BoardsForm(QWidget* parent)
-    : QWidget(parent),
-      chooser_(new BoardChooser(this)),
-      form_(new BoardForm(this)),
-      blinks_(new QCheckBox(tr("The board flashes (screen or lamps)"), this)) {
+    : QWidget(parent), chooser_(new BoardChooser(this)), form_(new BoardForm(this)) {
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(form_, 1);
-  layout->addWidget(blinks_);
-  blinks_->setObjectName("blinks");
-  blinks_->setToolTip(
-      tr("For the intrinsics of one event camera at rest. Any type of board is suitable if it "
-         "flashes."));
-  connect(blinks_, &QCheckBox::clicked, this, &BoardsForm::setBlinking);
+  connect(form_, &BoardForm::blinkingChosen, this, &BoardsForm::setBlinking);
   connect(chooser_, &BoardChooser::chosen, this, &BoardsForm::choose);
   connect(chooser_, &BoardChooser::addRequested, this, &BoardsForm::add);
   connect(chooser_, &BoardChooser::removeRequested, this, &BoardsForm::remove);
@@ -78,6 +69,7 @@ void BoardsForm::setSession(const Session& session) {
   chosen_ = other ? 0 : chosenAfter(boardNames(session_), boardNames(session), chosen_);
   session_ = session;
   showChosen();
+  if (other) form_->foldMore();
 }
 
 void BoardsForm::showChosen() {
@@ -89,9 +81,8 @@ void BoardsForm::showChosen() {
                     : static_cast<std::size_t>(names.size()) >= session_.cameras.size()
                         ? tr("Each camera sees one board, so there cannot be more boards than cameras")
                         : QString());
-  blinks_->setVisible(session_.further_boards.empty() && session_.board.hasPattern());
-  blinks_->setChecked(session_.board_blinks);
   form_->setBoard(boardAt(session_, chosen_), measuredAt(session_, chosen_));
+  form_->setBlinking(session_.further_boards.empty() && session_.board.hasPattern(), session_.board_blinks);
   form_->setName(names.size() > 1 ? names[chosen] : QString(), seenBy());
 }
 

@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-class QCheckBox;
-
 namespace evical::ui {
 
 class BoardChooser;
@@ -47,7 +45,6 @@ class BoardsForm : public QWidget {
   std::size_t chosen_ = 0;
   BoardChooser* chooser_;
   BoardForm* form_;
-  QCheckBox* blinks_;
 };
 
 }  // namespace evical::ui

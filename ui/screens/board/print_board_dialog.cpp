@@ -21,7 +21,9 @@
 #include <QFormLayout>
 #include <QGroupBox>
 #include <QLabel>
+#include <QLocale>
 #include <QMarginsF>
+#include <QMenu>
 #include <QPageLayout>
 #include <QPageSize>
 #include <QPainter>
@@ -31,11 +33,14 @@
 #include <QScrollArea>
 #include <QSettings>
 #include <QSpinBox>
+#include <QToolButton>
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace evical::ui {
 namespace {
@@ -50,6 +55,31 @@ QString textOf(const CalibrationError& error) {
   return text;
 }
 
+// Index in papers(): smallest that the board fits, and into which the usual paper fits too, since a printer
+// with A4 lacks Letter. If there is none, their number, which is the size of the board.
+int proposedPaper(const Board& board) {
+  const Paper& usual = usualPaper();
+  const auto proposed = std::find_if(papers().begin(), papers().end(), [&](const Paper& paper) {
+    SheetOptions sheet;
+    sheet.paper = paper;
+    return paper.short_mm >= usual.short_mm && paper.long_mm >= usual.long_mm && fitsSheet(board, sheet);
+  });
+  return static_cast<int>(proposed - papers().begin());
+}
+
+// The labels that are shown get one width, so that the fields of all forms start at the same place.
+void alignLabels(std::initializer_list<QFormLayout*> forms) {
+  std::vector<QWidget*> labels;
+  for (QFormLayout* const form : forms)
+    for (int row = 0; row < form->rowCount(); ++row)
+      if (const QLayoutItem* const label = form->itemAt(row, QFormLayout::LabelRole);
+          label != nullptr && !label->widget()->isHidden())
+        labels.push_back(label->widget());
+  int widest_px = 0;
+  for (const QWidget* const label : labels) widest_px = std::max(widest_px, label->sizeHint().width());
+  for (QWidget* const label : labels) label->setMinimumWidth(widest_px);
+}
+
 QPushButton* sheetButton(const QString& icon_name, const QString& text, const QString& tip, QWidget* parent) {
   auto* const made = new QPushButton(icon(icon_name), text, parent);
   made->setToolTip(tip);
@@ -58,6 +88,12 @@ QPushButton* sheetButton(const QString& icon_name, const QString& text, const QS
 }
 
 }  // namespace
+
+const Paper& usualPaper() {
+  const bool us = QLocale().measurementSystem() == QLocale::ImperialUSSystem;
+  return *std::find_if(papers().begin(), papers().end(),
+                       [&](const Paper& paper) { return paper.name == (us ? "Letter" : "A4"); });
+}
 
 void writeBoardFile(const BoardFile& file) {
   const QString ending = QFileInfo(file.path).suffix().toLower();
@@ -85,22 +121,16 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
           wrappedLabel(tr("This board looks the same upside down: it suits only the intrinsics of a camera, "
                           "not a calibration with an IMU. Choose an odd number of rows."),
                        "problem", this)),
-      measured_(new MeasuredForm(this)) {
+      taken_(wrappedLabel({}, "", this)),
+      measured_(new MeasuredForm(this)),
+      after_printing_(new QToolButton(this)) {
   setWindowTitle(tr("Print a board"));
   setObjectName("print_board");
   makeButtons();
   auto* const columns = new QHBoxLayout;
   columns->setSpacing(14);
   columns->addWidget(makeFields());
-  auto* const right = new QVBoxLayout;
-  right->addWidget(preview_, 1);
-  right->addWidget(half_turn_);
-  right->addWidget(message_);
-  auto* const outputs = new QHBoxLayout;
-  for (QPushButton* const each : {print_, save_, blink_, open_}) outputs->addWidget(each);
-  outputs->addStretch();
-  right->addLayout(outputs);
-  columns->addLayout(right, 1);
+  columns->addLayout(makeOutputs(), 1);
   auto* const close = new QDialogButtonBox(QDialogButtonBox::Close, this);
   connect(close, &QDialogButtonBox::rejected, this, &QDialog::reject);
   auto* const layout = new QVBoxLayout(this);
@@ -118,30 +148,27 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
 QWidget* PrintBoardDialog::makeFields() {
   constexpr int kWidth_px = 330;
   auto* const fields = new QWidget(this);
+  fields->setFixedWidth(kWidth_px);
   auto* const column = new QVBoxLayout(fields);
   column->setContentsMargins(0, 0, 6, 0);
   form_->showNumbersOnly();
+  form_->findChild<QScrollArea*>()->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
   auto* const board = new QGroupBox(tr("1. The board"), fields);
   (new QVBoxLayout(board))->addWidget(form_);
   column->addWidget(board);
   column->addWidget(makePaper());
-  column->addWidget(makeMeasure());
-  column->addStretch();
-  auto* const area = new QScrollArea(this);
-  area->setWidget(fields);
-  area->setWidgetResizable(true);
-  area->setFrameShape(QFrame::NoFrame);
-  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  area->setFixedWidth(kWidth_px);
-  return area;
+  column->addStretch(1);
+  return fields;
 }
 
 QWidget* PrintBoardDialog::makePaper() {
   auto* const group = new QGroupBox(tr("2. The paper"), this);
-  group->setLayout(paper_form_);
+  (new QVBoxLayout(group))->addLayout(paper_form_);
+  paper_form_->setContentsMargins(0, 0, 4, 0);  // those of the board's form
   paper_->setObjectName("paper");
-  paper_->addItem(tr("Size of the board"));
   for (const Paper& paper : papers()) paper_->addItem(QString::fromStdString(paper.name));
+  paper_->addItem(tr("Size of the board"));
+  paper_->setCurrentIndex(proposedPaper(board_));
   paper_->setToolTip(tr("The board is centred on the sheet, in portrait or landscape format"));
   margin_mm_->setValue(kSheetMmPerM * SheetOptions{}.margin_m);
   margin_mm_->setToolTip(tr("Minimum white margin around the board"));
@@ -171,24 +198,68 @@ QWidget* PrintBoardDialog::makePaper() {
   return group;
 }
 
+// Preview, buttons below it, and the step after them.
+QLayout* PrintBoardDialog::makeOutputs() {
+  auto* const column = new QVBoxLayout;
+  column->addWidget(preview_, 1);
+  column->addWidget(half_turn_);
+  column->addWidget(message_);
+  auto* const outputs = new QHBoxLayout;
+  for (QPushButton* const each : {print_, save_, blink_, open_}) outputs->addWidget(each);
+  outputs->addStretch();
+  column->addLayout(outputs);
+  column->addWidget(wrappedLabel(
+      tr("The page that blinks is for a screen. It gives the intrinsics of an event camera at rest."), "hint",
+      this));
+  column->addWidget(after_printing_, 0, Qt::AlignLeft);
+  column->addWidget(makeMeasure());
+  return column;
+}
+
 QWidget* PrintBoardDialog::makeMeasure() {
-  auto* const group = new QGroupBox(tr("3. After printing"), this);
+  constexpr int kForm_px = 280;
+  auto* const group = new QWidget(this);
   auto* const layout = new QVBoxLayout(group);
+  layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(wrappedLabel(
       tr("The line below the board must be 100 mm long. Glue the print to a flat plate, "
          "and measure it. A relative error of the board's size causes the same relative error of "
          "translations."),
       "hint", group));
-  layout->addWidget(measured_);
-  layout->addWidget(take_);
+  auto* const column = new QVBoxLayout;
+  column->addWidget(take_, 0, Qt::AlignLeft);
+  column->addWidget(taken_);
+  column->addStretch(1);
+  auto* const row = new QHBoxLayout;
+  row->setSpacing(14);
+  measured_->setFixedWidth(kForm_px);
+  row->addWidget(measured_);
+  row->addLayout(column, 1);
+  layout->addLayout(row);
+  after_printing_->setObjectName("after_printing");
+  after_printing_->setText(tr("3. After printing: measure the board and use it"));
+  after_printing_->setToolTip(tr("Shows the fields for the measured length; opens after printing or saving"));
+  after_printing_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  after_printing_->setCheckable(true);
+  const auto open = [this, group](bool opened) {
+    after_printing_->setIcon(icon(opened ? "down" : "right"));
+    group->setVisible(opened);
+  };
+  open(false);
+  connect(after_printing_, &QToolButton::toggled, group, open);
+  connect(measured_, &MeasuredForm::changed, taken_, &QLabel::clear);
   return group;
 }
 
 void PrintBoardDialog::makeButtons() {
   print_ = sheetButton("board", tr("&Print..."), tr("Send to a printer, at 100 %"), this);
   save_ = sheetButton("save", tr("&Save..."), tr("Save to a PDF, SVG or PNG file, to scale"), this);
+  auto* const formats = new QMenu(save_);
+  for (const char* const ending : {"pdf", "svg", "png"})
+    formats->addAction(QString(ending).toUpper() + "...", this, [this, ending] { chooseFile(ending); });
+  save_->setMenu(formats);
   blink_ =
-      sheetButton("demo", tr("Page that &blinks..."),
+      sheetButton("screen", tr("Page that &blinks..."),
                   tr("Web page that flashes the board on a screen, for the intrinsics of an event camera at "
                      "rest"),
                   this);
@@ -204,24 +275,19 @@ void PrintBoardDialog::makeButtons() {
   save_->setProperty("primary", true);
   open_->hide();
   connect(print_, &QPushButton::clicked, this, &PrintBoardDialog::print);
-  connect(save_, &QPushButton::clicked, this, &PrintBoardDialog::chooseFile);
-  connect(blink_, &QPushButton::clicked, this, &PrintBoardDialog::chooseBlinkFile);
+  connect(blink_, &QPushButton::clicked, this, [this] { chooseFile("html"); });
   connect(open_, &QPushButton::clicked, this, [this] {
     if (!QDesktopServices::openUrl(QUrl::fromLocalFile(written_file_)))
       say(tr("No program on this computer opens %1").arg(written_file_), true);
   });
-  connect(take_, &QPushButton::clicked, this, [this] {
-    const std::optional<MeasuredLength> measured = measured_->measured();
-    emit boardTaken(board_, measured);
-    say(measured ? tr("Entered, with the measured length.") : tr("Entered, with the nominal size."), false);
-  });
+  connect(take_, &QPushButton::clicked, this, [this] { emit boardTaken(board_, measured_->measured()); });
 }
 
 SheetOptions PrintBoardDialog::sheetOptions() const {
   SheetOptions options;
   options.margin_m = margin_mm_->value() / kSheetMmPerM;
-  if (const int index = paper_->currentIndex(); index > 0)
-    options.paper = papers()[static_cast<std::size_t>(index - 1)];
+  if (const auto index = static_cast<std::size_t>(paper_->currentIndex()); index < papers().size())
+    options.paper = papers()[index];
   return options;
 }
 
@@ -233,6 +299,10 @@ void PrintBoardDialog::showBoard() {
   form_->setBoard(board_, {});
   paper_form_->setRowVisible(border_bits_, board_.type == BoardType::AprilGrid);
   paper_form_->setRowVisible(markers_, board_.type == BoardType::Charuco);
+  alignLabels({form_->findChild<QFormLayout*>(), paper_form_});
+  auto* const numbers = form_->findChild<QScrollArea*>();
+  numbers->setFixedHeight(numbers->widget()->sizeHint().height());  // all rows are visible
+  taken_->clear();
   try {
     sheet_ = layOut(board_, sheetOptions(), tagPrint());
     say(tr("Sheet of %1 mm x %2 mm. Print it at 100 %.")
@@ -249,18 +319,11 @@ void PrintBoardDialog::showBoard() {
   for (QPushButton* const output : {print_, save_, blink_, take_}) output->setEnabled(sheet_.has_value());
 }
 
-void PrintBoardDialog::chooseFile() {
+void PrintBoardDialog::chooseFile(const QString& ending) {
   const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
   const QString file =
-      QFileDialog::getSaveFileName(this, tr("Save the board"), QDir(folder).filePath("board.pdf"),
-                                   tr("PDF (*.pdf);;SVG (*.svg);;PNG (*.png)"));
-  if (!file.isEmpty()) saveTo(file);
-}
-
-void PrintBoardDialog::chooseBlinkFile() {
-  const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
-  const QString file = QFileDialog::getSaveFileName(
-      this, tr("Save the blinking page"), QDir(folder).filePath("board.html"), tr("Pages (*.html)"));
+      QFileDialog::getSaveFileName(this, tr("Save the board"), QDir(folder).filePath("board." + ending),
+                                   QString("%1 (*.%2)").arg(ending.toUpper(), ending));
   if (!file.isEmpty()) saveTo(file);
 }
 
@@ -287,6 +350,13 @@ void PrintBoardDialog::setWritten(const QString& file) {
           : tr("%1 is written. Print it at 100 %, and check the line below the board: 100 mm.").arg(file),
       false);
   open_->show();
+  after_printing_->setChecked(true);
+}
+
+void PrintBoardDialog::setTaken(bool in_session) {
+  taken_->setText(!in_session             ? tr("The board will be used for the next recording that you open.")
+                  : measured_->measured() ? tr("The session uses this board, with its measured length.")
+                                          : tr("The session uses this board, with its nominal size."));
 }
 
 void PrintBoardDialog::setNotWritten(const QString& why) {
@@ -307,9 +377,11 @@ void PrintBoardDialog::print() {
   const double dots_per_mm = printer.resolution() / kMmPerInch;
   painter.scale(dots_per_mm, dots_per_mm);
   paintSheet(painter, *sheet_);
-  say(painter.end() ? tr("Sent to the printer. Check the line below the board: 100 mm.")
-                    : tr("The printer did not accept the sheet. Save a PDF and print it."),
-      false);
+  const bool sent = painter.end();
+  say(sent ? tr("Sent to the printer. Check the line below the board: 100 mm.")
+           : tr("The printer did not accept the sheet. Save a PDF and print it."),
+      !sent);
+  if (sent) after_printing_->setChecked(true);
 }
 
 void PrintBoardDialog::say(const QString& text, bool problem) {

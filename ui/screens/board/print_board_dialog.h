@@ -17,6 +17,7 @@ class QFormLayout;
 class QLabel;
 class QPushButton;
 class QSpinBox;
+class QToolButton;
 
 namespace evical::ui {
 
@@ -24,6 +25,9 @@ class BoardForm;
 class MeasuredForm;
 class NumberField;
 class SheetPreview;
+
+// Letter or A4, by the desktop's country.
+const Paper& usualPaper();
 
 // Output file: .pdf, .svg, .png, or .html (blinking).
 struct BoardFile {
@@ -49,6 +53,7 @@ class PrintBoardDialog : public QDialog {
   void saveTo(const QString& file);  // format by the file's extension
   void setWritten(const QString& file);
   void setNotWritten(const QString& why);
+  void setTaken(bool in_session);  // after boardTaken(); else for the next recording
 
  signals:
   void fileRequested(const evical::ui::BoardFile& file);
@@ -58,10 +63,10 @@ class PrintBoardDialog : public QDialog {
  private:
   QWidget* makeFields();
   QWidget* makePaper();
+  QLayout* makeOutputs();
   QWidget* makeMeasure();
   void makeButtons();
-  void chooseFile();
-  void chooseBlinkFile();
+  void chooseFile(const QString& ending);
   void print();
   void showBoard();
   void say(const QString& text, bool problem);
@@ -74,8 +79,9 @@ class PrintBoardDialog : public QDialog {
   NumberField* margin_mm_;
   QSpinBox* resolution_dpi_;
   SheetPreview* preview_;
-  QLabel *message_, *half_turn_;
+  QLabel *message_, *half_turn_, *taken_;
   MeasuredForm* measured_;
+  QToolButton* after_printing_;  // shows the last step
   QPushButton *save_, *blink_, *print_, *open_, *take_;
   QString written_file_;
 };

@@ -23,7 +23,7 @@ class SheetPreview : public QWidget {
 
   void setSheet(std::optional<BoardSheet> sheet);  // none: empty preview
   QSize sizeHint() const override { return {420, 420}; }
-  QSize minimumSizeHint() const override { return {220, 220}; }
+  QSize minimumSizeHint() const override { return {220, 160}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;

@@ -5,6 +5,7 @@
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
+#include "ui/forms/form_label.h"
 #include "ui/screens/recording/clock_offset_field.h"
 #include "ui/theme/theme.h"
 
@@ -26,9 +27,8 @@ constexpr int kNotKnown = static_cast<int>(kCameraModelNames.size());  // last e
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
 QLabel* hiddenProblemLabel(QWidget* parent) {
-  auto* const label = new QLabel(parent);
+  auto* const label = new FormLabel({}, parent);
   label->setProperty("role", "problem");
-  label->setWordWrap(true);
   label->hide();
   return label;
 }
@@ -61,7 +61,7 @@ CameraForm::CameraForm(QWidget* parent)
       problem_(hiddenProblemLabel(this)) {
   for (int model = 0; model < kNotKnown; ++model)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
-  model_->addItem(tr("Unknown: calibrate from this recording"));
+  model_->addItem(tr("Unknown: calibrated first"));
   shutter_->setObjectName("shutter");
   shutter_->addItems({tr("Global"), tr("Rolling")});  // in Shutter's order
   shutter_->setToolTip(tr("For frame cameras only. The line delay of a rolling shutter is estimated."));
@@ -105,10 +105,10 @@ CameraForm::CameraForm(QWidget* parent)
   for (NumberField*& field : distortion_) {
     field = new NumberField(-kMostDistortion, kMostDistortion, this);
     field->setAccessibleName(tr("Distortion coefficient %1").arg(++coefficient));
-    field->setMinimumWidth(44);
+    field->setMinimumWidth(40);
     row->addWidget(field);
   }
-  form_->setContentsMargins(8, 8, 8, 8);
+  form_->setContentsMargins(4, 8, 4, 8);
   form_->setRowWrapPolicy(QFormLayout::DontWrapRows);  // wrapped fields vanish before rows that are hidden
   for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
     constexpr int kLeastCharacters = 8;  // longer names are readable in the open list
@@ -116,19 +116,26 @@ CameraForm::CameraForm(QWidget* parent)
     box->setMinimumContentsLength(kLeastCharacters);
   }
   form_->addRow(tr("Name"), name_);
+  // Names of models are too long for the column of fields in a narrow page.
+  auto* const line = new QHBoxLayout;
+  auto* const label = new QLabel(tr("Model"), this);
+  label->setBuddy(model_);
+  line->addWidget(label);
+  line->addWidget(model_, 1);
+  // The rows that most people need are visible in a small window.
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
-  form_->addRow(tr("Shutter"), shutter_);
-  form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(tr("Board"), board_);
-  form_->addRow(file);
-  form_->addRow(file_problem_);
   form_->addRow(problem_);
-  addUnderLabel(tr("Model"), model_);
+  form_->addRow(line);
   form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
-  addUnderLabel(tr("Distortion"), coefficients);
-  form_->addRow(coefficient_names_);
+  form_->addRow(tr("Distortion"), coefficient_names_);
+  form_->addRow(coefficients);
   form_->addRow(take_over_);
+  form_->addRow(file);
+  form_->addRow(file_problem_);
+  form_->addRow(tr("Shutter"), shutter_);
+  form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
@@ -147,14 +154,6 @@ std::vector<NumberField*> CameraForm::intrinsicsFields() const {
   std::vector<NumberField*> fields = {focal_x_px_, focal_y_px_, centre_x_px_, centre_y_px_};
   fields.insert(fields.end(), distortion_.begin(), distortion_.end());
   return fields;
-}
-
-// For fields that are too wide for the same line as the label.
-void CameraForm::addUnderLabel(const QString& text, QWidget* field) {
-  auto* const label = new QLabel(text, this);
-  label->setBuddy(field);
-  form_->addRow(label);
-  form_->addRow(field);
 }
 
 QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
@@ -177,6 +176,7 @@ void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::s
   boards_ = boards;
   showSensor();
   showBoard();
+  showShutter();
   name_->setText(QString::fromStdString(camera.name));
   width_px_->setValue(camera.resolution_px.width_px);
   height_px_->setValue(camera.resolution_px.height_px);
@@ -213,6 +213,15 @@ void CameraForm::showBoard() {
   const auto found = std::find(boards_.begin(), boards_.end(), camera_.board);
   board_->setCurrentIndex(found == boards_.end() ? -1 : static_cast<int>(found - boards_.begin()));
   form_->setRowVisible(board_, !boards_.empty());
+}
+
+void CameraForm::offerShutter(bool offered) {
+  shutter_offered_ = offered;
+  showShutter();
+}
+
+void CameraForm::showShutter() {
+  form_->setRowVisible(shutter_, shutter_offered_ || camera_.shutter != Shutter::Global);
 }
 
 void CameraForm::showCoefficients(const CameraIntrinsics& shown) {

@@ -32,6 +32,7 @@ class CameraForm : public QWidget {
   void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {},
                  const std::vector<std::string>& boards = {});
   void setProblem(const QString& text);
+  void offerShutter(bool offered);  // for cameras that may have frames
   // Intrinsics of the last run; offered while the camera has none.
   void setFound(const std::optional<CameraIntrinsics>& found);
   // If the file is unusable, shows the reason next to the button and leaves the camera unchanged.
@@ -47,14 +48,15 @@ class CameraForm : public QWidget {
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: unknown
   void showSensor();
   void showBoard();
+  void showShutter();
   void showTakeOver();
   void showCoefficients(const CameraIntrinsics& shown);
-  void addUnderLabel(const QString& text, QWidget* field);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;
 
   SessionCamera camera_;
   std::vector<std::string> others_, boards_;
+  bool shutter_offered_ = true;
   QFormLayout* form_;
   QLineEdit* name_;
   NumberField *width_px_, *height_px_, *clock_offset_s_;

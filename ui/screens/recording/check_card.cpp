@@ -12,7 +12,6 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -41,8 +40,8 @@ CheckCard::CheckCard(QWidget* parent)
       board_(wrappedLabel({}, "hint", this)),
       progress_(new QProgressBar(this)),
       more_(new QToolButton(this)),
-      details_(new QScrollArea(this)),
-      grid_(new QGridLayout) {
+      details_(new QWidget(this)),
+      grid_(new QGridLayout(details_)) {
   setProperty("card", "true");
   setObjectName("check_card");
   summary_->setObjectName("check_summary");
@@ -70,14 +69,6 @@ CheckCard::CheckCard(QWidget* parent)
   grid_->setHorizontalSpacing(12);
   grid_->setVerticalSpacing(5);
   grid_->setColumnStretch(3, 1);
-  auto* const rows = new QWidget(details_);
-  rows->setLayout(grid_);
-  details_->setWidget(rows);
-  details_->setWidgetResizable(true);
-  details_->setFrameShape(QFrame::NoFrame);
-  details_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  details_->viewport()->setAutoFillBackground(false);
-  rows->setAutoFillBackground(false);
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(14, 6, 10, 8);
   layout->setSpacing(4);
@@ -85,7 +76,7 @@ CheckCard::CheckCard(QWidget* parent)
   layout->addWidget(advice_);
   layout->addWidget(board_line_);
   layout->addWidget(follow_line_);
-  layout->addWidget(details_, 1);
+  layout->addWidget(details_);
   grid_->setContentsMargins(0, 4, 0, 2);
   setUnconfirmedBoard({});
   showDetails(false);
@@ -216,15 +207,16 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
   const bool named = hasSeveralSensors(assessment);
   int row = 0;
   for (const Assessed& one : assessment.all) {
-    auto* const mark = new LightMark(details_->widget());
+    auto* const mark = new LightMark(details_);
     mark->setLight(one.light);
     const QString sensor = QString::fromStdString(one.sensor);
     const QString title = titleOf(one.thing);
-    auto* const name = wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "",
-                                    details_->widget());
-    auto* const measured = wrappedLabel(QString::fromStdString(one.measured), "", details_->widget());
-    auto* const advice =
-        wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
+    auto* const name =
+        wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "", details_);
+    auto* const measured = wrappedLabel(QString::fromStdString(one.measured), "", details_);
+    if (!one.required.empty())
+      measured->setText(tr("%1, required %2").arg(measured->text(), QString::fromStdString(one.required)));
+    auto* const advice = wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", details_);
     name->setWordWrap(false);
     measured->setWordWrap(one.thing == AssessedThing::Obstacle);
     measured->setAccessibleName(tr("%1: %2, %3").arg(title, measured->text(), lightWord(one.light)));
@@ -234,8 +226,6 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
     grid_->addWidget(advice, row, 3, Qt::AlignTop);
     ++row;
   }
-  for (int i = 0; i < row; ++i) grid_->setRowStretch(i, 0);
-  grid_->setRowStretch(row, 1);  // remaining height goes below
 }
 
 void CheckCard::showDetails(bool shown) {
@@ -243,11 +233,7 @@ void CheckCard::showDetails(bool shown) {
   more_->setIcon(icon(shown ? "up" : "down"));
   more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   more_->setToolTip(shown ? tr("Hides the individual checks") : tr("Shows all checks with their lights"));
-  const bool visible = shown && more_->isVisibleTo(this);
-  if (visible == details_->isVisibleTo(this)) return;
-  details_->setVisible(visible);
-  setSizePolicy(QSizePolicy::Preferred, visible ? QSizePolicy::Expanding : QSizePolicy::Maximum);
-  emit detailsShown(visible);
+  details_->setVisible(shown && more_->isVisibleTo(this));
 }
 
 void CheckCard::setUnconfirmedBoard(const QString& board) {

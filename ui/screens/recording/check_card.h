@@ -12,7 +12,6 @@ class QCheckBox;
 class QGridLayout;
 class QLabel;
 class QProgressBar;
-class QScrollArea;
 class QToolButton;
 
 namespace evical::ui {
@@ -44,7 +43,6 @@ class CheckCard : public QFrame {
   void boardConfirmed();
   void followingWanted(bool following);
   void howToRecordRequested();
-  void detailsShown(bool shown);  // they take the space of the widgets below
 
  private:
   QWidget* makeBoardLine();
@@ -58,8 +56,7 @@ class CheckCard : public QFrame {
   QLabel *summary_, *advice_, *board_;
   QProgressBar* progress_;
   QToolButton* more_;
-  QScrollArea* details_;
-  QWidget *board_line_, *follow_line_;
+  QWidget *details_, *board_line_, *follow_line_;
   QCheckBox* follow_;
   QGridLayout* grid_;
   bool idle_ = true;  // no recording

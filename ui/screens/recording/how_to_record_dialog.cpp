@@ -2,6 +2,7 @@
 #include "ui/screens/recording/how_to_record_dialog.h"
 
 #include "ui/screens/recording/motion_picture.h"
+#include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QDialogButtonBox>
@@ -22,7 +23,9 @@ HowToRecordDialog::HowToRecordDialog(Motion motion, QWidget* parent)
       list_(new QListWidget(this)),
       picture_(new MotionPicture(this)),
       words_(new QLabel(this)),
-      play_(new QToolButton(this)) {
+      play_(new QToolButton(this)),
+      previous_(makeStep(-1, tr("&Previous"), "left")),
+      next_(makeStep(1, tr("&Next"), "right")) {
   constexpr int kList_px = 210, kWords_px = 92;
   setWindowTitle(tr("How to record"));
   setObjectName("how_to_record_dialog");
@@ -44,10 +47,15 @@ HowToRecordDialog::HowToRecordDialog(Motion motion, QWidget* parent)
   column->addWidget(picture_, 1);
   column->addWidget(words_);
   auto* const row = new QHBoxLayout;
-  row->addWidget(list_);
+  auto* const motions = new QVBoxLayout;
+  auto* const pace = wrappedLabel(tr("30 s in all, about 4 s for each motion"), "hint", this);
+  pace->setFixedWidth(kList_px);
+  motions->addWidget(pace);
+  motions->addWidget(list_, 1);
+  row->addLayout(motions);
   row->addLayout(column, 1);
   auto* const below = new QHBoxLayout;
-  below->addWidget(play_);
+  for (QToolButton* const each : {play_, previous_, next_}) below->addWidget(each);
   below->addWidget(close, 1);
   auto* const layout = new QVBoxLayout(this);
   layout->addLayout(row, 1);
@@ -55,6 +63,17 @@ HowToRecordDialog::HowToRecordDialog(Motion motion, QWidget* parent)
   list_->setCurrentRow(0);
   play_->setChecked(motion == Motion::Moving);
   setPlaying(play_->isChecked());
+}
+
+QToolButton* HowToRecordDialog::makeStep(int by, const QString& text, const QString& icon_name) {
+  auto* const made = new QToolButton(this);
+  made->setObjectName(by < 0 ? "previous_motion" : "next_motion");
+  made->setText(text);
+  made->setIcon(icon(icon_name));
+  made->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  made->setToolTip(by < 0 ? tr("Shows the previous motion") : tr("Shows the next motion"));
+  connect(made, &QToolButton::clicked, this, [this, by] { list_->setCurrentRow(list_->currentRow() + by); });
+  return made;
 }
 
 void HowToRecordDialog::showMotion(const QString& name) {
@@ -68,6 +87,8 @@ void HowToRecordDialog::choose(int row) {
   const ShownMotion& motion = shownMotions()[static_cast<std::size_t>(row)];
   picture_->setMotion(motion);
   words_->setText(motion.words);
+  previous_->setEnabled(row > 0);
+  next_->setEnabled(row + 1 < list_->count());
 }
 
 void HowToRecordDialog::setPlaying(bool playing) {

@@ -26,12 +26,13 @@ class HowToRecordDialog : public QDialog {
 
  private:
   void choose(int row);
+  QToolButton* makeStep(int by, const QString& text, const QString& icon_name);
   void setPlaying(bool playing);
 
   QListWidget* list_;
   MotionPicture* picture_;
   QLabel* words_;
-  QToolButton* play_;
+  QToolButton *play_, *previous_, *next_;
 };
 
 }  // namespace evical::ui

@@ -3,6 +3,7 @@
 
 #include "core/numerics/angles.h"
 
+#include "ui/forms/form_label.h"
 #include "ui/screens/recording/clock_offset_field.h"
 
 #include <QComboBox>
@@ -57,14 +58,13 @@ void setDensities(const ImuNoise& noise, SessionImu& imu) {
 }
 
 QLabel* explanation(QWidget* parent) {
-  auto* const label = new QLabel(
+  auto* const label = new FormLabel(
       QObject::tr(
           "Noise density of the IMU: a sample's standard deviation is the density times the square root of "
           "the rate. Data sheets give it at rest; vibration adds to it. The calibration estimates the actual "
           "size of the residuals, weights them accordingly, and notes large differences."),
       parent);
   label->setProperty("role", "hint");
-  label->setWordWrap(true);
   return label;
 }
 

@@ -2,6 +2,7 @@
 #include "ui/screens/recording/motion_picture.h"
 
 #include "core/geometry/board.h"
+#include "core/pipeline/rig/recording_assessment.h"
 #include "ui/theme/theme.h"
 
 #include <QPainter>
@@ -211,6 +212,7 @@ void MotionPicture::paintEvent(QPaintEvent*) {
   constexpr double kGap_px = 10.0, kCaption_px = 24.0;
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
+  if (scene_only_) return paintScene(painter, rect());
   const double column = 0.5 * (width() - kGap_px);
   const QRectF left(0.0, 0.0, column, height()), right(column + kGap_px, 0.0, column, height());
   for (const QRectF& box : {left, right}) {
@@ -223,12 +225,19 @@ void MotionPicture::paintEvent(QPaintEvent*) {
   paintView(painter, right.adjusted(8.0, 8.0, -8.0, -kCaption_px - 2.0));
   // In steps of ten: finer digits would change too fast to read.
   const int speed = 10 * static_cast<int>(std::lround(0.1 * speed_px_s(motion_, share_)));
-  paintCaption(painter, right, playing() ? tr("Camera image: %1 px/s").arg(speed) : tr("Camera image"));
+  paintCaption(painter, right,
+               playing() ? tr("Camera image: %1 px/s (good median: %2 to %3)")
+                               .arg(speed)
+                               .arg(kGoodSpeed_px_s)
+                               .arg(kFastSpeed_px_s)
+                         : tr("Camera image"));
 }
 
 void MotionPicture::paintCaption(QPainter& painter, const QRectF& box, const QString& text) const {
   painter.setPen(theme().faint_text);
-  painter.drawText(box.adjusted(8.0, 0.0, -8.0, -5.0), Qt::AlignHCenter | Qt::AlignBottom, text);
+  const QRectF place = box.adjusted(8.0, 0.0, -8.0, -5.0);
+  painter.drawText(place, Qt::AlignHCenter | Qt::AlignBottom,
+                   painter.fontMetrics().elidedText(text, Qt::ElideRight, static_cast<int>(place.width())));
 }
 
 void MotionPicture::paintScene(QPainter& painter, const QRectF& box) const {

@@ -18,13 +18,14 @@ class MotionPicture : public QWidget {
  public:
   explicit MotionPicture(QWidget* parent = nullptr);
 
-  void setMotion(const ShownMotion& motion);  // from its start
-  void setPlaying(bool playing);              // else it pauses
+  void setMotion(const ShownMotion& motion);            // from its start
+  void setSceneOnly(bool only) { scene_only_ = only; }  // without the camera's image
+  void setPlaying(bool playing);                        // else it pauses
   bool playing() const { return timer_.isActive(); }
   double share() const { return share_; }  // elapsed share of the ten seconds
   void setShare(double share);
   QSize sizeHint() const override { return {560, 300}; }
-  QSize minimumSizeHint() const override { return {360, 190}; }
+  QSize minimumSizeHint() const override { return scene_only_ ? QSize(120, 120) : QSize(360, 190); }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -41,6 +42,7 @@ class MotionPicture : public QWidget {
   QTimer timer_;
   QElapsedTimer since_tick_;
   double share_ = 0.0;
+  bool scene_only_ = false;
   bool wanted_ = false;  // plays while visible
 };
 

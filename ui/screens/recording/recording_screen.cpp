@@ -21,6 +21,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QStackedWidget>
 #include <QTabWidget>
 #include <QVBoxLayout>
@@ -50,8 +51,7 @@ QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget*
   return frame;
 }
 
-QScrollArea* scrolling(QWidget* content) {
-  auto* const area = new QScrollArea;
+QScrollArea* scrolling(QWidget* content, QScrollArea* area) {
   area->setWidget(content);
   area->setWidgetResizable(true);
   area->setFrameShape(QFrame::NoFrame);
@@ -59,6 +59,24 @@ QScrollArea* scrolling(QWidget* content) {
   content->setAutoFillBackground(false);
   return area;
 }
+
+// Scrolls vertically: has the width of its content.
+class PageArea final : public QScrollArea {
+ public:
+  using QScrollArea::QScrollArea;
+  QSize minimumSizeHint() const override {
+    return {widget()->minimumSizeHint().width() + verticalScrollBar()->sizeHint().width(),
+            QScrollArea::minimumSizeHint().height()};
+  }
+};
+
+// Takes the rest of the page, and scrolls inside: the page must not scroll for the preferred height.
+class FormsRow final : public QWidget {
+ public:
+  using QWidget::QWidget;
+  bool hasHeightForWidth() const override { return false; }
+  QSize sizeHint() const override { return minimumSizeHint(); }
+};
 
 // From the first to the last event or sample of any stream.
 std::optional<double> duration_s(const Inspection& inspection) {
@@ -97,6 +115,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       check_(new CheckCard(this)),
       sensors_(new QTabWidget(this)),
       reference_(new QComboBox(this)),
+      reference_form_(new QFormLayout),
       aim_(new AimChooser(this)),
       camera_only_(new QPushButton(icon("calibrate"), tr("Calibrate the camera"), this)) {
   stack_->addWidget(makeEmpty());
@@ -172,15 +191,10 @@ QWidget* RecordingScreen::makeContent() {
   layout->addWidget(makeHeader());
   layout->addWidget(card(tr("Streams"), streams, content));
   layout->addWidget(check_);
-  QWidget* const forms = makeForms();
-  layout->addWidget(forms, 1);
-  connect(check_, &CheckCard::detailsShown, forms, [this, forms, layout](bool shown) {
-    forms->setVisible(!shown);
-    layout->setStretchFactor(check_, shown ? 1 : 0);
-  });
+  layout->addWidget(makeForms(), 1);
   for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
   looking_->hide();
-  return content;
+  return scrolling(content, new PageArea(this));
 }
 
 QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
@@ -199,17 +213,18 @@ QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
 }
 
 QWidget* RecordingScreen::makeForms() {
-  auto* const forms = new QWidget(this);
+  constexpr int kLeastSensors_px = 246;  // tabs, and the form of a camera down to its distortion
+  auto* const forms = new FormsRow(this);
   auto* const sensors = new QWidget(forms);
   auto* const column = new QVBoxLayout(sensors);
   column->setContentsMargins(0, 0, 0, 0);
+  sensors_->setMinimumHeight(kLeastSensors_px);
   column->addWidget(sensors_, 1);
-  auto* const form = new QFormLayout;
   reference_->setToolTip(
       tr("The IMU that defines the reference frame and clock; a camera "
          "if there is no IMU"));
-  form->addRow(tr("Reference"), reference_);
-  column->addLayout(form);
+  reference_form_->addRow(tr("Reference"), reference_);
+  column->addLayout(reference_form_);
   auto* const row = new QHBoxLayout(forms);
   row->setContentsMargins(0, 0, 0, 0);
   row->setSpacing(10);
@@ -253,13 +268,13 @@ void RecordingScreen::showSensors() {
     imus_.clear();
     for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
       cameras_.push_back(new CameraForm);
-      sensors_->addTab(scrolling(cameras_.back()), icon("camera"), {});
+      sensors_->addTab(scrolling(cameras_.back(), new QScrollArea), icon("camera"), {});
       connect(cameras_.back(), &CameraForm::edited, this,
               [this, i](const SessionCamera& camera, const QString& field) { editCamera(i, camera, field); });
     }
     for (std::size_t i = 0; i < session_.imus.size(); ++i) {
       imus_.push_back(new ImuForm);
-      sensors_->addTab(scrolling(imus_.back()), icon("imu"), {});
+      sensors_->addTab(scrolling(imus_.back(), new QScrollArea), icon("imu"), {});
       connect(imus_.back(), &ImuForm::edited, this,
               [this, i](const SessionImu& imu, const QString& field) { editImu(i, imu, field); });
     }
@@ -278,6 +293,22 @@ void RecordingScreen::showSensors() {
     reference_->addItem(sensors_->tabText(tab));
   }
   reference_->setCurrentText(QString::fromStdString(session_.reference));
+  reference_form_->setRowVisible(reference_, reference_->count() > 1);
+  showShutters();
+}
+
+// Event cameras have no shutter. Streams that are not read yet may be of frames.
+void RecordingScreen::showShutters() {
+  const std::size_t count = std::min(cameras_.size(), session_.cameras.size());
+  for (std::size_t i = 0; i < count; ++i) cameras_[i]->offerShutter(!isOfEvents(session_.cameras[i]));
+}
+
+bool RecordingScreen::isOfEvents(const SessionCamera& camera) const {
+  for (const Inspected& one : inspected_)
+    for (const StreamSummary& stream : one.inspection->streams)
+      if (ownRecording(one) == camera.recording && stream.info.name == camera.stream)
+        return stream.info.type == StreamType::Events;
+  return false;
 }
 
 void RecordingScreen::setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found) {
@@ -358,6 +389,7 @@ void RecordingScreen::addInspection(const QString& recording, std::shared_ptr<co
   looking_text_->hide();
   looking_->hide();
   listStreams();
+  showShutters();
   showFileFaults();
 }
 

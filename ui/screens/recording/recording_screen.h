@@ -13,6 +13,7 @@
 #include <vector>
 
 class QComboBox;
+class QFormLayout;
 class QLabel;
 class QProgressBar;
 class QPushButton;
@@ -76,6 +77,8 @@ class RecordingScreen : public QWidget {
   QWidget* makeContent();
   void showVerdict();
   void showSensors();
+  void showShutters();
+  bool isOfEvents(const SessionCamera& camera) const;
   void chooseRole(int row, int role);
   QWidget* makeRangeAndFiles(QWidget* parent);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
@@ -102,6 +105,7 @@ class RecordingScreen : public QWidget {
   Light reservation_light_ = Light::Good;
   QTabWidget* sensors_;
   QComboBox* reference_;
+  QFormLayout* reference_form_;
   AimChooser* aim_;
   QPushButton* camera_only_;
   std::size_t problems_ = 0;

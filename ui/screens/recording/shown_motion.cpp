@@ -2,6 +2,7 @@
 #include "ui/screens/recording/shown_motion.h"
 
 #include "core/numerics/angles.h"
+#include "core/pipeline/rig/recording_assessment.h"
 
 #include <QObject>
 
@@ -104,11 +105,11 @@ const std::vector<ShownMotion>& shownMotions() {
       {"together", QObject::tr("All at once"),
        QObject::tr(
            "Now record 20 to 30 seconds of all these motions, mixed. Circles should cross the image in one "
-           "or "
-           "two seconds, "
-           "at 50 to 400 pixels per second. An event camera at rest sees nothing, so pauses at the "
-           "start or at the end are not needed. Light the board evenly, by daylight or a lamp that does not "
-           "flicker, and keep moving objects out of view."),
+           "or two seconds: the check rates a median of %1 to %2 pixels per second as good. An event camera "
+           "at rest sees nothing, so pauses at the start or at the end are not needed. Light the board "
+           "evenly, by daylight or a lamp that does not flicker, and keep moving objects out of view.")
+           .arg(kGoodSpeed_px_s)
+           .arg(kFastSpeed_px_s),
        &together, ahead}};
   return all;
 }

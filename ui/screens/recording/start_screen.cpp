@@ -1,127 +1,184 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording/start_screen.h"
 
-#include "ui/screens/recording/aim_chooser.h"
+#include "core/report/result_yaml.h"
+#include "ui/screens/recording/motion_picture.h"
+#include "ui/screens/recording/start_picture.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
 #include <QDir>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QHeaderView>
 #include <QLabel>
-#include <QListWidget>
+#include <QLocale>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QTreeWidget>
 #include <QVBoxLayout>
 
 namespace evical::ui {
 namespace {
 
-constexpr int kColumn_px = 400, kHeading_px = 30, kRecent_px = 296;
+constexpr int kWidest_px = 1080, kPicture_px = 170, kDemo_px = 300;
 
 QPushButton* choice(const QString& text, const QString& icon_name, QWidget* parent) {
-  constexpr int kHeight_px = 44, kIcon_px = 22;
-  auto* const button = new QPushButton(icon(icon_name), "  " + text, parent);
-  button->setIconSize(QSize(kIcon_px, kIcon_px));
+  auto* const button = new QPushButton(icon(icon_name), " " + text, parent);
+  constexpr int kHeight_px = 36;
   button->setMinimumHeight(kHeight_px);
-  button->setStyleSheet("text-align: left");
   return button;
+}
+
+// A card with picture, title, explanation and buttons.
+QFrame* stepCard(QWidget* picture, const QString& title, const QString& text,
+                 const QList<QPushButton*>& buttons) {
+  auto* const card = new QFrame;
+  card->setProperty("card", true);
+  auto* const layout = new QVBoxLayout(card);
+  layout->setContentsMargins(14, 14, 14, 14);
+  picture->setFixedHeight(kPicture_px);
+  layout->addWidget(picture);
+  layout->addWidget(wrappedLabel(title, "heading", card));
+  layout->addWidget(wrappedLabel(text, "hint", card));
+  layout->addStretch();
+  for (QPushButton* const button : buttons) layout->addWidget(button);
+  return card;
+}
+
+// Name by which people know a file: that of its folder if its own is the same for all.
+QString nameOf(const QFileInfo& file) {
+  const QString own = file.completeBaseName();
+  if (own != "session" && own != "result" && own != "recording") return file.fileName();
+  const QFileInfo folder(file.absolutePath());
+  const QFileInfo above(folder.absolutePath());
+  return above.suffix() == "runs" ? above.completeBaseName() + " " + folder.fileName() : folder.fileName();
 }
 
 }  // namespace
 
 StartScreen::StartScreen(QWidget* parent)
     : QWidget(parent),
-      recent_(new QListWidget(this)),
-      no_recent_(wrappedLabel(tr("No recent files. Files that you open are listed here."), "hint", this)),
+      recent_(new QTreeWidget(this)),
+      no_recent_(wrappedLabel(tr("Files that you open are listed here."), "hint", this)),
       demo_(choice(tr("Try the demo recording"), "demo", this)),
-      demo_progress_(new QProgressBar(this)),
-      aim_(new AimChooser(this)) {
-  auto* const columns = new QHBoxLayout;
-  columns->setSpacing(48);
-  columns->addStretch();
-  columns->addWidget(makeChoices());
-  columns->addWidget(makeRecent(), 0, Qt::AlignTop);
-  columns->addStretch();
-  auto* const layout = new QVBoxLayout(this);
-  layout->addStretch(1);
-  layout->addLayout(columns);
-  layout->addStretch(2);
+      demo_progress_(new QProgressBar(this)) {
+  auto* const below = new QHBoxLayout;
+  below->setSpacing(24);
+  below->addWidget(makeRecent(), 1);
+  below->addWidget(makeDemo());
+  auto* const column = new QWidget(this);
+  column->setMaximumWidth(kWidest_px);
+  auto* const content = new QVBoxLayout(column);
+  content->setContentsMargins(16, 8, 16, 8);
+  content->setSpacing(12);
+  content->addWidget(wrappedLabel(tr("Evical"), "title", column));
+  content->addWidget(wrappedLabel(
+      tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each with its "
+         "uncertainty, from one recording of a printed board. Also single cameras."),
+      "hint", column));
+  content->addWidget(makeSteps());
+  content->addLayout(below, 1);
+  auto* const layout = new QHBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addStretch();
+  layout->addWidget(column, 1000);
+  layout->addStretch();
   setRecentFiles({});
   setDemoRunning(false);
 }
 
-QWidget* StartScreen::makeChoices() {
-  auto* const column = new QWidget(this);
-  column->setFixedWidth(kColumn_px);
-  auto* const layout = new QVBoxLayout(column);
-  layout->setSpacing(10);
-  layout->addWidget(wrappedLabel(tr("Evical"), "title", column));
-  layout->addWidget(
-      wrappedLabel(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
-                      "with its uncertainty, from one recording of a printed circle grid. Also calibrates "
-                      "single cameras."),
-                   "hint", column));
-  layout->addSpacing(6);
-  layout->addWidget(aim_, 0, Qt::AlignLeft);
-  layout->addSpacing(6);
-  auto* const recording = choice(tr("Open a recording..."), "recording", column);
-  recording->setToolTip(tr("A ROS bag, or a folder with events.txt and imu.txt"));
-  auto* const session = choice(tr("Open a session..."), "open", column);
-  session->setToolTip(tr("A session file that lists recording, board and sensors"));
-  demo_->setToolTip(tr("Simulates a recording of ten seconds with a known truth, and opens it"));
-  auto* const print_board = choice(tr("Print a board..."), "board", column);
+QWidget* StartScreen::makeSteps() {
+  auto* const steps = new QWidget(this);
+  auto* const print_board = choice(tr("Print a board..."), "board", steps);
   print_board->setObjectName("print_board_button");
   print_board->setToolTip(tr("A target of circles, squares or tags, to scale, for a printer or a screen"));
-  auto* const how = choice(tr("How to record..."), "play", column);
+  auto* const how = choice(tr("How to record..."), "play", steps);
   how->setToolTip(tr("Animations of the motions that a calibration needs"));
-  auto* const before = new QHBoxLayout;
-  before->addWidget(print_board);
-  before->addWidget(how);
-  layout->addLayout(before);
-  for (QPushButton* const button : {recording, session, demo_}) layout->addWidget(button);
-  demo_progress_->setRange(0, 1000);
-  demo_progress_->setTextVisible(false);
-  layout->addWidget(demo_progress_);
-  layout->addSpacing(8);
-  layout->addWidget(wrappedLabel(tr("Or drop a file anywhere in this window."), "hint", column));
-  layout->addStretch();
+  auto* const recording = choice(tr("Open a recording..."), "recording", steps);
+  recording->setProperty("primary", true);
+  recording->setIcon(icon("recording", QPalette::HighlightedText));
+  recording->setToolTip(
+      tr("A ROS bag, RAW, AEDAT, HDF5 or CSV file, or a folder with events.txt and imu.txt"));
+  auto* const motion = new MotionPicture(steps);
+  motion->setSceneOnly(true);
+  motion->setMotion(shownMotions().back());
+  motion->setPlaying(desktopAnimates());
+  auto* const layout = new QHBoxLayout(steps);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(16);
+  layout->addWidget(stepCard(new StartPicture(StartPicture::Shows::Sheet, steps), tr("1. Print a board"),
+                             tr("Print it to scale, and glue it onto something flat."), {print_board}),
+                    1);
+  layout->addWidget(
+      stepCard(motion, tr("2. Record 30 s"),
+               tr("Move camera and IMU together in front of the board, in all directions."), {how}),
+      1);
+  layout->addWidget(
+      stepCard(new StartPicture(StartPicture::Shows::Events, steps), tr("3. Open the recording"),
+               tr("Then press Calibrate. You can also drop a file anywhere in this window."), {recording}),
+      1);
   connect(recording, &QPushButton::clicked, this, &StartScreen::openRecordingRequested);
-  connect(session, &QPushButton::clicked, this, &StartScreen::openSessionRequested);
-  connect(demo_, &QPushButton::clicked, this, &StartScreen::demoRequested);
   connect(print_board, &QPushButton::clicked, this, &StartScreen::printBoardRequested);
   connect(how, &QPushButton::clicked, this, &StartScreen::howToRecordRequested);
+  return steps;
+}
+
+QWidget* StartScreen::makeDemo() {
+  auto* const column = new QWidget(this);
+  column->setFixedWidth(kDemo_px);
+  auto* const layout = new QVBoxLayout(column);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const session = choice(tr("Open a session or a result..."), "open", column);
+  session->setToolTip(tr("A session file lists recording, board and sensors"));
+  demo_->setToolTip(tr("A recording of ten seconds with a known truth"));
+  layout->addWidget(wrappedLabel(tr("Other ways to begin"), "heading", column));
+  layout->addWidget(session);
+  layout->addWidget(demo_);
+  layout->addWidget(demo_progress_);
+  layout->addWidget(wrappedLabel(tr("The demo is simulated once, which takes about 15 s."), "hint", column));
+  layout->addStretch();
+  demo_progress_->setRange(0, 1000);
+  demo_progress_->setTextVisible(false);
+  connect(session, &QPushButton::clicked, this, &StartScreen::openSessionRequested);
+  connect(demo_, &QPushButton::clicked, this, &StartScreen::demoRequested);
   return column;
 }
 
 QWidget* StartScreen::makeRecent() {
   auto* const column = new QWidget(this);
-  column->setFixedWidth(kColumn_px);
   auto* const layout = new QVBoxLayout(column);
-  auto* const heading = wrappedLabel(tr("Recent"), "heading", column);
-  heading->setMinimumHeight(kHeading_px);
-  layout->addWidget(heading);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(wrappedLabel(tr("Recent"), "heading", column));
   layout->addWidget(no_recent_);
   layout->addWidget(recent_, 1);
-  recent_->setMinimumHeight(kRecent_px);
+  layout->addStretch();
+  recent_->setObjectName("recent");
   recent_->setAccessibleName(tr("Recent files"));
-  recent_->setTextElideMode(Qt::ElideMiddle);
-  recent_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  recent_->setToolTip(tr("Double-click or press Enter to open"));
-  connect(recent_, &QListWidget::itemActivated, this,
-          [this](QListWidgetItem* item) { emit fileChosen(item->data(Qt::UserRole).toString()); });
+  recent_->setHeaderLabels({tr("Name"), tr("Opened"), tr("Result")});
+  recent_->setRootIsDecorated(false);
+  recent_->header()->setStretchLastSection(false);
+  recent_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  recent_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+  connect(recent_, &QTreeWidget::itemActivated, this,
+          [this](const QTreeWidgetItem* item) { emit fileChosen(item->data(0, Qt::UserRole).toString()); });
   return column;
 }
 
-void StartScreen::setRecentFiles(const QStringList& files) {
+void StartScreen::setRecentFiles(const QList<RecentFile>& files) {
   recent_->clear();
-  for (const QString& file : files) {
-    const QFileInfo info(file);
-    const QString shown = QDir::toNativeSeparators(file).replace(QDir::homePath(), "~");
-    auto* const item =
-        new QListWidgetItem(icon(info.suffix() == "yaml" ? "open" : "recording"), shown, recent_);
-    item->setData(Qt::UserRole, file);
-    item->setToolTip(file);
+  for (const RecentFile& file : files) {
+    const QFileInfo info(file.path);
+    auto* const item = new QTreeWidgetItem(recent_);
+    item->setIcon(0, icon(info.suffix() == "yaml" ? "open" : "recording"));
+    item->setText(0, nameOf(info));
+    item->setText(1, QLocale().toString(file.opened, "d MMM yyyy, HH:mm"));
+    if (file.verdict) item->setIcon(2, verdictIcon(*file.verdict));
+    item->setText(2, file.verdict ? tr(statusName(*file.verdict)) : tr("not calibrated"));
+    item->setData(0, Qt::UserRole, file.path);
+    item->setToolTip(0,
+                     tr("%1\nDouble-click or press Enter to open").arg(QDir::toNativeSeparators(file.path)));
   }
   recent_->setVisible(!files.isEmpty());
   no_recent_->setVisible(files.isEmpty());
@@ -129,7 +186,7 @@ void StartScreen::setRecentFiles(const QStringList& files) {
 
 void StartScreen::setDemoRunning(bool running) {
   demo_->setEnabled(!running);
-  demo_->setText("  " + (running ? tr("Simulating the demo recording...") : tr("Try the demo recording")));
+  demo_->setText(" " + (running ? tr("Simulating the demo recording...") : tr("Try the demo recording")));
   demo_progress_->setValue(0);
   QSizePolicy policy = demo_progress_->sizePolicy();
   policy.setRetainSizeWhenHidden(true);

@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Start page: open a recording or a session, continue with a recent one, or try the demo.
+// Start page: three steps (print, record, open), recent files, and the demo.
 #pragma once
 
-#include <QStringList>
+#include "core/data/calibration_status.h"
+
+#include <QDateTime>
+#include <QList>
+#include <QString>
 #include <QWidget>
 
+#include <optional>
+
 class QLabel;
-class QListWidget;
 class QProgressBar;
 class QPushButton;
+class QTreeWidget;
 
 namespace evical::ui {
 
-class AimChooser;
+// A file that was opened earlier.
+struct RecentFile {
+  QString path;
+  QDateTime opened;
+  std::optional<CalibrationStatus> verdict;  // of its last calibration
+};
 
 class StartScreen : public QWidget {
   Q_OBJECT
@@ -20,10 +31,9 @@ class StartScreen : public QWidget {
  public:
   explicit StartScreen(QWidget* parent = nullptr);
 
-  void setRecentFiles(const QStringList& files);  // newest first
-  void setDemoProgress(double fraction);          // during its simulation
+  void setRecentFiles(const QList<RecentFile>& files);  // newest first
+  void setDemoProgress(double fraction);                // during its simulation
   void setDemoRunning(bool running);
-  AimChooser& aim() const { return *aim_; }  // what is calibrated
 
  signals:
   void openRecordingRequested();
@@ -34,14 +44,14 @@ class StartScreen : public QWidget {
   void fileChosen(const QString& file);  // a recent file
 
  private:
-  QWidget* makeChoices();
+  QWidget* makeSteps();
   QWidget* makeRecent();
+  QWidget* makeDemo();
 
-  QListWidget* recent_;
+  QTreeWidget* recent_;
   QLabel* no_recent_;
   QPushButton* demo_;
   QProgressBar* demo_progress_;
-  AimChooser* aim_;
 };
 
 }  // namespace evical::ui

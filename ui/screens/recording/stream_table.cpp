@@ -152,15 +152,25 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : QLocale().toString(stream.count)));
   setItem(row, kRate, readOnlyItem(rateText(stream)));
   setItem(row, kRange, readOnlyItem(rangeText(stream)));
+  addFaults(row, stream, faults);
+}
+
+void StreamTable::addFaults(int row, const StreamSummary& stream, const std::vector<RecordingFault>& faults) {
   QStringList own;
   for (const RecordingFault& fault : faults)
     if (fault.stream == stream.info.name) own << fromCore(fault.text);
+  const QString note = fromCore(stream.note);
+  const QString none = stream.count == 0 ? QString() : note.isEmpty() ? tr("none found") : note;
   setItem(row, kFaults,
-          readOnlyItem(own.isEmpty()     ? (stream.count == 0 ? QString() : tr("none found"))
+          readOnlyItem(own.isEmpty()     ? none
                        : own.size() == 1 ? own.front()
                                          : tr("%1 faults: %2").arg(own.size()).arg(own.front())));
-  item(row, kFaults)->setToolTip(own.isEmpty() ? tr("No faults found") : own.join('\n'));
-  item(row, kFaults)->setData(Qt::UserRole, stream.count == 0 ? -1 : static_cast<int>(own.size()));
+  const bool only_note = own.isEmpty() && !note.isEmpty();
+  item(row, kFaults)
+      ->setData(Qt::UserRole, stream.count == 0 || only_note ? -1 : static_cast<int>(own.size()));
+  if (own.isEmpty()) own << tr("No faults found");
+  if (!note.isEmpty()) own << note;
+  item(row, kFaults)->setToolTip(own.join('\n'));
 }
 
 void StreamTable::showIcons() {

@@ -37,6 +37,7 @@ class StreamTable : public QTableWidget {
  private:
   void addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults,
                  const std::filesystem::path& own_recording);
+  void addFaults(int row, const StreamSummary& stream, const std::vector<RecordingFault>& faults);
   void fitHeight();
   void showIcons();
   QComboBox* roleBoxOf(int row) const;

@@ -49,6 +49,7 @@ void CorrelationView::setResult(const NamedResult& result) {
     ++groups_.back().count;
   }
   hovered_.reset();
+  pinned_.reset();
   setAccessibleDescription(strongestPairs(3).join("; "));
   update();
 }
@@ -102,6 +103,7 @@ void CorrelationView::paintEvent(QPaintEvent*) {
   paintCells(painter);
   paintLabels(painter);
   paintScale(painter);
+  if (pinned_) paintPinned(painter);
 }
 
 void CorrelationView::paintCells(QPainter& painter) const {
@@ -121,9 +123,26 @@ void CorrelationView::paintCells(QPainter& painter) const {
     painter.drawLine(origin() + QPointF(0.0, at_px), origin() + QPointF(side_px, at_px));
     painter.drawLine(origin() + QPointF(at_px, 0.0), origin() + QPointF(at_px, side_px));
   }
-  if (!hovered_) return;
   painter.setPen(QPen(theme().text, 1.5));
-  painter.drawRect(square(hovered_->first, hovered_->second));
+  for (const std::optional<Cell>& cell : {hovered_, pinned_})
+    if (cell) painter.drawRect(square(cell->first, cell->second));
+}
+
+// Text of the pinned cell in a box below it; above it if there is no space.
+void CorrelationView::paintPinned(QPainter& painter) const {
+  constexpr int kMargin_px = 6;
+  const QPoint at = cellMiddle(pinned_->first, pinned_->second);
+  const int gap_px = static_cast<int>(cellSize_px()) + kMargin_px;
+  const QRect most(0, 0, width() - 2 * kMargin_px, height());
+  QRect box = painter.fontMetrics()
+                  .boundingRect(most, Qt::AlignCenter | Qt::TextWordWrap, pinnedText())
+                  .adjusted(-kMargin_px, -kMargin_px, kMargin_px, kMargin_px);
+  box.moveTo(std::clamp(at.x() - box.width() / 2, 0, std::max(0, width() - box.width())), at.y() + gap_px);
+  if (box.bottom() >= height()) box.moveBottom(at.y() - gap_px);
+  painter.setPen(theme().text);
+  painter.setBrush(theme().panel);
+  painter.drawRect(box.adjusted(0, 0, -1, -1));
+  painter.drawText(box, Qt::AlignCenter | Qt::TextWordWrap, pinnedText());
 }
 
 // Names are thinned out if the lines are too narrow; tool tips have them all.
@@ -179,7 +198,14 @@ std::optional<CorrelationView::Cell> CorrelationView::cellAt(const QPointF& posi
 }
 
 QString CorrelationView::textAt(const QPoint& position) const {
-  const std::optional<Cell> cell = cellAt(position);
+  return textOf(cellAt(position));
+}
+
+QString CorrelationView::pinnedText() const {
+  return textOf(pinned_);
+}
+
+QString CorrelationView::textOf(const std::optional<Cell>& cell) const {
   if (!cell || cell->first >= names_.size() || cell->second >= names_.size()) return {};
   return tr("%1 and %2: %3")
       .arg(words_[cell->first], words_[cell->second])
@@ -215,6 +241,13 @@ void CorrelationView::mouseMoveEvent(QMouseEvent* event) {
   const std::optional<Cell> cell = cellAt(event->position());
   if (cell == hovered_) return;
   hovered_ = cell;
+  update();
+}
+
+void CorrelationView::mousePressEvent(QMouseEvent* event) {
+  if (event->button() != Qt::LeftButton) return QWidget::mousePressEvent(event);
+  const std::optional<Cell> cell = cellAt(event->position());
+  pinned_ = cell == pinned_ ? std::nullopt : cell;
   update();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Correlation matrix as a heat map, for quantities that are hardly separable. Rows and columns have names,
-// one for all parts of a quantity.
+// one for all parts of a quantity. A click pins a cell and its text, a second one releases it.
 #pragma once
 
 #include "core/report/result_yaml.h"
@@ -30,6 +30,7 @@ class CorrelationView : public QWidget {
   // The largest off-diagonal ones: "left: translation x and left: time offset: 0.94".
   QStringList strongestPairs(int count) const;
   QString textAt(const QPoint& position) const;
+  QString pinnedText() const;  // empty: no cell is pinned
   QPoint cellMiddle(Eigen::Index row, Eigen::Index col) const;
   QSize minimumSizeHint() const override { return {260, 260}; }
 
@@ -37,6 +38,7 @@ class CorrelationView : public QWidget {
   void paintEvent(QPaintEvent* event) override;
   bool event(QEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
   void leaveEvent(QEvent* event) override;
   void contextMenuEvent(QContextMenuEvent* event) override;
 
@@ -52,16 +54,18 @@ class CorrelationView : public QWidget {
   QPointF origin() const;
   QFont labelFont() const;
   std::optional<Cell> cellAt(const QPointF& position) const;
+  QString textOf(const std::optional<Cell>& cell) const;
   void paintCells(QPainter& painter) const;
   void paintLabels(QPainter& painter) const;
   void paintScale(QPainter& painter) const;
+  void paintPinned(QPainter& painter) const;
   void save(bool table);
 
   QStringList names_, words_;  // words: "left: rotation vector x"
   std::vector<Group> groups_;
   FileSaver* saver_;
   Eigen::MatrixXd correlation_;
-  std::optional<Cell> hovered_;
+  std::optional<Cell> hovered_, pinned_;
 };
 
 }  // namespace evical::ui

@@ -64,6 +64,15 @@ QString matrixText(const RigidTransform& place) {
   return rows.join('\n');
 }
 
+// Rows whose titles are above their values.
+QFormLayout& poseRows(QWidget& page) {
+  auto* const form = new QFormLayout(&page);
+  form->setContentsMargins(0, 0, 0, 0);
+  form->setRowWrapPolicy(QFormLayout::WrapAllRows);
+  form->setVerticalSpacing(3);
+  return *form;
+}
+
 }  // namespace
 
 PosePanel::PosePanel(QWidget* parent)
@@ -94,9 +103,7 @@ PosePanel::PosePanel(QWidget* parent)
   column->addWidget(said_);
   column->addWidget(direction_);
   column->addWidget(drawing_, 1);
-  auto* const form = new QFormLayout;
-  addNumbers(*form);
-  column->addLayout(form);
+  column->addWidget(makeNumbers());
   setWidget(content);
   setWidgetResizable(true);
   setFrameShape(QFrame::NoFrame);
@@ -137,16 +144,40 @@ QWidget* PosePanel::makeBar() {
   return bar;
 }
 
-void PosePanel::addNumbers(QFormLayout& form) {
-  form.setRowWrapPolicy(QFormLayout::WrapAllRows);
-  form.setVerticalSpacing(3);
+QWidget* PosePanel::makeNumbers() {
+  auto* const page = new QWidget(this);
+  QFormLayout& form = poseRows(*page);
   form.addRow(tr("Translation t (mm)"), translation_);
+  form.addRow(tr("Quaternion (x, y, z, w)"), quaternion_);
+  form.addRow(tr("Time"), time_);
+  auto* const open = new QToolButton(page);
+  QWidget* const more = makeMore();
+  open->setObjectName("more_rotations");
+  open->setText(tr("More"));
+  open->setToolTip(tr("Rotation vector, angles and 4x4 matrix"));
+  open->setCheckable(true);
+  open->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  open->setFocusPolicy(Qt::StrongFocus);
+  open->setIcon(icon("right"));
+  connect(open, &QToolButton::toggled, more, [open, more](bool shown) {
+    open->setIcon(icon(shown ? "down" : "right"));
+    more->setVisible(shown);
+  });
+  form.addRow(open);
+  form.addRow(more);
+  return page;
+}
+
+// The same rotation in other ways, folded at first.
+QWidget* PosePanel::makeMore() {
+  auto* const more = new QWidget(this);
+  QFormLayout& form = poseRows(*more);
   form.addRow(tr("Rotation vector (deg)"), vector_);
   form.addRow(tr("Roll, pitch, yaw (deg)"), angles_);
   form.addRow(warning_);
-  form.addRow(tr("Quaternion (x, y, z, w)"), quaternion_);
   form.addRow(tr("4x4 matrix (m)"), matrix_);
-  form.addRow(tr("Time"), time_);
+  more->hide();
+  return more;
 }
 
 void PosePanel::fillCopyMenu() {

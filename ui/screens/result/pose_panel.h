@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One sensor's pose in the usual representations, with a drawing of the rig; it can be copied in formats of
-// other programs.
+// One sensor's pose with a drawing of the rig: translation, quaternion and time offset; other representations of
+// the rotation on a click. It can be copied in formats of other programs.
 #pragma once
 
 #include "core/report/sensor_pose.h"
@@ -10,7 +10,6 @@
 #include <vector>
 
 class QComboBox;
-class QFormLayout;
 class QLabel;
 class QMenu;
 class QToolButton;
@@ -34,7 +33,8 @@ class PosePanel : public QScrollArea {
 
  private:
   QWidget* makeBar();
-  void addNumbers(QFormLayout& form);
+  QWidget* makeNumbers();
+  QWidget* makeMore();
   void fillCopyMenu();
   void copy(const char* form, bool all);
   void showPose();

@@ -33,11 +33,22 @@ QTreeWidgetItem* treeItem(const ParameterRow& row) {
   if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
     item->setForeground(Table::kSigmas, theme().warning);
   if (!row.remark.isEmpty()) {
-    item->setIcon(Table::kQuantity, icon("warning", theme().warning));
     for (int column = 0; column < Table::kColumns; ++column) item->setToolTip(column, row.remark);
     item->setData(Table::kQuantity, Qt::AccessibleDescriptionRole, row.remark);
   }
   return item;
+}
+
+// "Camera left: lens (differences up to 1.3 sigmas)".
+QString headingText(const ParameterGroup& group, bool compared) {
+  if (!compared || !group.folded) return group.title;
+  double largest = 0.0;
+  for (const ParameterRow& row : group.rows)
+    if (row.difference && row.sigma > 0.0) largest = std::max(largest, std::abs(*row.difference) / row.sigma);
+  return QObject::tr("%1 (differences up to %2 %3)")
+      .arg(group.title)
+      .arg(largest, 0, 'f', 1)
+      .arg(QChar(0x3c3));
 }
 
 }  // namespace
@@ -56,6 +67,12 @@ QuantityTable::QuantityTable(QWidget* parent) : QTreeWidget(parent) {
   headerItem()->setToolTip(kSigma, tr("Standard deviation"));
   headerItem()->setToolTip(kSigmas, tr("Difference in standard deviations"));
   setAccessibleName(tr("Calibrated quantities"));
+  const auto remember = [this](QTreeWidgetItem* heading) {
+    if (const int row = indexOfTopLevelItem(heading); row >= 0)
+      folded_[groups_[static_cast<std::size_t>(row)].title] = !heading->isExpanded();
+  };
+  connect(this, &QTreeWidget::itemExpanded, this, remember);
+  connect(this, &QTreeWidget::itemCollapsed, this, remember);
 }
 
 // Filled in one step: a tree that grows item by item measures its columns each time.
@@ -68,7 +85,7 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   header()->moveSection(header()->visualIndex(kSigmas), compared ? kValue + 1 : kSigmas);
   QList<QTreeWidgetItem*> headings;
   for (const ParameterGroup& group : groups_) {
-    auto* const heading = new QTreeWidgetItem({group.title});
+    auto* const heading = new QTreeWidgetItem({headingText(group, compared)});
     QFont bold = font();
     bold.setWeight(QFont::DemiBold);
     heading->setFont(kQuantity, bold);
@@ -77,8 +94,12 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   }
   clear();
   addTopLevelItems(headings);
-  for (QTreeWidgetItem* const heading : headings) heading->setFirstColumnSpanned(true);
-  expandAll();
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    headings[static_cast<qsizetype>(i)]->setFirstColumnSpanned(true);
+    const auto chosen = folded_.find(groups_[i].title);
+    const bool folded = chosen == folded_.end() ? groups_[i].folded : chosen->second;
+    headings[static_cast<qsizetype>(i)]->setExpanded(!folded);
+  }
   fitColumns();
 }
 
@@ -91,7 +112,6 @@ void QuantityTable::fitColumns() {
     int& width_px = widths_px[static_cast<std::size_t>(column)];
     width_px = std::max(width_px, metrics.horizontalAdvance(text) + margin_px);
   };
-  bool warned = false;
   for (const ParameterGroup& group : groups_) {
     for (const ParameterRow& row : group.rows) {
       widen(kQuantity, row.name);
@@ -100,11 +120,9 @@ void QuantityTable::fitColumns() {
       widen(kUnit, unitText(row));
       widen(kDifference, row.differenceText());
       widen(kSigmas, row.sigmasText());
-      warned = warned || !row.remark.isEmpty();
     }
   }
-  const int sign_px = warned ? iconSize().width() + margin_px : 0;
-  names_px_ = widths_px[kQuantity] + 2 * kIndentation_px + sign_px;
+  names_px_ = widths_px[kQuantity] + 2 * kIndentation_px;
   for (int column = kValue; column < kColumns; ++column) {
     widen(column, headerItem()->text(column));
     setColumnWidth(column, widths_px[static_cast<std::size_t>(column)]);

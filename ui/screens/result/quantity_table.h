@@ -7,6 +7,7 @@
 
 #include <QTreeWidget>
 
+#include <map>
 #include <vector>
 
 class QMenu;
@@ -39,6 +40,7 @@ class QuantityTable : public QTreeWidget {
   void copySelected();
 
   std::vector<ParameterGroup> groups_;
+  std::map<QString, bool> folded_;  // by title, as the user chose
   QMenu* further_ = nullptr;
   int names_px_ = 0;  // width of the longest name
 };

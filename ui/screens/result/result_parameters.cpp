@@ -62,46 +62,58 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
     group.rows.push_back({{}, names[axis], "deg", angles_deg[axis], 0.0, {}});
 }
 
-ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
-  const std::string& name = named.cameras.at(i).name;
-  const CameraFit fit = elementOrNone(named.result->cameras, i);
-  const bool reference = name == named.reference;
-  const QString shown = QString::fromStdString(name);
-  ParameterGroup group{
-      reference ? QObject::tr("Camera %1 (reference)").arg(shown)
-                : QObject::tr("Camera %1 in %2").arg(shown, QString::fromStdString(named.reference)),
-      {}};
-  const auto add = [&](bool intrinsics) {
-    for (const ShownQuantity& quantity : shownCamera(named, i, !reference))
-      if ((quantity.info->shape == QuantityShape::Intrinsics) == intrinsics)
-        addQuantity(quantity, named.result->state.cameras[i].reference_from_camera.rotation, group);
-  };
-  add(false);
-  group.rows.push_back({{}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0, {}});
-  add(true);
-  return group;
+// What people calibrate for; everything else is a detail.
+bool isPlace(const ShownQuantity& quantity) {
+  const QuantityId id = quantity.info->id;
+  return id == QuantityId::Rotation || id == QuantityId::Translation || id == QuantityId::TimeOffset;
 }
 
-ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
+// "Camera left" or "IMU imu (reference)".
+QString sensorTitle(const QString& kind, const std::string& name, const std::string& reference) {
+  const QString sensor = kind.arg(QString::fromStdString(name));
+  return name == reference ? QObject::tr("%1 (reference)").arg(sensor) : sensor;
+}
+
+void addCamera(const NamedResult& named, std::size_t i, std::vector<ParameterGroup>& groups) {
+  const std::string& name = named.cameras.at(i).name;
+  const QString sensor = sensorTitle(QObject::tr("Camera %1"), name, named.reference);
+  ParameterGroup place{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
+  ParameterGroup details{QObject::tr("%1: details").arg(sensor), {}, true};
+  ParameterGroup lens{QObject::tr("%1: lens").arg(sensor), {}, true};
+  for (const ShownQuantity& quantity : shownCamera(named, i, name != named.reference)) {
+    const bool of_lens = quantity.info->shape == QuantityShape::Intrinsics;
+    addQuantity(quantity, named.result->state.cameras[i].reference_from_camera.rotation,
+                of_lens             ? lens
+                : isPlace(quantity) ? place
+                                    : details);
+  }
+  const CameraFit fit = elementOrNone(named.result->cameras, i);
+  details.rows.push_back({{}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0, {}});
+  for (ParameterGroup* const group : {&place, &lens, &details})
+    if (!group->rows.empty()) groups.push_back(std::move(*group));
+}
+
+void addImu(const NamedResult& named, std::size_t i, std::vector<ParameterGroup>& groups) {
   const std::string& name = named.imus.at(i).name;
-  const bool reference = name == named.reference;
-  const QString shown = QString::fromStdString(name);
-  ParameterGroup group{
-      reference ? QObject::tr("IMU %1 (reference)").arg(shown) : QObject::tr("IMU %1").arg(shown), {}};
-  for (const ShownQuantity& quantity : shownImu(named, i, !reference))
-    addQuantity(quantity, named.result->state.imus[i].reference_from_imu.rotation, group);
-  return group;
+  const QString sensor = sensorTitle(QObject::tr("IMU %1"), name, named.reference);
+  ParameterGroup place{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
+  ParameterGroup details{name == named.reference ? sensor : QObject::tr("%1: details").arg(sensor), {}, true};
+  for (const ShownQuantity& quantity : shownImu(named, i, name != named.reference))
+    addQuantity(quantity, named.result->state.imus[i].reference_from_imu.rotation,
+                isPlace(quantity) ? place : details);
+  for (ParameterGroup* const group : {&place, &details})
+    if (!group->rows.empty()) groups.push_back(std::move(*group));
 }
 
 ParameterGroup boardGroup(const NamedResult& named, std::size_t board) {
-  ParameterGroup group{QString::fromStdString(boardTitle(named, board)), {}};
+  ParameterGroup group{QString::fromStdString(boardTitle(named, board)), {}, true};
   for (const ShownQuantity& quantity : shownBoard(named, board))
     addQuantity(quantity, named.result->state.boardAt(board).world_from_board.rotation, group);
   return group;
 }
 
 ParameterGroup gravityGroup(const NamedResult& named) {
-  ParameterGroup group{QObject::tr("Gravity in the board's frame"), {}};
+  ParameterGroup group{QObject::tr("Gravity in the board's frame"), {}, true};
   const Eigen::Vector3d& gravity = named.result->state.gravity_in_world_m_s2;
   for (int axis = 0; axis < 3; ++axis)
     group.rows.push_back(
@@ -136,9 +148,8 @@ QString ParameterRow::sigmasText() const {
 
 std::vector<ParameterGroup> parameterGroups(const NamedResult& named) {
   std::vector<ParameterGroup> groups;
-  for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i)
-    groups.push_back(cameraGroup(named, i));
-  for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) groups.push_back(imuGroup(named, i));
+  for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i) addCamera(named, i, groups);
+  for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) addImu(named, i, groups);
   for (std::size_t i = 0; i < named.boards.size(); ++i)
     if (ParameterGroup board = boardGroup(named, i); !board.rows.empty()) groups.push_back(std::move(board));
   if (!named.result->state.imus.empty()) groups.push_back(gravityGroup(named));

@@ -18,7 +18,7 @@ struct ParameterRow {
   double value = 0.0;
   double sigma = 0.0;                // 0: not estimated
   std::optional<double> difference;  // this minus the other, same unit
-  QString remark = {};               // caution for use of the value
+  QString remark = {};               // for a tool tip
   QString detail = {};               // after the unit: "against the gyroscope"
 
   // With as many decimals as the sigma's second digit.
@@ -31,6 +31,7 @@ struct ParameterRow {
 struct ParameterGroup {
   QString title;
   std::vector<ParameterRow> rows;
+  bool folded = false;  // at first: poses and time offsets are shown, details are not
 };
 
 std::vector<ParameterGroup> parameterGroups(const NamedResult& named);

@@ -186,7 +186,7 @@ QWidget* ResultScreen::makeContent() {
   auto* const split = new QSplitter(Qt::Horizontal, content);
   split->addWidget(left);
   split->addWidget(makeSides());
-  split->setSizes({560, 480});
+  split->setSizes({610, 430});
   split->setChildrenCollapsible(false);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -267,8 +267,10 @@ void ResultScreen::showVerdict() {
   const bool ok = result.status == CalibrationStatus::Ok;
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
-  reason_->setText(ok ? tr("The recording determines every quantity with the needed accuracy.")
-                      : sentence(QString::fromStdString(result.reason)));
+  reason_->setText(
+      ok ? tr("The recording determines every quantity with the needed accuracy. Next: export the "
+              "result, or check it with another recording.")
+         : sentence(QString::fromStdString(result.reason)));
   repair_->setRepair(result.repair);
   fit_->setText(fitText(*result_));
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Side bar: the pages under two headings, and the steps of a calibration. Pages without content are grey; one
+// line, and their tool tips, give the reason. The second heading can be folded.
+#pragma once
+
+#include "core/data/calibration_status.h"
+#include "ui/window/pages.h"
+
+#include <QFrame>
+
+#include <optional>
+#include <vector>
+
+class QListWidget;
+class QListWidgetItem;
+
+namespace evical::ui {
+
+class SideBar : public QFrame {
+  Q_OBJECT
+
+ public:
+  // `below`: what is shown below the pages.
+  SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* parent);
+
+  void showPage(int page);
+  // Why each page is grey (empty: it is not), and the line that is shown for all of them.
+  void setReasons(const std::vector<QString>& reasons, const QString& line);
+  // Mark next to a page's name, by colour and shape: it shows the outcome while other pages are shown.
+  void setVerdict(int page, std::optional<CalibrationStatus> status);
+
+ signals:
+  void pageChosen(int page);
+  void pageClicked();  // by mouse; the list's arrow keys select the next page
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void addPages();
+  void addPage(std::size_t page);
+  QListWidgetItem* addHeading(const QString& text);
+  void foldMore(bool folded);
+  void fitHeight();
+  void colourHeadings();
+
+  std::vector<PageEntry> pages_;
+  QListWidget* list_;
+  std::vector<QListWidgetItem*> items_;  // of each page
+  std::vector<QListWidgetItem*> headings_;
+  QListWidgetItem* reason_ = nullptr;
+  QListWidgetItem* more_ = nullptr;
+  bool folded_ = false;
+};
+
+}  // namespace evical::ui
