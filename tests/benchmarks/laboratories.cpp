@@ -1,6 +1,6 @@
 // Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number, calibrated with
 // default options, against the truth: `evical_benchmarks laboratories [--seeds N] [--skip N] [--exact] [--detections FOLDER]
-// [--variant OPTION=VALUE,...]...`. Sessions have the usual errors of board size and lens, unless --exact. Fails if a
+// [--variant OPTION=VALUE,...]... [--faults N]`. Sessions have the usual errors of board size and lens, unless --exact. Fails if a
 // calibration fails, if a wrong result is reported as ok, or if the errors over sigmas of 20 laboratories or more leave 0.7 to 1.4.
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
@@ -8,6 +8,7 @@
 #include "core/pipeline/session/calibration_options.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/benchmarks/centre_truth.h"
+#include "tests/benchmarks/laboratory_faults.h"
 #include "tests/benchmarks/scenario_run.h"
 
 #include <fmt/format.h>
@@ -194,7 +195,7 @@ Scenario drawLaboratory(int number, bool exact) {
 }
 
 struct Arguments {
-  int seeds = 40, skipped = 0;
+  int seeds = 40, skipped = 0, faults = 0;
   bool exact = false, quantities = false, common = false;
   std::string detections;
   std::vector<std::string> variants;
@@ -202,6 +203,8 @@ struct Arguments {
   void addTo(Command& app) {
     app.option("--seeds", seeds, "Number of laboratories").between(1, 1000);
     app.option("--skip", skipped, "Number of the first one").between(0, 100'000);
+    app.option("--faults", faults, "Number of single faults that are drawn for each laboratory")
+        .between(0, 100);
     app.flag("--exact", exact, "Sessions without errors");
     app.flag("--quantities", quantities, "Also the error and the sigma of every quantity");
     app.flag("--common", common, "Also the errors that all circles of a window have in common, by speed");
@@ -311,6 +314,7 @@ int run(int argc, char** argv) {
       "| laboratory | | options | rotation, deg (sigma; error/sigma) | translation, mm (sigma; error/sigma) "
       "| "
       "time offset, ms (error/sigma) | solve, s | verdict |\n|---|---|---|---|---|---|---|---|\n");
+  LaboratoryFaults faults;
   for (int k = 0; k < arguments.seeds; ++k) {
     const Scenario scenario = drawLaboratory(arguments.skipped + k, arguments.exact);
     const std::filesystem::path file = fileOf(scenario, arguments);
@@ -326,10 +330,12 @@ int run(int argc, char** argv) {
       Outcome outcome = calibrateScenario(scenario, detections, change);
       if (arguments.quantities) printQuantities(outcome);
       if (!std::filesystem::exists(file)) keepDetections(file, outcome, detections);
+      if (&each == &results.front() && arguments.faults > 0)
+        faults.add(scenario, detections, outcome, arguments.faults);
       each.add(scenario, std::move(outcome));
     }
   }
-  bool good = true;
+  bool good = arguments.faults == 0 || faults.print();
   for (const Results& each : results) good = each.print() && good;
   return good ? 0 : 1;
 }

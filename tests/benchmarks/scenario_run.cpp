@@ -119,9 +119,13 @@ Outcome runScenario(const Scenario& scenario, const SessionChange& change) {
 }
 
 Outcome calibrateScenario(const Scenario& scenario, DetectionResult detections, const SessionChange& change) {
-  Outcome outcome;
   Session session = test::sessionFor(scenario);
   if (change) change(session);
+  return calibrateSession(scenario, session, std::move(detections));
+}
+
+Outcome calibrateSession(const Scenario& scenario, const Session& session, DetectionResult detections) {
+  Outcome outcome;
   outcome.windows_found = windowsFound(scenario, detections.cameras.front());
   const Stopwatch stopwatch;
   try {

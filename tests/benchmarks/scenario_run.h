@@ -33,6 +33,7 @@ Outcome runScenario(const Scenario& scenario, const SessionChange& change = {});
 DetectionResult detectScenario(const Scenario& scenario);
 Outcome calibrateScenario(const Scenario& scenario, DetectionResult detections,
                           const SessionChange& change = {});
+Outcome calibrateSession(const Scenario& scenario, const Session& session, DetectionResult detections);
 
 // Errors over sigmas of many recordings. Their RMS is 1 if the sigmas are right.
 struct NormalisedErrors {
