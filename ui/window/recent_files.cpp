@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/recent_files.h"
 
+#include "core/report/result_yaml.h"
+
 #include <QFile>
 #include <QSettings>
 
+#include <algorithm>
 #include <array>
 
 namespace evical::ui {

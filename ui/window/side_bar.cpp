@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/side_bar.h"
 
+#include "core/report/result_yaml.h"
 #include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 
@@ -14,7 +15,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kWidth_px = 236, kIcon_px = 20, kPage_px = 31, kHeading_px = 30, kReason_px = 22;
+constexpr int kSideBar_px = 236, kIcon_px = 20, kPage_px = 31, kHeading_px = 30, kReason_px = 22;
 constexpr int kPageRole = Qt::UserRole;  // headings have none
 const char* const kFoldedKey = "window/more_folded";
 
@@ -23,7 +24,7 @@ const char* const kFoldedKey = "window/more_folded";
 SideBar::SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* parent)
     : QFrame(parent), pages_(pages), list_(new QListWidget(this)) {
   setObjectName("sidebar");
-  setFixedWidth(kWidth_px);
+  setFixedWidth(kSideBar_px);
   list_->setObjectName("navigation");
   list_->setAccessibleName(tr("Screens"));
   list_->setIconSize(QSize(kIcon_px, kIcon_px));
