@@ -286,6 +286,7 @@ Solution Alignment::solveOnce() const {
   solution.points = Eigen::MatrixX3d::Zero(point_count_, 3);
   solution.shared = Eigen::VectorXd::Zero(n);
   solution.covariance = Eigen::MatrixXd::Zero(n, n);
+  solution.points_by_scale = Eigen::MatrixX3d::Zero(point_count_, 3);
   if (!band.factorise()) return solution;
   std::array<Eigen::MatrixXd, 3> solved = coupling;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -300,7 +301,6 @@ Solution Alignment::solveOnce() const {
         solved[axis].col(n) - solved[axis].leftCols(n) * solution.shared;
   }
   if (!layout_.with_scale) return solution;
-  solution.points_by_scale.resize(point_count_, 3);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     solution.points_by_scale.col(static_cast<Eigen::Index>(axis)) =
         -solved[axis].leftCols(n) * solution.covariance.col(layout_.scale());

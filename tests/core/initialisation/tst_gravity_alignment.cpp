@@ -7,6 +7,7 @@
 #include "tests/support/test_program.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 using namespace evical;
@@ -132,6 +133,16 @@ class TestGravityAlignment : public QObject {
     const QString text = QString("%1 +- %2").arg(found.board_scale).arg(found.board_scale_std);
     QVERIFY2(std::abs(found.board_scale - scale) < 0.015, qPrintable(text));
     QVERIFY2(found.board_scale_std > 1e-4 && found.board_scale_std < 0.01, qPrintable(text));
+  }
+
+  // Without a solution of the linear system, the board's scale has no sensitivities either.
+  void align_withoutSolution_ends() {
+    SimulationOptions simulation;
+    simulation.duration_s = 6.0;
+    Truth truth = makeTruth(simulation);
+    for (ImuSample& sample : truth.simulated.input.imus[0].samples)
+      sample.specific_force_m_s2.setConstant(std::numeric_limits<double>::quiet_NaN());
+    QCOMPARE(align(truth).cameras_in_imu_m.size(), std::size_t{1});
   }
 
   // Hardly any motion: the lever arm is unknown, and its estimate must stay small.
