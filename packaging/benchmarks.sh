@@ -30,8 +30,8 @@ run accuracy --verdicts "${single[@]}"
 run accuracy --verdicts --quantities "${rigs[@]}"
 for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
 
-# Random rigs, boards, lenses, light and motions: half an hour.
-run laboratories --seeds 40
+# Random rigs, boards, lenses, light and motions, and single faults in them: an hour.
+run laboratories --seeds 40 --common --faults 8
 
 # Circle centres along the motion, in ordinary and in small motions.
 run centre_errors --speeds --common --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml

@@ -233,6 +233,7 @@ void keepDetections(const std::filesystem::path& file, const Outcome& outcome,
   CalibrationRun run;
   run.result = *outcome.result;
   run.pass = detections;
+  run.pass.resolutions_px = {detections.lenses.front().given->resolution_px};
   std::ofstream(file, std::ios::binary) << runData(run);
 }
 

@@ -375,6 +375,11 @@ class TestMainWindow : public QObject {
   void screens_areReachedByKeys() {
     WindowFixture test;
     const QStringList names = test.window.screenNames();
+    test.press(Qt::Key_2, Qt::ControlModifier);
+    QCOMPARE(test.screen(), QString("start"));  // Recording is grey: it has no content yet
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    test.window.calibrate();
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (qsizetype i = 0; i < names.size(); ++i) {
       test.press(static_cast<Qt::Key>(Qt::Key_0 + (i + 1) % 10),
                  i < 10 ? Qt::ControlModifier : Qt::ControlModifier | Qt::ShiftModifier);
