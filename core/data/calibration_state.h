@@ -20,7 +20,7 @@ struct CameraState {
   double time_offset_s = 0.0;  // see referenceTime_s
   double edge_localisation_bias_px =
       0.0;  // distance of measured centres ahead of their place, along their image motion
-  double slow_edge_localisation_bias_px = 0.0;  // additional lead near standstill
+  double slow_edge_localisation_bias_px = 0.0;  // additional bias near standstill
   CameraLens lens = {};                         // `solved` if its intrinsics are estimated
   double time_offset_drift_ppm = 0.0;           // if it is estimated
   double time_offset_at_s = 0.0;                // the camera's time at which the offset is time_offset_s

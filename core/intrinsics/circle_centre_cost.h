@@ -3,9 +3,9 @@
 // L the Cholesky factor of the centre's covariance. Without unit. A circle of radius 0 is a corner, which is
 // projected directly, and therefore at any angle that the camera sees.
 //
-// Blocks: intrinsics (fx fy cx cy d0..d4), edge localisation bias [px], camera_from_board (x y z w, then metres). The
-// pose's Jacobian is with respect to its manifold's step: three columns for the rotation, one of zeros, three
-// for the translation.
+// Blocks: intrinsics (fx fy cx cy d0..d4), edge localisation bias [px], camera_from_board (x y z w, then
+// metres). The pose's Jacobian is with respect to its manifold's step: three columns for the rotation, one of
+// zeros, three for the translation.
 #pragma once
 
 #include "core/geometry/camera_model.h"

@@ -1,24 +1,24 @@
-// Zero when the measured ellipse centres are those of the projected circles, leading by the edge localisation bias along
-// their image motion (docs/maths.md, 9.1):
+// Zero when the measured ellipse centres are those of the projected circles, displaced by the edge localisation
+// bias along their image motion (docs/maths.md, 9.1):
 //   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_localisation_bias.h) - measured ],
 //   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
 //     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
-// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of a view are then whitened for the
-// displacement that its circles have in common (common_displacement.h), and each circle's residual is shortened so that its
-// square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
-// spline segment: they share parameter blocks, and a block per circle would leave Ceres with bookkeeping
-// only.
+// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of a view are then whitened
+// for the displacement that its circles have in common (common_displacement.h), and each circle's residual is
+// shortened so that its square is Huber's loss. One cost function holds all circles of one camera whose times
+// fall into one spline segment: they share parameter blocks, and a block per circle would leave Ceres with
+// bookkeeping only.
 //
 // With free intrinsics, the prediction is that of free_intrinsics.h.
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
-// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge localisation bias [px] and
-// that of slow edges [px], the board's scale, stretch, two curvatures and twist [1/m] (BoardState; its circles keep the
-// radius that was given and the plane's normal, which changes their centres by far less than could be seen), the
-// exposure's share, world_from_board's rotation (x y z w) and translation [m]; where intrinsics are free also
-// those, fx fy cx cy d0..d4. Without unit.
-// Quaternion blocks as in so3_manifold.h.
+// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge
+// localisation bias [px] and that of slow edges [px], the board's scale, stretch, two curvatures and twist
+// [1/m] (BoardState; its circles keep the radius that was given and the plane's normal, which changes their
+// centres by far less than could be seen), the exposure's share, world_from_board's rotation (x y z w) and
+// translation [m]; where intrinsics are free also those, fx fy cx cy d0..d4. Without unit. Quaternion blocks
+// as in so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.

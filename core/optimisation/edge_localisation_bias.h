@@ -1,7 +1,7 @@
-// Effect of an edge localisation bias on a measured ellipse centre. The measurement gives the centre's shift per pixel of
-// lead, which depends on the ellipse's shape, on the arcs that fired, and on the lens. The lead is one length
-// at all but the lowest speeds: slow edges, which reverse and whose bursts are joined by noise, are seen
-// slightly further behind (docs/maths.md, 9.1).
+// Effect of an edge localisation bias on a measured ellipse centre. The measurement gives the centre's shift
+// per pixel of bias, which depends on the ellipse's shape, on the arcs that fired, and on the lens. The bias
+// is one length at all but the lowest speeds: slow edges, which reverse and whose bursts are joined by noise,
+// are seen slightly further behind (docs/maths.md, 9.1).
 #pragma once
 
 #include "core/data/board_observations.h"

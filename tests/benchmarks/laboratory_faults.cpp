@@ -14,7 +14,7 @@ namespace {
 
 // The front end's results are kept, so only faults of later stages are possible.
 std::vector<const test::Perturbation*> faultsFor(const Scenario& scenario, int count) {
-  std::vector<const test::Perturbation*> all, drawn;
+  std::vector<const test::Perturbation*> all;
   for (const test::Perturbation& each : test::perturbations())
     if (each.stage == test::PerturbedStage::Measurements && !each.causes.empty()) all.push_back(&each);
   std::mt19937_64 dice(scenario.seed);
@@ -54,8 +54,8 @@ void LaboratoryFaults::add(const Scenario& scenario, const DetectionResult& dete
   }
 }
 
-// A result that is doubtful for the same first reason as without the fault has noticed nothing: it counts as right if
-// its numbers are.
+// A result that is doubtful for the same first reason as without the fault has noticed nothing: it counts as
+// right if its numbers are.
 void LaboratoryFaults::addCase(const test::Perturbation& fault, const Outcome& outcome,
                                const Outcome& valid) {
   Fault& row = faults_[std::string(fault.name)];

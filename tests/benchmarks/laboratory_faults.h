@@ -1,5 +1,5 @@
-// Single faults in random laboratories (tests/support/perturbations.h): which checks of the verdict notice them, and which
-// checks give false alarms without a fault.
+// Single faults in random laboratories (tests/support/perturbations.h): which checks of the verdict notice
+// them, and which checks give false alarms without a fault.
 #pragma once
 
 #include "tests/benchmarks/scenario_run.h"

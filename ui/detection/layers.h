@@ -38,8 +38,8 @@ bool isOfFrames(Layer layer);  // applies to frames as well as to events
 // empty outside the trajectory.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const SeenBoard& seen, double time_s);
-// Expected measurements: shifted by the camera's edge localisation bias, in the direction from the view, and for frames at
-// the exposure time of their rows.
+// Expected measurements: shifted by the camera's edge localisation bias, in the direction from the view, and
+// for frames at the exposure time of their rows.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const SeenBoard& seen, double time_s, const BoardView& view,
                                       double slow_edge_speed_px_s);

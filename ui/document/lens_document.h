@@ -38,8 +38,8 @@ class LensDocument : public QObject {
  public:
   explicit LensDocument(CalibrationDocument& document, QObject* parent = nullptr);
 
-  // The first session keeps the choice made before it. A later one keeps it, for the calibration of one camera
-  // after another, unless it has an IMU: then the aim is the rig.
+  // The first session keeps the choice made before it. A later one keeps it, for the calibration of one
+  // camera after another, unless it has an IMU: then the aim is the rig.
   CalibrationAim aim() const { return aim_; }
   void setAim(CalibrationAim aim);
   std::size_t camera() const;  // index in the session, 0 if it has no camera of the name

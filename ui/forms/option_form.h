@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Form of all options, made from the option tables: groups, search, help, reset, and a badge on changed ones.
-// Common options are first; a button also shows the expert ones. Tuning options are not in the rows. The form stores no values: it shows rows and
-// emits edits.
+// Common options are first; a button also shows the expert ones. Tuning options are not in the rows. The form
+// stores no values: it shows rows and emits edits.
 #pragma once
 
 #include "core/base/option_row.h"

@@ -37,8 +37,6 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
-#include <algorithm>
-
 namespace evical::ui {
 namespace {
 
@@ -339,7 +337,7 @@ void MainWindow::showState() {
   actions_.save->setEnabled(document.modified() || (document.hasSession() && document.file().isEmpty()));
   actions_.save_as->setEnabled(document.hasSession());
   const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
-  const bool has_result = of_camera ? workbench_.lens.last().run != nullptr : document.last().run != nullptr;
+  const bool has_result = workbench_.lastStatus().has_value();
   actions_.export_result->setEnabled(!running && has_result);
   actions_.report->setEnabled(!running && has_result && !of_camera);
   actions_.report->setToolTip(of_camera
@@ -355,18 +353,16 @@ QString MainWindow::whyGrey(PageNeed need) const {
   if (need == PageNeed::RunOfRig && workbench_.lens.aim() == CalibrationAim::Camera)
     return tr("Grey pages are for rigs only");
   const bool calibrating = workbench_.calibration.running() || workbench_.intrinsics.running();
-  if (need == PageNeed::Session || calibrating || lastStatus()) return {};
+  if (need == PageNeed::Session || calibrating || workbench_.lastStatus()) return {};
   return tr("Press Calibrate to fill grey pages");
 }
 
 void MainWindow::showPages() {
   std::vector<QString> reasons;
   for (const PageEntry& entry : entries_) reasons.push_back(whyGrey(entry.need));
-  const auto first =
-      std::find_if(reasons.begin(), reasons.end(), [](const QString& r) { return !r.isEmpty(); });
-  side_bar_->setReasons(reasons, first == reasons.end() ? QString() : *first);
+  side_bar_->setReasons(reasons);
   for (std::size_t i = 0; i < entries_.size(); ++i) actions_.pages[i]->setEnabled(reasons[i].isEmpty());
-  side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")), lastStatus());
+  side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")), workbench_.lastStatus());
   steps_->setVisible(workbench_.document.hasSession());
 }
 

@@ -68,7 +68,6 @@ class MainWindow : public QMainWindow {
   void wireLens();
   void exportResult();
   void showResultSoon();
-  std::optional<CalibrationStatus> lastStatus() const;
   void wireSteps();
   void showState();
   QString whyGrey(PageNeed need) const;

@@ -45,14 +45,4 @@ void MainWindow::exportResult() {
   files_->chooseExportFolder();
 }
 
-// Status of the current aim's last run; none before the first run.
-std::optional<CalibrationStatus> MainWindow::lastStatus() const {
-  if (workbench_.lens.aim() == CalibrationAim::Camera) {
-    const auto& run = workbench_.lens.last().run;
-    return run ? std::optional(run->result.status) : std::nullopt;
-  }
-  const auto& run = workbench_.document.last().run;
-  return run ? std::optional(run->result.status) : std::nullopt;
-}
-
 }  // namespace evical::ui

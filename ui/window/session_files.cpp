@@ -441,15 +441,12 @@ void SessionFiles::remember(const QString& file) {
 
 // For the open session or recording.
 void SessionFiles::rememberRun() {
-  const CalibrationDocument& document = workbench_.document;
-  const LensDocument& lens = workbench_.lens;
-  const bool of_camera = lens.aim() == CalibrationAim::Camera && lens.last().run;
-  if (!of_camera && !document.last().run) return;
-  const CalibrationStatus verdict =
-      of_camera ? lens.last().run->result.status : document.last().run->result.status;
-  rememberVerdict(document.file(), verdict);
-  if (document.file().isEmpty())
-    rememberVerdict(QString::fromStdString(document.session().recording.string()), verdict);
+  const std::optional<CalibrationStatus> verdict = workbench_.lastStatus();
+  if (!verdict) return;
+  const QString file = workbench_.document.file();
+  rememberVerdict(
+      file.isEmpty() ? QString::fromStdString(workbench_.document.session().recording.string()) : file,
+      *verdict);
   emit recentFilesChanged();
 }
 

@@ -126,15 +126,16 @@ void SideBar::showPage(int page) {
   list_->setCurrentItem(items_[index]);
 }
 
-void SideBar::setReasons(const std::vector<QString>& reasons, const QString& line) {
+void SideBar::setReasons(const std::vector<QString>& reasons) {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     items_[i]->setFlags(reasons[i].isEmpty() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable : Qt::NoItemFlags);
     const QString key = keyOfPage(i).toString(QKeySequence::NativeText);
     items_[i]->setToolTip(reasons[i].isEmpty() ? tr("%1 (%2)").arg(pages_[i].title, key) : reasons[i]);
   }
-  const bool any = std::any_of(reasons.begin(), reasons.end(), [](const QString& r) { return !r.isEmpty(); });
-  reason_->setText(line);
-  reason_->setHidden(!any);
+  const auto first =
+      std::find_if(reasons.begin(), reasons.end(), [](const QString& reason) { return !reason.isEmpty(); });
+  reason_->setHidden(first == reasons.end());
+  if (first != reasons.end()) reason_->setText(*first);
   fitHeight();
 }
 

@@ -24,8 +24,8 @@ class SideBar : public QFrame {
   SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* parent);
 
   void showPage(int page);
-  // Why each page is grey (empty: it is not), and the line that is shown for all of them.
-  void setReasons(const std::vector<QString>& reasons, const QString& line);
+  // The reason why each page is grey; empty: it is not. The first one is shown as a line.
+  void setReasons(const std::vector<QString>& reasons);
   // Mark next to a page's name, by colour and shape: it shows the outcome while other pages are shown.
   void setVerdict(int page, std::optional<CalibrationStatus> status);
 

@@ -15,6 +15,8 @@
 
 #include <QString>
 
+#include <optional>
+
 namespace evical::ui {
 
 struct Workbench {
@@ -33,6 +35,15 @@ struct Workbench {
   InspectionJob inspection;  // has its own runner, in parallel to a calibration
   RecordingCheckJob check;   // has its own runner, with lower priority than all others
   GrowingRecording growing;  // the session's files that are still being written
+
+  // Of the current aim's last run; none before the first run.
+  std::optional<CalibrationStatus> lastStatus() const {
+    if (const auto& run = lens.last().run; run && lens.aim() == CalibrationAim::Camera)
+      return run->result.status;
+    if (const auto& run = document.last().run; run && lens.aim() == CalibrationAim::Rig)
+      return run->result.status;
+    return std::nullopt;
+  }
 };
 
 }  // namespace evical::ui

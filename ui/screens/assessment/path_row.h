@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Row for a file or folder in a form: typed, dropped, or chosen in a dialog that the receiver opens. The field
-// shows the title of a path that has one; its tool tip has the path.
+// Row for a file or folder in a form: typed, dropped, or chosen in a dialog that the receiver opens. The
+// field shows the title of a path that has one; its tool tip has the path.
 #pragma once
 
 #include <QString>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/board/board_form.h"
 
+#include "ui/forms/fold_button.h"
 #include "ui/forms/form_label.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_drawing.h"
-#include "ui/theme/theme.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -32,12 +32,6 @@ QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
   box->setToolTip(tip);
   box->setFocusPolicy(Qt::StrongFocus);
   return box;
-}
-
-QLabel* problemLabel(QWidget* parent) {
-  auto* const label = new FormLabel({}, parent);
-  label->setProperty("role", "problem");
-  return label;
 }
 
 // Has the width of its fields; scrolls if the height is too small.
@@ -95,7 +89,8 @@ BoardForm::BoardForm(QWidget* parent)
       cols_(countBox(1, tr("Number of circles, corners, tags or squares in a line"), this)),
       spacing_mm_(new NumberField(0.1, 10'000.0, this)),
       radius_mm_(new NumberField(0.01, 10'000.0, this)),
-      more_(new QToolButton(this)),
+      more_(foldButton("board_more", tr("More"),
+                       tr("For a length that was measured, and for a board that flashes"), this)),
       is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
       blinks_(new QCheckBox(tr("The board flashes (screen or lamps)"), this)),
       length_mm_(new NumberField(0.1, 100'000.0, this)),
@@ -107,9 +102,9 @@ BoardForm::BoardForm(QWidget* parent)
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
-      seen_by_(new FormLabel({}, this)),
-      name_problem_(problemLabel(this)),
-      problem_(problemLabel(this)),
+      seen_by_(new FormLabel({}, "", this)),
+      name_problem_(new FormLabel({}, "problem", this)),
+      problem_(new FormLabel({}, "problem", this)),
       drawing_(new BoardDrawing(this)) {
   type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"),
                    tr("ChArUco"), tr("Points of a table")});
@@ -185,11 +180,6 @@ void BoardForm::setNameProblem(const QString& text) {
 }
 
 void BoardForm::addMore() {
-  more_->setObjectName("board_more");
-  more_->setText(tr("More"));
-  more_->setToolTip(tr("For a length that was measured, and for a board that flashes"));
-  more_->setCheckable(true);
-  more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   form_->addRow(more_);
   form_->setAlignment(more_, Qt::AlignLeft);
   connect(more_, &QToolButton::toggled, this, &BoardForm::showRows);
@@ -261,7 +251,6 @@ void BoardForm::showRows() {
   if (used && !more_->isChecked()) return more_->setChecked(true);  // calls this function
   const bool more = more_->isChecked();
   more_->setEnabled(!used);
-  more_->setIcon(icon(more ? "down" : "right"));
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
                                static_cast<QWidget*>(length_std_mm_)})
     form_->setRowVisible(field, measured_.has_value());

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/geometry/marker_bits.h"
 #include "core/printing/blink_page.h"
+#include "ui/forms/fold_button.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_form.h"
 #include "ui/screens/board/measured_form.h"
@@ -123,7 +124,9 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
                        "problem", this)),
       taken_(wrappedLabel({}, "", this)),
       measured_(new MeasuredForm(this)),
-      after_printing_(new QToolButton(this)) {
+      after_printing_(
+          foldButton("after_printing", tr("3. After printing: measure the board and use it"),
+                     tr("Shows the fields for the measured length; opens after printing or saving"), this)) {
   setWindowTitle(tr("Print a board"));
   setObjectName("print_board");
   makeButtons();
@@ -236,17 +239,8 @@ QWidget* PrintBoardDialog::makeMeasure() {
   row->addWidget(measured_);
   row->addLayout(column, 1);
   layout->addLayout(row);
-  after_printing_->setObjectName("after_printing");
-  after_printing_->setText(tr("3. After printing: measure the board and use it"));
-  after_printing_->setToolTip(tr("Shows the fields for the measured length; opens after printing or saving"));
-  after_printing_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  after_printing_->setCheckable(true);
-  const auto open = [this, group](bool opened) {
-    after_printing_->setIcon(icon(opened ? "down" : "right"));
-    group->setVisible(opened);
-  };
-  open(false);
-  connect(after_printing_, &QToolButton::toggled, group, open);
+  group->hide();
+  connect(after_printing_, &QToolButton::toggled, group, &QWidget::setVisible);
   connect(measured_, &MeasuredForm::changed, taken_, &QLabel::clear);
   return group;
 }

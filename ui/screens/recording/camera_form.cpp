@@ -27,8 +27,7 @@ constexpr int kNotKnown = static_cast<int>(kCameraModelNames.size());  // last e
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
 QLabel* hiddenProblemLabel(QWidget* parent) {
-  auto* const label = new FormLabel({}, parent);
-  label->setProperty("role", "problem");
+  auto* const label = new FormLabel({}, "problem", parent);
   label->hide();
   return label;
 }

@@ -58,14 +58,12 @@ void setDensities(const ImuNoise& noise, SessionImu& imu) {
 }
 
 QLabel* explanation(QWidget* parent) {
-  auto* const label = new FormLabel(
+  return new FormLabel(
       QObject::tr(
           "Noise density of the IMU: a sample's standard deviation is the density times the square root of "
           "the rate. Data sheets give it at rest; vibration adds to it. The calibration estimates the actual "
           "size of the residuals, weights them accordingly, and notes large differences."),
-      parent);
-  label->setProperty("role", "hint");
-  return label;
+      "hint", parent);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace evical::ui {
 namespace {
 
-// The board upright around the origin, and its height.
+// Centres of the board's circles, with the board's middle at the origin.
 std::vector<QPointF> circles(const Board& board) {
   std::vector<QPointF> centres;
   for (const Eigen::Vector2d& centre_m : boardPoints_m(board)) {

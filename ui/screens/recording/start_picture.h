@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of two of the three steps on the start page: a sheet with a board, and the events of a moving board.
-// The step between them is a MotionPicture.
+// Pictures of two of the three steps on the start page: a sheet with a board, and the events of a moving
+// board. The step between them is a MotionPicture.
 #pragma once
 
 #include <QWidget>

@@ -5,6 +5,7 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_table.h"
+#include "ui/forms/fold_button.h"
 #include "ui/screens/result/rig_drawing.h"
 #include "ui/theme/theme.h"
 
@@ -150,19 +151,10 @@ QWidget* PosePanel::makeNumbers() {
   form.addRow(tr("Translation t (mm)"), translation_);
   form.addRow(tr("Quaternion (x, y, z, w)"), quaternion_);
   form.addRow(tr("Time"), time_);
-  auto* const open = new QToolButton(page);
+  auto* const open =
+      foldButton("more_rotations", tr("More"), tr("Rotation vector, angles and 4x4 matrix"), page);
   QWidget* const more = makeMore();
-  open->setObjectName("more_rotations");
-  open->setText(tr("More"));
-  open->setToolTip(tr("Rotation vector, angles and 4x4 matrix"));
-  open->setCheckable(true);
-  open->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
-  open->setFocusPolicy(Qt::StrongFocus);
-  open->setIcon(icon("right"));
-  connect(open, &QToolButton::toggled, more, [open, more](bool shown) {
-    open->setIcon(icon(shown ? "down" : "right"));
-    more->setVisible(shown);
-  });
+  connect(open, &QToolButton::toggled, more, &QWidget::setVisible);
   form.addRow(open);
   form.addRow(more);
   return page;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One sensor's pose with a drawing of the rig: translation, quaternion and time offset; other representations of
-// the rotation on a click. It can be copied in formats of other programs.
+// One sensor's pose with a drawing of the rig: translation, quaternion and time offset; other representations
+// of the rotation on a click. It can be copied in formats of other programs.
 #pragma once
 
 #include "core/report/sensor_pose.h"

@@ -62,8 +62,8 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
     group.rows.push_back({{}, names[axis], "deg", angles_deg[axis], 0.0, {}});
 }
 
-// What people calibrate for; everything else is a detail.
-bool isPlace(const ShownQuantity& quantity) {
+// True for the quantities that people calibrate for; all others are details.
+bool isPoseOrOffset(const ShownQuantity& quantity) {
   const QuantityId id = quantity.info->id;
   return id == QuantityId::Rotation || id == QuantityId::Translation || id == QuantityId::TimeOffset;
 }
@@ -77,31 +77,31 @@ QString sensorTitle(const QString& kind, const std::string& name, const std::str
 void addCamera(const NamedResult& named, std::size_t i, std::vector<ParameterGroup>& groups) {
   const std::string& name = named.cameras.at(i).name;
   const QString sensor = sensorTitle(QObject::tr("Camera %1"), name, named.reference);
-  ParameterGroup place{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
+  ParameterGroup pose{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
   ParameterGroup details{QObject::tr("%1: details").arg(sensor), {}, true};
   ParameterGroup lens{QObject::tr("%1: lens").arg(sensor), {}, true};
   for (const ShownQuantity& quantity : shownCamera(named, i, name != named.reference)) {
     const bool of_lens = quantity.info->shape == QuantityShape::Intrinsics;
     addQuantity(quantity, named.result->state.cameras[i].reference_from_camera.rotation,
-                of_lens             ? lens
-                : isPlace(quantity) ? place
-                                    : details);
+                of_lens                    ? lens
+                : isPoseOrOffset(quantity) ? pose
+                                           : details);
   }
   const CameraFit fit = elementOrNone(named.result->cameras, i);
   details.rows.push_back({{}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0, {}});
-  for (ParameterGroup* const group : {&place, &lens, &details})
+  for (ParameterGroup* const group : {&pose, &lens, &details})
     if (!group->rows.empty()) groups.push_back(std::move(*group));
 }
 
 void addImu(const NamedResult& named, std::size_t i, std::vector<ParameterGroup>& groups) {
   const std::string& name = named.imus.at(i).name;
   const QString sensor = sensorTitle(QObject::tr("IMU %1"), name, named.reference);
-  ParameterGroup place{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
+  ParameterGroup pose{QObject::tr("%1 in %2").arg(sensor, QString::fromStdString(named.reference)), {}};
   ParameterGroup details{name == named.reference ? sensor : QObject::tr("%1: details").arg(sensor), {}, true};
   for (const ShownQuantity& quantity : shownImu(named, i, name != named.reference))
     addQuantity(quantity, named.result->state.imus[i].reference_from_imu.rotation,
-                isPlace(quantity) ? place : details);
-  for (ParameterGroup* const group : {&place, &details})
+                isPoseOrOffset(quantity) ? pose : details);
+  for (ParameterGroup* const group : {&pose, &details})
     if (!group->rows.empty()) groups.push_back(std::move(*group));
 }
 
