@@ -151,8 +151,11 @@ void addSector(const SectorSums& sums, const ImageFrame& frame, NormalEquations&
     const auto row = static_cast<Eigen::Index>(p * kFlowTerms);
     const double factor = kTaylor[static_cast<std::size_t>(p)];
     for (int q = 0; q <= p; ++q) {
-      equations.matrix.block<8, 8>(row, q * kFlowTerms) +=
-          factor * kTaylor[static_cast<std::size_t>(q)] * sums.w[static_cast<std::size_t>(p + q)] * aa;
+      const double both =
+          factor * kTaylor[static_cast<std::size_t>(q)] * sums.w[static_cast<std::size_t>(p + q)];
+      // By column: compilers unroll these, but not a whole block.
+      for (int col = 0; col < kFlowTerms; ++col)
+        equations.matrix.block<kFlowTerms, 1>(row, q * kFlowTerms + col) += both * aa.col(col);
     }
     equations.matrix.block<1, 8>(kUnknowns - 1, row) +=
         factor * sums.w[static_cast<std::size_t>(p)] * a.transpose();
