@@ -19,7 +19,17 @@ class Random {
   std::uint64_t bits() { return mix(state_ += 0x9e3779b97f4a7c15ull); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
   double normal() {
-    return std::sqrt(-2.0 * std::log(1.0 - uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+  // Uniform numbers, the last one first. Arguments of a constructor would be drawn in an order that depends on the compiler.
+  Eigen::Vector2d uniformPair() {
+    const double y = uniform(), x = uniform();
+    return {x, y};
+  }
+  Eigen::Vector3d uniformVector() {
+    const double z = uniform(), y = uniform(), x = uniform();
+    return {x, y, z};
   }
   Eigen::Vector3d normalVector() {
     const double x = normal(), y = normal(), z = normal();

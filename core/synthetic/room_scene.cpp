@@ -37,7 +37,7 @@ std::array<RoomSide, 6> sidesOf(const Eigen::Vector3d& middle_m, const Eigen::Ve
     side.down = keep ? axes.col(second) : axes.col(first);
     side.half_m = keep ? Eigen::Vector2d(half_m[first], half_m[second])
                        : Eigen::Vector2d(half_m[second], half_m[first]);
-    side.picture_m = kPicture_m * Eigen::Vector2d(random.uniform(), random.uniform());
+    side.picture_m = kPicture_m * random.uniformPair();
     side.log_tone = tone * random.normal();
   }
   return sides;
@@ -67,10 +67,9 @@ RoomScene furnishedRoom(const Scenario& scenario) {
   for (int k = 0; k < room.boxes; ++k) {
     const double spread = room.largest_box_m - room.smallest_box_m;
     const Eigen::Vector3d half =
-        Eigen::Vector3d::Constant(room.smallest_box_m) +
-        spread * Eigen::Vector3d(random.uniform(), random.uniform(), random.uniform());
+        Eigen::Vector3d::Constant(room.smallest_box_m) + spread * random.uniformVector();
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      const Eigen::Vector3d part(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+      const Eigen::Vector3d part = random.uniformVector() - Eigen::Vector3d::Constant(0.5);
       const Eigen::Vector3d at = middle + part.cwiseProduct(room.size_m);
       if (!hasRoom(at, half.norm(), room, scene.boxes, middle)) continue;
       const double turn = std::numbers::pi * random.uniform();

@@ -1,4 +1,5 @@
 #include "tests/support/moving_camera.h"
+#include "tests/support/random_vector.h"
 
 #include "core/base/time.h"
 #include "core/egomotion/edge_row.h"
@@ -50,7 +51,7 @@ std::vector<EdgeSlope> edgeSlopes(const MovingCamera& camera, const LensRays& le
     if (std::abs(speed) < kLeastSpeed_px_s) continue;
     Eigen::Vector2d slope = edge / speed;
     const double sigma = camera.noise * slope.norm();
-    slope += sigma * Eigen::Vector2d(normal(generator), normal(generator));
+    slope += sigma * test::randomVector<2>([&] { return normal(generator); });
     EdgeSlope& out = slopes.emplace_back();
     out.time_ns = nanosecondsFrom(time_s);
     out.x_px = static_cast<std::uint16_t>(x);

@@ -2,6 +2,7 @@
 #include "core/geometry/homography.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <opencv2/calib3d.hpp>
@@ -49,7 +50,7 @@ BoardImage imageOf(const Board& board, double noise_px, std::mt19937& random) {
   for (int i = 0; i < board.pointCount(); ++i) {
     MovingCircle circle;
     circle.centre_px =
-        moving.imageAt(i, 0.0).centre_px + noise_px * Eigen::Vector2d(normal(random), normal(random));
+        moving.imageAt(i, 0.0).centre_px + noise_px * test::randomVector<2>([&] { return normal(random); });
     circle.velocity_px_s = moving.velocityAt(i, 0.0);
     circle.radius_px = moving.imageAt(i, 0.0).largest_radius_px;
     image.add(circle, i);

@@ -1,6 +1,7 @@
 #include "core/frontend/event_clusters.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 namespace {
@@ -70,7 +71,10 @@ void TestEventClusters::straightEdge_isOther() {
   for (int y = 50; y < 90; ++y) {
     for (int x = 100; x < 103; ++x)
       field.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), true, 0.0f,
-                       Eigen::Vector2d(100.0 + 10.0 * normal(random), 10.0 * normal(random)).cast<float>()});
+                       (Eigen::Vector2d(100.0, 0.0) +
+                        10.0 * test::randomVector<2>([&] {
+                          return normal(random);
+                        })).cast<float>()});
   }
   const std::vector<EventCluster> clusters = clusterFlow(field, kDavis_px, NormalFlowOptions{});
   QCOMPARE(clusters.size(), 1u);

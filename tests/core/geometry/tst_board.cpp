@@ -114,7 +114,7 @@ class TestBoard : public QObject {
     QVERIFY((b.extent_m() - Eigen::Vector2d(0.14, 0.09)).norm() < 1e-12);
     QVERIFY(!b.hasHalfTurnAmbiguity());
     b.tag_size_m = 0.05;
-    QVERIFY_EXCEPTION_THROWN(validate(b), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, validate(b));
   }
 
   void squares_haveInnerCorners() {
@@ -125,7 +125,7 @@ class TestBoard : public QObject {
     QCOMPARE(charuco.pointCount(), 24);
     QVERIFY((charuco.point_m(7) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-12);
     Board squares = board(BoardType::Checkerboard, 6, 9);
-    QVERIFY_EXCEPTION_THROWN(validate(squares), CalibrationError);  // a radius without circles
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, validate(squares));  // a radius without circles
     squares.radius_m = 0.0;
     validate(squares);
     QVERIFY(!squares.hasHalfTurnAmbiguity() && squares.pointCount() == 54);

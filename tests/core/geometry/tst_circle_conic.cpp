@@ -3,6 +3,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/Dense>
@@ -23,7 +24,7 @@ CameraIntrinsics camera() {
 
 RigidTransform randomPose(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vector = [&] { return Eigen::Vector3d(uniform(random), uniform(random), uniform(random)); };
+  const auto vector = [&] { return test::randomVector<3>([&] { return uniform(random); }); };
   return {quaternionExp(0.8 * vector()), Eigen::Vector3d(0.0, 0.0, 0.45) + 0.2 * vector()};
 }
 

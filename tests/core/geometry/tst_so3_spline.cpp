@@ -2,6 +2,7 @@
 
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <random>
@@ -12,7 +13,7 @@ using namespace evical;
 
 Eigen::Vector3d randomVector(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return size * Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
+  return size * test::randomVector<3>([&] { return uniform(random); });
 }
 
 So3Spline randomSpline(double step_rad, unsigned seed, double knot_spacing_s = 0.05) {

@@ -2,6 +2,7 @@
 
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <random>
@@ -21,7 +22,7 @@ struct Motion {
 Motion anyMotion() {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vector = [&] { return Vector3d(uniform(random), uniform(random), uniform(random)); };
+  const auto vector = [&] { return test::randomVector<3>([&] { return uniform(random); }); };
   Motion motion{makeUniformSo3Spline(kBegin_s, kEnd_s, kKnot_s, quaternionExp(vector())),
                 makeUniformVectorSpline(kBegin_s, kEnd_s, kKnot_s)};
   for (std::size_t k = 1; k < motion.rotation.control_points.size(); ++k)

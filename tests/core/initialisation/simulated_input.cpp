@@ -1,4 +1,5 @@
 #include "tests/core/initialisation/simulated_input.h"
+#include "tests/support/random_vector.h"
 
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
@@ -135,7 +136,7 @@ std::optional<BoardView> observe(const SinusoidMotion& motion, const Scenario& s
     circle.time_s = time_s + jitter(random);
     circle.velocity_px_s = truth.velocity_px_s;
     circle.centre_px = truth.centre_px + truth.velocity_px_s * (circle.time_s - time_s) +
-                       sigma_px * Eigen::Vector2d(normal(random), normal(random));
+                       sigma_px * test::randomVector<2>([&] { return normal(random); });
     circle.covariance_px2 = std::max(sigma_px * sigma_px, 1e-6) * Eigen::Matrix2d::Identity();
     circle.events = 100;
     circle.residual_rms_px = sigma_px;

@@ -4,6 +4,7 @@
 #include "core/numerics/angles.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/initialisation/simulated_input.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>
@@ -34,7 +35,7 @@ Truth makeTruth(const SimulationOptions& simulation, double knot_spacing_s = 0.0
     CameraPose pose;
     pose.time_s = view.time_s;
     pose.world_from_camera = motion.worldFromCamera(0, view.time_s + simulation.time_offset_s);
-    pose.world_from_camera.translation_m += 2e-3 * Vector3d(normal(random), normal(random), normal(random));
+    pose.world_from_camera.translation_m += 2e-3 * test::randomVector<3>([&] { return normal(random); });
     truth.track.poses.push_back(pose);
   }
   std::vector<double> times_s;

@@ -1,5 +1,6 @@
 // Sums of noise with and without autocorrelation, as statistics of windows.
 #include "core/maintenance/noise_autocorrelation.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/Core>
@@ -19,10 +20,11 @@ class TestNoiseColour : public QObject {
     std::normal_distribution<double> normal;
     const double fresh = std::sqrt(1.0 - kept * kept);
     std::vector<Eigen::Vector3d> noise;
-    Eigen::Vector3d now(normal(generator), normal(generator), normal(generator));
+    const auto draw = [&] { return normal(generator); };
+    Eigen::Vector3d now = test::randomVector<3>(draw);
     for (std::size_t k = 0; k < windows; ++k) {
       noise.push_back(now);
-      now = kept * now + fresh * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+      now = kept * now + fresh * test::randomVector<3>(draw);
     }
     constexpr std::size_t kBefore = 16;
     const auto meanOf = [&](std::size_t first, std::size_t count) {

@@ -1,5 +1,6 @@
 #include "core/numerics/band_cholesky.h"
 
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/LU>
@@ -72,7 +73,7 @@ class TestBandCholesky : public QObject {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kSize, kSize);
     for (int k = 0; k < 60; ++k) {
       const int first = k % (kSize - 3);
-      const Eigen::Vector4d weights(normal(random), normal(random), normal(random), normal(random));
+      const Eigen::Vector4d weights = test::randomVector<4>([&] { return normal(random); });
       band.addOuter(first, weights, 0.5);
       dense.block<4, 4>(first, first) += 0.5 * weights * weights.transpose();
     }

@@ -1,4 +1,5 @@
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/random_vector.h"
 
 #include "core/base/time.h"
 #include "core/data/intrinsics_result.h"
@@ -182,7 +183,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
                               i);
       const auto before = centre(circle.time_s - 1e-4, i), after = centre(circle.time_s + 1e-4, i);
       auto& n = noise[static_cast<std::size_t>(i)];
-      n = keep * n + std::sqrt(1.0 - keep * keep) * Eigen::Vector2d(random.normal(), random.normal());
+      n = keep * n + std::sqrt(1.0 - keep * keep) * test::randomVector<2>([&] { return random.normal(); });
       if (!now || !before || !after || now->minCoeff() < 0.0 || now->x() > 345.0 || now->y() > 259.0)
         continue;
       circle.velocity_px_s = (*after - *before) / 2e-4;

@@ -209,13 +209,12 @@ class TestLevenbergMarquardt : public QObject {
     problem.build(lastStage(test.options), givenWeights(test.rig.input));
     std::stop_source stop;
     int iterations = 0;
-    QVERIFY_EXCEPTION_THROWN(solveNormalEquations(problem, {30, 1e-10, 2}, stop.get_token(),
-                                                  [&](const SolverIteration&) {
-                                                    stop.request_stop();
-                                                    ++iterations;
-                                                    return true;
-                                                  }),
-                             Cancelled);
+    QVERIFY_THROWS_EXCEPTION(Cancelled, solveNormalEquations(problem, {30, 1e-10, 2}, stop.get_token(),
+                                                             [&](const SolverIteration&) {
+                                                               stop.request_stop();
+                                                               ++iterations;
+                                                               return true;
+                                                             }));
     QCOMPARE(iterations, 1);
   }
 

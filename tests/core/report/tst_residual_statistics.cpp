@@ -1,5 +1,6 @@
 #include "core/report/residual_statistics.h"
 
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ std::vector<CircleResidual> normalResiduals(int count, double sigma_px, const Ei
     residual.view = k / 10;
     residual.time_s = 0.02 * residual.view;
     residual.centre_px = {10.0 + k % 300, 10.0 + (k / 7) % 200};
-    residual.residual_px = mean_px + sigma_px * Eigen::Vector2d(normal(engine), normal(engine));
+    residual.residual_px = mean_px + sigma_px * test::randomVector<2>([&] { return normal(engine); });
     residual.sigma_px = Eigen::Vector2d::Constant(sigma_px);
     residuals.push_back(residual);
   }

@@ -1,5 +1,6 @@
 // Displacements of tag corners that are the same in all views.
 #include "core/pipeline/rig/tag_corners.h"
+#include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>
@@ -81,7 +82,7 @@ class TestTagCorners : public QObject {
         residual.view = view;
         residual.circle = corner;
         residual.centre_px = true_px - kInwards_px * (true_px - middle_px).normalized() +
-                             Eigen::Vector2d(noise(random), noise(random));
+                             test::randomVector<2>([&] { return noise(random); });
         residual.residual_px = true_px - residual.centre_px;
       }
     }

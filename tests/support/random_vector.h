@@ -1,0 +1,16 @@
+// A vector of random numbers, drawn from the last to the first: the order of a constructor's arguments depends on the compiler, and
+// the numbers would, too.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace evical::test {
+
+template <int Size, class Draw>
+Eigen::Matrix<double, Size, 1> randomVector(Draw&& draw) {
+  Eigen::Matrix<double, Size, 1> vector;
+  for (Eigen::Index k = Size; k-- > 0;) vector(k) = draw();
+  return vector;
+}
+
+}  // namespace evical::test
