@@ -1,13 +1,16 @@
 #include "tests/support/real_recordings.h"
 
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/numerics/angles.h"
 
 #include <QFile>
 #include <QProcess>
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace evical::test {
@@ -56,12 +59,12 @@ QByteArray gridPoints(const QByteArray& table, int cols) {
   for (const QList<QByteArray>& row : rowsOf(table)) views[row[0]].push_back(row);
   QByteArray points = "time_s,point,x_px,y_px\n";
   for (const auto& [stamp, view] : views) {
-    const auto spread = [&](int column) {
+    const double whole_s = std::floor(stamp.toDouble());
+    const auto spread = [whole_s, &rows = view](int column) {
       double sum_s = 0.0;
-      const double whole_s = std::floor(stamp.toDouble());
-      for (const QList<QByteArray>& row : view)
+      for (const QList<QByteArray>& row : rows)
         sum_s += (row[column].left(10).toDouble() - whole_s) + row[column].mid(10).prepend('0').toDouble();
-      return sum_s / static_cast<double>(view.size());
+      return sum_s / static_cast<double>(rows.size());
     };
     QByteArray time = stamp;
     if (view.front().size() > 5) {
@@ -113,6 +116,25 @@ imus:
     accelerometer_noise_density: 2.0e-3
     gyroscope_noise_density: 1.6968e-4
 )");
+}
+
+double raysFromEuroc_deg(const CameraState& camera) {
+  Eigen::Matrix3d imu_from_camera;  // T_BS of cam0/sensor.yaml
+  imu_from_camera << 0.0148655429818, -0.999880929698, 0.00414029679422, 0.999557249008, 0.0149672133247,
+      0.025715529948, -0.0257744366974, 0.00375618835797, 0.999660727178;
+  double squares = 0.0;
+  int count = 0;
+  for (double x_px = 75.0; x_px <= 677.0; x_px += 43.0) {
+    for (double y_px = 48.0; y_px <= 432.0; y_px += 48.0) {
+      const std::optional<Eigen::Vector3d> one = unprojectRay(*camera.lens.given, {x_px, y_px}),
+                                           other = unprojectRay(*camera.lens.inUse(), {x_px, y_px});
+      if (!one || !other) continue;
+      const Eigen::Vector3d a = imu_from_camera * *one, b = camera.reference_from_camera.rotation * *other;
+      squares += std::pow(kDegPerRad * std::atan2(a.cross(b).norm(), a.dot(b)), 2);
+      ++count;
+    }
+  }
+  return std::sqrt(squares / count);
 }
 
 Session efcalib(const QString& real, const QDir& work) {
