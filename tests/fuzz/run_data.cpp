@@ -26,7 +26,7 @@ CalibrationRun smallRun() {
   run.result.latencies.resize(1);
   run.result.uncertainty.cameras.resize(1);
   run.result.uncertainty.imus.resize(1);
-  run.result.uncertainty.names = {"left", "right"};
+  run.result.uncertainty.columns.resize(2);
   run.result.uncertainty.standard_deviations.setOnes(2);
   run.result.uncertainty.correlation.setIdentity(2, 2);
   run.intrinsics.emplace_back().emplace().image = {1, 2, {{}, {}}, 0.0, 0.0};
