@@ -47,7 +47,7 @@ if(GUI)
   endforeach()
 endif()
 
-run(ignored "${CMAKE_COMMAND}" -S "${SOURCE}/examples" -B "${examples}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
+run(ignored "${CMAKE_COMMAND}" --fresh -S "${SOURCE}/examples" -B "${examples}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
     "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(ignored "${CMAKE_COMMAND}" --build "${examples}")
 
@@ -79,7 +79,7 @@ find_package(Evical REQUIRED)
 add_executable(prefixed main.cpp)
 target_link_libraries(prefixed PRIVATE Evical::core)
 ")
-run(ignored "${CMAKE_COMMAND}" -S "${prefixed}" -B "${prefixed}/build" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
+run(ignored "${CMAKE_COMMAND}" --fresh -S "${prefixed}" -B "${prefixed}/build" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
     "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(ignored "${CMAKE_COMMAND}" --build "${prefixed}/build")
 run(ignored "${prefixed}/build/prefixed")

@@ -297,7 +297,6 @@ class TestMainWindowCameras : public QObject {
   }
 
   QPointF boardAt(DetectionScreen& screen, double time_s, std::size_t camera) {
-    QPointF middle;
     const auto ready = [&] {
       const auto& analysis = screen.analysis();
       return screen.view().frame() && analysis && !analysis->trace().circles.empty() &&

@@ -130,7 +130,6 @@ class EventWindowReader::Pass {
   Pass(const Session& session, std::size_t camera, const std::filesystem::path& folder)
       : recording_(session),
         kind_(kindOf(recording_, session, camera)),
-        camera_(camera),
         companion_(companionOf(recording_, session, camera, kind_)),
         resolution_px_(recording_.resolution_px(camera)),
         start_ns_(recording_.start_ns()) {
@@ -186,7 +185,6 @@ class EventWindowReader::Pass {
  private:
   SessionRecording recording_;
   CameraKind kind_;
-  std::size_t camera_;
   std::optional<std::size_t> companion_, events_camera_, frames_camera_, imu_;
   Resolution resolution_px_;
   std::int64_t start_ns_;

@@ -100,7 +100,7 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
                        if (intrinsics[k]) screen.setDetections((*cameras)[k].views, *intrinsics[k], k);
                    });
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
-                   [&screen, &document](const std::shared_ptr<const LiveIterations>& iterations) {
+                   [&screen](const std::shared_ptr<const LiveIterations>& iterations) {
                      screen.setState({iterations, &iterations->state});
                    });
 }

@@ -71,14 +71,14 @@ class TestAtomicFile : public QObject {
 
   void write_belowAFile_throws() {
     writeFileWhole(folder() / "file", "x");
-    QVERIFY_EXCEPTION_THROWN(writeFileWhole(folder() / "file" / "a.yaml", "y"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, writeFileWhole(folder() / "file" / "a.yaml", "y"));
     QCOMPARE(evical::test::fileContent(folder() / "file"), QByteArray("x"));
     std::filesystem::remove(folder() / "file");
   }
 
   void write_overAFolder_leavesNothingBehind() {
     std::filesystem::create_directories(folder() / "d" / "inside");
-    QVERIFY_EXCEPTION_THROWN(writeFileWhole(folder() / "d", "y"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, writeFileWhole(folder() / "d", "y"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove_all(folder() / "d");
   }
@@ -86,7 +86,7 @@ class TestAtomicFile : public QObject {
   void writeSeveral_whereOneFails_changesNone() {
     writeFileWhole(folder() / "old", "before");
     const std::vector<FileContent> files{{folder() / "old", "after"}, {folder() / "missing" / "b", "x"}};
-    QVERIFY_EXCEPTION_THROWN(writeFilesWhole(files), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, writeFilesWhole(files));
     QCOMPARE(evical::test::fileContent(folder() / "old"), QByteArray("before"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(folder() / "old");
@@ -95,7 +95,7 @@ class TestAtomicFile : public QObject {
   void write_overAPipe_leavesThePipe() {
     const auto pipe = folder() / "pipe";
     QCOMPARE(::mkfifo(pipe.c_str(), 0600), 0);
-    QVERIFY_EXCEPTION_THROWN(writeFileWhole(pipe, "x"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, writeFileWhole(pipe, "x"));
     QVERIFY(std::filesystem::is_fifo(pipe));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(pipe);
@@ -110,7 +110,7 @@ class TestAtomicFile : public QObject {
     }
     for (const std::string name : {"old", "mark"}) writeFileWhole(folder() / name, "before");
     std::filesystem::create_directory(folder() / "barred");
-    QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, moveFilesWhole(moves));
     QCOMPARE(evical::test::fileContent(folder() / "old"), QByteArray("before"));
     QCOMPARE(evical::test::fileContent(folder() / "mark"), QByteArray("before"));
     QVERIFY(!std::filesystem::exists(folder() / "new"));
@@ -131,7 +131,7 @@ class TestAtomicFile : public QObject {
     writeFileWhole(to / "frames" / "1.png", "before");
     writeFileWhole(to / "frames" / "2.png", "before");
     const std::vector<FileMove> moves = {{from / "frames", to / "frames"}, {from / "mark", to / "mark"}};
-    QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);  // there is no mark
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, moveFilesWhole(moves));  // there is no mark
     QCOMPARE(evical::test::fileContent(to / "frames" / "1.png"), QByteArray("before"));
     QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(2));
     writeFileWhole(from / "mark", "after");

@@ -34,9 +34,9 @@ class TestInParallel : public QObject {
       ++begun;
       if (part == 3) throw std::runtime_error("3");
     };
-    QVERIFY_EXCEPTION_THROWN(inParallel(1, 1000, fail), std::runtime_error);
+    QVERIFY_THROWS_EXCEPTION(std::runtime_error, inParallel(1, 1000, fail));
     QCOMPARE(begun.load(), 4);
-    QVERIFY_EXCEPTION_THROWN(inParallel(2, 1000, fail), std::runtime_error);
+    QVERIFY_THROWS_EXCEPTION(std::runtime_error, inParallel(2, 1000, fail));
   }
 };
 

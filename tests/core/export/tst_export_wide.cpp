@@ -107,12 +107,12 @@ class TestExportWide : public QObject {
         "camera_model: omni\nintrinsics: [1.2, 250.0, 250.0, 170.0, 130.0]\ndistortion_model: equidistant\n"
         "distortion_coeffs: [0.0, 0.0, 0.0, 0.0]\nresolution: [346, 260]\n",
         "camchain.yaml");
-    QVERIFY_EXCEPTION_THROWN(readIntrinsics(omni), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, readIntrinsics(omni));
     const YamlNode sphere = YamlNode::parse(
         "camera_model: ds\nintrinsics: [-0.2, 1.6, 250.0, 250.0, 170.0, 130.0]\ndistortion_model: none\n"
         "distortion_coeffs: []\nresolution: [346, 260]\n",
         "camchain.yaml");
-    QVERIFY_EXCEPTION_THROWN(readIntrinsics(sphere), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, readIntrinsics(sphere));
   }
 
   void basalt_hasDoubleSphereAndEucm() {
@@ -168,7 +168,7 @@ class TestExportWide : public QObject {
     const NamedResult result = wideRig(CameraModel::DoubleSphere);
     const YAML::Node info = yamlOf(exportTo(result, "ros"), "ros/left.yaml");
     QCOMPARE(info["distortion_model"].as<std::string>(), std::string("equidistant"));
-    QVERIFY_EXCEPTION_THROWN(exportTo(result, "metavision"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, exportTo(result, "metavision"));
   }
 };
 

@@ -282,9 +282,9 @@ void TestBlinkTracker::sceneThatDoesNotBlink_isRefused() {
 }
 
 void TestBlinkTracker::fewEvents_showNothing() {
-  QVERIFY_EXCEPTION_THROWN(track(checkerboardForBlinkTracker().board, {}), CalibrationError);
-  QVERIFY_EXCEPTION_THROWN(track(checkerboardForBlinkTracker().board, {Event{0, 1, 1, true}}),
-                           CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, track(checkerboardForBlinkTracker().board, {}));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError,
+                           track(checkerboardForBlinkTracker().board, {Event{0, 1, 1, true}}));
 }
 
 void TestBlinkTracker::saddle_isAtTheCornerWhateverTheTones() {

@@ -307,8 +307,8 @@ class TestInitialise : public QObject {
     const SimulatedInput simulated = simulateInput(shortRecording());
     std::stop_source source;
     source.request_stop();
-    QVERIFY_EXCEPTION_THROWN(
-        initialise(simulated.input, {}, RunContext{silentProgress(), source.get_token()}), Cancelled);
+    QVERIFY_THROWS_EXCEPTION(
+        Cancelled, initialise(simulated.input, {}, RunContext{silentProgress(), source.get_token()}));
   }
 };
 

@@ -260,7 +260,7 @@ class TestKnotSpacing : public QObject {
     QCOMPARE(initial.state.world_from_imu_rotation.knot_spacing_s, 0.033);
     QCOMPARE(initial.state.imu_in_world_m.knot_spacing_s, 0.033);
     options.knot_spacing_s = 1e-3;
-    QVERIFY_EXCEPTION_THROWN(initialise(input, options, RunContext{}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, initialise(input, options, RunContext{}));
   }
 
   void chosenSpacing_isTold() {

@@ -85,7 +85,7 @@ class TestBlinkPage : public QObject {
   void boardThatMakesNoSense_isRefused() {
     Board board = checkerboard();
     board.rows = 1;
-    QVERIFY_EXCEPTION_THROWN(blinkPage(board, 0.01), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, blinkPage(board, 0.01));
   }
 
   // A substitute for the browser functions that the page uses: it flashes, at half the chosen rate in frames,

@@ -134,8 +134,8 @@ void TestBoardDrawing::drawing_ofATooLargeBoardIsRefused() {
   Board b = board();
   b.spacing_m = 30.1;  // millimetres given as metres
   b.radius_m = 10.5;
-  QVERIFY_EXCEPTION_THROWN(boardPdf(b, kSheet), CalibrationError);
-  QVERIFY_EXCEPTION_THROWN(boardSvg(board(), {-0.01, {}}), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, boardPdf(b, kSheet));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, boardSvg(board(), {-0.01, {}}));
 }
 
 void TestBoardDrawing::squares_areThoseThatFindersLookFor_data() {
@@ -189,10 +189,10 @@ void TestBoardDrawing::squares_areDrawnWhereTheyAre() {
 }
 
 void TestBoardDrawing::moreTagsThanThereAre_areRefused() {
-  QVERIFY_EXCEPTION_THROWN(boardSquares(boardOf(BoardType::AprilGrid, 30, 30, 0.03), {}), CalibrationError);
-  QVERIFY_EXCEPTION_THROWN(boardSquares(boardOf(BoardType::Charuco, 60, 60, 0.03), {}), CalibrationError);
-  QVERIFY_EXCEPTION_THROWN(boardSquares(boardOf(BoardType::Charuco, 6, 6, 0.03), {2, "8x8"}),
-                           CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, boardSquares(boardOf(BoardType::AprilGrid, 30, 30, 0.03), {}));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, boardSquares(boardOf(BoardType::Charuco, 60, 60, 0.03), {}));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError,
+                           boardSquares(boardOf(BoardType::Charuco, 6, 6, 0.03), {2, "8x8"}));
 }
 
 // The largest board that fits with a margin of 1 cm, by the width of a board of 5 to 6 spacings.
@@ -243,7 +243,7 @@ void TestBoardDrawing::boardLargerThanItsPaper_isRefusedWithASpacingThatFits() {
     QVERIFY(fitsSheet(b, sheet));
     b.spacing_m += 2e-4;
     QVERIFY(!fitsSheet(b, sheet));
-    QVERIFY_EXCEPTION_THROWN(boardPdf(b, sheet), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, boardPdf(b, sheet));
   }
 }
 
@@ -295,7 +295,7 @@ void TestBoardDrawing::png_tellsItsResolution() {
 
 void TestBoardDrawing::png_ofAbsurdResolution_isRefused() {
   for (const double dpi : {0.0, -300.0, 1e5, std::nan("")})
-    QVERIFY_EXCEPTION_THROWN(boardPng(board(), dpi, kSheet), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, boardPng(board(), dpi, kSheet));
 }
 
 EVICAL_TEST(TestBoardDrawing)

@@ -128,12 +128,10 @@ void TestRosbag::writer_withoutFinish_leavesNothing() {
 
 void TestRosbag::writer_onFullDisk_throwsAndLeavesNothing() {
   const SmallFilesOnly no_more_space(100'000);
-  QVERIFY_EXCEPTION_THROWN(
-      {
-        const auto writer = createBag(path("full.bag"), sampleStreams(), false);
-        writeAll(*writer, sampleRecording(200'000));
-      },
-      CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, {
+    const auto writer = createBag(path("full.bag"), sampleStreams(), false);
+    writeAll(*writer, sampleRecording(200'000));
+  });
   QCOMPARE(filesNamed("full.bag"), 0);
 }
 
@@ -283,7 +281,7 @@ void TestRosbag::unreadableFiles_areNamed() {
     QVERIFY(error.kind() == ErrorKind::BadInput);
     QVERIFY2(QByteArray(error.what()).contains(expected), error.what());
   }
-  QVERIFY_EXCEPTION_THROWN(openRecording(path("missing")), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(path("missing")));
 }
 
 EVICAL_TEST(TestRosbag)

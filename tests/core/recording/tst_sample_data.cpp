@@ -100,7 +100,7 @@ class TestSampleData : public QObject {
     const QString folder = qEnvironmentVariable("EVICAL_DATA");
     if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
     const auto reader = openRecording((folder + "/reports/events_e2vid.txt").toStdString());
-    QVERIFY(reader->streams().at(0).resolution_px == Resolution(346, 260));
+    QVERIFY((reader->streams().at(0).resolution_px == Resolution{346, 260}));
     Packet packet;
     QVERIFY(reader->read(packet));
     QVERIFY(packet.events.front().x_px == 256 && packet.events.front().y_px == 168 &&

@@ -136,7 +136,7 @@ class TestDetectionsCsv : public QObject {
   void missingTables_areSaid() {
     write(detectionsCsv(sampleForDetectionsCsv()), windowsCsv(sampleForDetectionsCsv()));
     std::filesystem::remove(folder() / "windows.csv");
-    QVERIFY_EXCEPTION_THROWN(readDetections(folder(), 2), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, readDetections(folder(), 2));
   }
 };
 

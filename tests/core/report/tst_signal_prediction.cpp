@@ -95,8 +95,8 @@ class TestSignalPrediction : public QObject {
     std::stop_source stop;
     stop.request_stop();
     const RunContext context{silentProgress(), stop.get_token()};
-    QVERIFY_EXCEPTION_THROWN(predictSignals(rig_.input.imus[0], rig_.input.start_ns, rig_.truth, 0, context),
-                             Cancelled);
+    QVERIFY_THROWS_EXCEPTION(Cancelled,
+                             predictSignals(rig_.input.imus[0], rig_.input.start_ns, rig_.truth, 0, context));
   }
 };
 

@@ -137,7 +137,7 @@ class TestSimulatedFrames : public QObject {
     Session other = session();
     other.cameras.front().intrinsics->resolution_px = {640, 480};
     other.cameras.front().resolution_px = {640, 480};
-    QVERIFY_EXCEPTION_THROWN(calibrate(other, RunContext{}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, calibrate(other, RunContext{}));
   }
 
   void picturesWithoutTimes_areRefusedBesideAnImu() {

@@ -254,7 +254,7 @@ class TestSavedDetections : public QObject {
   }
 
   void folderOfNoRun_isRefused() {
-    QVERIFY_EXCEPTION_THROWN(restoreDetections(path(), session_, RunContext{}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, restoreDetections(path(), session_, RunContext{}));
   }
 };
 

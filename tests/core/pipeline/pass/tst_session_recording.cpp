@@ -150,7 +150,7 @@ void TestSessionRecording::clockScale_isApplied() {
 void TestSessionRecording::absurdClocks_areRefused() {
   useTwoFiles();
   session_.imus[0].clock_offset_s = 4.5e9;  // from 2020 on that is in the year 2162
-  QVERIFY_EXCEPTION_THROWN(SessionRecording recording(session_), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, SessionRecording recording(session_));
 }
 
 void TestSessionRecording::columns_areThoseOfTheSession() {

@@ -272,7 +272,7 @@ class TestRepeatCalibration : public QObject {
   void cancelled_isNoVerdict() {
     std::stop_source source;
     source.request_stop();
-    QVERIFY_EXCEPTION_THROWN(repeatOf(2, {}, "davis346", {silentProgress(), source.get_token()}), Cancelled);
+    QVERIFY_THROWS_EXCEPTION(Cancelled, repeatOf(2, {}, "davis346", {silentProgress(), source.get_token()}));
   }
 
   void otherRigOrBoard_isBadInput() {
@@ -298,7 +298,7 @@ class TestRepeatCalibration : public QObject {
     second.time_range_s = {10.0, 20.0};
     QCOMPARE(evical::repeatOf({first, second}).names, (std::vector<std::string>{"a", "a_2"}));
     second.time_range_s = {9.0, 20.0};
-    QVERIFY_EXCEPTION_THROWN(evical::repeatOf({first, second}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, evical::repeatOf({first, second}));
   }
 
   void sensorsInAnotherOrder_areTheSameRig() {
@@ -333,7 +333,7 @@ class TestRepeatCalibration : public QObject {
     QVERIFY(page.contains("<svg") && page.contains("plots/quantity1.csv"));
     checkRepeatFolder(path);  // its own earlier result is not an obstacle
     std::filesystem::remove(path / "repeat.yaml");
-    QVERIFY_EXCEPTION_THROWN(checkRepeatFolder(path), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, checkRepeatFolder(path));
   }
 };
 

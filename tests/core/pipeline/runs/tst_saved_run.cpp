@@ -276,7 +276,7 @@ class TestSavedRun : public QObject {
     QVERIFY(missingIn(saved).contains("result.yaml"));
     QVERIFY(runData(*saved.run) == runData(*run_));
     std::filesystem::remove(folder / "run.data");
-    QVERIFY_EXCEPTION_THROWN(readSavedRun(folder), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, readSavedRun(folder));
   }
 
   void partsOfTwoRuns_areRefused() {

@@ -491,7 +491,7 @@ correlation:
           std::pair{"imus.left_imu.acceleration_unit", "gravities"}, std::pair{"imus.left_imu.colour", "red"},
           std::pair{"imus.left_imu.gyroscope_axes", "y,x"}, std::pair{"time_range_s", "[3, 2]"},
           std::pair{"time_range_s", "5"}, std::pair{"time_range_s", "[-1, 2]"}})
-      QVERIFY_EXCEPTION_THROWN(setInSession(session, key, value), CalibrationError);
+      QVERIFY_THROWS_EXCEPTION(CalibrationError, setInSession(session, key, value));
   }
 
   // If -x,-y,-z was applied and is applied again, the original axes result.

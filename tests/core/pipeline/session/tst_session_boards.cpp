@@ -137,7 +137,7 @@ class TestSessionBoards : public QObject {
     const double of_plate = session.options.optimisation->board_spacing_sigma;
     session.cameras[0].board = "tags";
     session.cameras[1].board = "plate";
-    QVERIFY_EXCEPTION_THROWN(validateBoards(session, "session"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, validateBoards(session, "session"));
     settleBoards(session);
     validateBoards(session, "session");
     QCOMPARE(boardNames(session), (Names{"tags", "plate", "wall"}));

@@ -295,7 +295,7 @@ void TestAedat2::otherChips_areRefusedByName() {
   } catch (const CalibrationError& error) {
     QVERIFY(error.problem().find("CochleaAMS1c") != std::string::npos);
   }
-  QVERIFY_EXCEPTION_THROWN(openRecording(scratch_.write("old.aedat", "#!AER-DAT1.0\r\n")), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(scratch_.write("old.aedat", "#!AER-DAT1.0\r\n")));
 }
 
 void TestAedat2::everyCut_keepsWhatIsWhole() {

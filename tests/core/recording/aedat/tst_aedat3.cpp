@@ -166,8 +166,8 @@ void TestAedat3::compressedFiles_areRefusedByName() {
   } catch (const CalibrationError& error) {
     QVERIFY(error.problem().find("SerializedTS") != std::string::npos);
   }
-  QVERIFY_EXCEPTION_THROWN(openRecording(scratch_.write("cut.aedat", aedat3Header().substr(0, 40))),
-                           CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError,
+                           openRecording(scratch_.write("cut.aedat", aedat3Header().substr(0, 40))));
 }
 
 void TestAedat3::everyCut_keepsWhatIsWhole() {

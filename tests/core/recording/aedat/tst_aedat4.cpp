@@ -247,7 +247,7 @@ void TestAedat4::cutAnywhere_readsWhatIsWhole() {
   for (std::size_t length = 1; length < whole.size(); length += length < file.starts()[2] ? 1 : 13) {
     const std::filesystem::path path = folder_.write("cut.aedat4", whole.substr(0, length));
     if (length < file.starts()[0]) {
-      QVERIFY_EXCEPTION_THROWN(readAll(path), CalibrationError);
+      QVERIFY_THROWS_EXCEPTION(CalibrationError, readAll(path));
       continue;
     }
     const Contents contents = readAll(path);
@@ -416,8 +416,8 @@ void TestAedat4::selection_isKept() {
 }
 
 void TestAedat4::writer_needsTheResolution() {
-  QVERIFY_EXCEPTION_THROWN(
-      createAedat4(folder_ / "no.aedat4", {{"events", StreamType::Events, "", {}}}, false), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(
+      CalibrationError, createAedat4(folder_ / "no.aedat4", {{"events", StreamType::Events, "", {}}}, false));
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     QVERIFY(!entry.path().filename().string().starts_with("no.aedat4"));
 }

@@ -60,7 +60,7 @@ void TestEventStream::everyCut_keepsWhatIsWhole() {
     QCOMPARE(contents.hasFault(FaultKind::Truncated), (data - overflows) % 5 != 0);
   }
   for (std::size_t size = 12; size < header.size(); ++size)
-    QVERIFY_EXCEPTION_THROWN(read(whole.substr(0, size)), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, read(whole.substr(0, size)));
 }
 
 void TestEventStream::greyLevels_areLeftOut() {

@@ -181,10 +181,10 @@ print([e[k].dtype.name for k in 'xypt'], e['t'].shape[0], f['ms_to_idx'].dtype.n
 
 void TestHdf5::dsecWriter_refusesWhatTheLayoutCannotHold() {
   const StreamInfo camera{"a", StreamType::Events, "", {64, 48}};
-  QVERIFY_EXCEPTION_THROWN(createDsec(folder_ / "two.h5", {camera, camera}), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, createDsec(folder_ / "two.h5", {camera, camera}));
   const auto writer = createDsec(folder_ / "long.h5", {camera});
   const std::vector<Event> events{{5'000, 1, 1, true}, {4'300'000'000'000, 1, 1, true}};
-  QVERIFY_EXCEPTION_THROWN(writer->write(0, events), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, writer->write(0, events));
 }
 
 void TestHdf5::layouts_areFound_data() {
@@ -260,7 +260,7 @@ f = h5py.File('types.h5', 'w')
 f['events/x'] = x; f['events/y'] = y; f['events/t'] = t; f['events/p'] = (np.arange(n) % 4).astype('u1'); f.close())"),
                      folder_.path())
                .isEmpty());
-  QVERIFY_EXCEPTION_THROWN(openRecording(folder_ / "no_events.h5"), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(folder_ / "no_events.h5"));
   const Contents contents = readAll(folder_ / "types.h5");
   QVERIFY(contents.eventCount() > 0);
   for (const auto& [stream, events] : contents.events)
@@ -318,7 +318,7 @@ void TestHdf5::missingDatasets_areBadInput() {
         "chunks=True)"}) {
     runPython(kArrays + (std::string("f = h5py.File('missing.h5', 'w')\n") + script) + "\nf.close()",
               folder_.path());
-    QVERIFY_EXCEPTION_THROWN(openRecording(folder_ / "missing.h5"), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(folder_ / "missing.h5"));
   }
 }
 

@@ -316,7 +316,7 @@ void TestPictureFolders::byDefault_picturesAreNotRead() {
   QCOMPARE(contents.frameCount(), 2u);
   QCOMPARE(contents.sampleCount(), 0u);
   QCOMPARE(pictures->fractionRead(), 1.0);
-  QVERIFY_EXCEPTION_THROWN(pictures->select({7}), std::out_of_range);
+  QVERIFY_THROWS_EXCEPTION(std::out_of_range, pictures->select({7}));
 }
 
 void TestPictureFolders::conversion_takesThemAlongOrSaysThatItDoesNot_data() {
@@ -363,7 +363,7 @@ void TestPictureFolders::cameras_areReadSideBySide() {
 void TestPictureFolders::emptyFolders_areNoRecording() {
   scratch_->write("notes.md", "nothing");
   std::filesystem::create_directories(*scratch_ / "cam0");
-  QVERIFY_EXCEPTION_THROWN(openRecording(scratch_->path()), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(scratch_->path()));
 }
 
 void TestPictureFolders::sizes_areRead_data() {

@@ -136,11 +136,11 @@ void TestPropheseeFiles::whatHasNoPlace_isRefused() {
   imu.name = "imu";
   imu.type = StreamType::Imu;
   for (const char* const format : {"raw", "dat"}) {
-    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {events, imu}), CalibrationError);
-    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {events, events}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, createRecording(scratch_ / "no", format, {events, imu}));
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, createRecording(scratch_ / "no", format, {events, events}));
     StreamInfo unknown = events;
     unknown.resolution_px = {};
-    QVERIFY_EXCEPTION_THROWN(createRecording(scratch_ / "no", format, {unknown}), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, createRecording(scratch_ / "no", format, {unknown}));
   }
   QVERIFY(!std::filesystem::exists(scratch_ / "no"));
 }
@@ -178,7 +178,7 @@ void TestPropheseeFiles::strayStamps_areLeftOut() {
   QVERIFY(std::filesystem::file_size(path) < 1'000'000);
   // Writing without that filter is refused.
   const auto direct = createRecording(scratch_ / "direct", format.toStdString(), {stream});
-  QVERIFY_EXCEPTION_THROWN(direct->write(0, EventSpan(events)), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, direct->write(0, EventSpan(events)));
 }
 
 void TestPropheseeFiles::size_isThatOfTheHeader() {

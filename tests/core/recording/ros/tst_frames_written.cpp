@@ -120,7 +120,7 @@ void TestFramesWritten::otherFormats_refuseThem() {
     StreamInfo events = streamOf("events", StreamType::Events);
     events.resolution_px = {346, 260};
     const auto written = createRecording(scratch_ / "none", format.name, {events});
-    QVERIFY_EXCEPTION_THROWN(written->writeFrame(0, plainFrame(FrameFormat::Gray8, 1)), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, written->writeFrame(0, plainFrame(FrameFormat::Gray8, 1)));
   }
 }
 

@@ -167,9 +167,9 @@ void TestMcap::writer_refusesTimesThatRosCannotHold() {
   const auto writer = createMcap(folder_ / "time.mcap", streams, McapCompression::None);
   std::vector<ImuSample> samples(1);
   samples[0].time_ns = std::int64_t{1'000'000'000} << 31;
-  QVERIFY_EXCEPTION_THROWN(writer->write(0, samples), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, writer->write(0, samples));
   samples[0].time_ns = -1;
-  QVERIFY_EXCEPTION_THROWN(writer->write(0, samples), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, writer->write(0, samples));
 }
 
 void TestMcap::truncation_givesWhatIsWhole() {

@@ -164,7 +164,7 @@ void TestSqliteBag::otherDatabase_isRefused() {
   std::string bytes = fileBytes(folder_ / "other.db3");
   for (std::size_t at = bytes.find("messages"); at != std::string::npos; at = bytes.find("messages"))
     bytes.replace(at, 8, "passages");
-  QVERIFY_EXCEPTION_THROWN(openRecording(folder_.write("other.db3", bytes)), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(folder_.write("other.db3", bytes)));
 }
 
 void TestSqliteBag::truncation_isSurvived() {

@@ -245,7 +245,7 @@ void TestTextRecording::stepBack_endsThePacket() {
 void TestTextRecording::writer_refusesTwoCameras() {
   QTemporaryDir folder;
   const std::vector<StreamInfo> streams(2, sampleStreams()[0]);
-  QVERIFY_EXCEPTION_THROWN(createText(folder.path().toStdString(), streams), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, createText(folder.path().toStdString(), streams));
   QVERIFY(std::filesystem::is_empty(folder.path().toStdString()));
 }
 
@@ -357,7 +357,7 @@ void TestTextRecording::imuWithoutHeader_isToldByGravity() {
 void TestTextRecording::columnsThatMakeNoSense_areRefused() {
   for (const char* text : {"1,2,3\n4,5,6\n", "9,5,7,8\n3,9,2,1\n", ",,,\n", "\n\n", "a,b,c,d\n9,5,7,8\n"}) {
     writeFile(path("odd.csv"), text);
-    QVERIFY_EXCEPTION_THROWN(openRecording(path("odd.csv")), CalibrationError);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(path("odd.csv")));
   }
 }
 
@@ -501,7 +501,7 @@ void TestTextRecording::sessionsColumns_countInstead() {
   QVERIFY((read.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(1, 2, 9.5)));
   QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(0.1, 0.2, 0.3)));
   writeFile(path("no_text.npy"), "\x93NUMPY");
-  QVERIFY_EXCEPTION_THROWN(openRecording(path("no_text.npy"), {{"events", "t,x,y,p"}}), CalibrationError);
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(path("no_text.npy"), {{"events", "t,x,y,p"}}));
 }
 
 void TestTextRecording::doubtfulUnitOfTime_isSaid() {
