@@ -38,6 +38,11 @@ if(EVICAL_MOLD AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPI
   add_link_options(-fuse-ld=mold)
 endif()
 
+# Only libraries that are used: static libraries name those of their dependencies, too.
+if(UNIX AND NOT APPLE)
+  add_link_options(-Wl,--as-needed)
+endif()
+
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 
@@ -67,7 +72,7 @@ endfunction()
 
 # evical_unite(TARGET [BATCH]): with EVICAL_UNITY several sources are compiled as one unit, since most of a source's compile time
 # goes into headers and templates that its neighbours need, too. Therefore no two sources of a folder may define the same name,
-# not even in unnamed namespaces. Batches of more than 12 sources gain nothing: GCC's time per template grows with their number.
+# not even in unnamed namespaces. Batches of more than 12 sources gain nothing: time per template grows with their number.
 # If most templates are Eigen's, 7 is better.
 function(evical_unite target)
   if(EVICAL_UNITY)

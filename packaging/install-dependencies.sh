@@ -3,13 +3,13 @@
 #   run      to build and run the programs (the default)
 #   test     for packaging/test.sh; includes run and package
 #   package  to build and check Debian packages
-#   fuzz     clang for packaging/fuzz.sh
+#   fuzz     for packaging/fuzz.sh
 # Does nothing, and needs no root rights, if all packages are installed. With --list in front it only prints their names.
 set -euo pipefail
 
 run=(
-  # build
-  build-essential cmake ninja-build ccache mold git ca-certificates
+  # build: clang needs half of GCC's time
+  build-essential clang cmake ninja-build ccache mold git ca-certificates
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
   libopencv-dev libapriltag-dev libpng-dev
@@ -33,7 +33,7 @@ test=(
   # other programs' loaders for the files that Evical exports, and their libraries
   python3-camera-calibration-parsers liburdfdom-tools python3-yaml libcereal-dev libgflags-dev
 )
-fuzz=(clang libclang-rt-14-dev)
+fuzz=(libclang-rt-14-dev)
 
 only_list=
 if [ "${1:-}" = --list ]; then

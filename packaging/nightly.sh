@@ -2,7 +2,7 @@
 # Checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night.
 #   no-unity    build each source as a separate unit, and run all tests except the real-time ones
 #   debug       build without optimisation and with assertions, and run the same tests
-#   clang       build with clang, and run the same tests
+#   gcc         build with GCC, warnings as errors, and run the same tests
 #   sanitizers  packaging/sanitizers.sh
 #   fuzz        packaging/fuzz.sh, one hour over all targets
 #   benchmarks  packaging/benchmarks.sh, with their targets
@@ -11,7 +11,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
-steps=(no-unity debug clang sanitizers fuzz benchmarks tidy)
+steps=(no-unity debug gcc sanitizers fuzz benchmarks tidy)
 [ "$#" -gt 0 ] || set -- "${steps[@]}"
 for step in "$@"; do
   if [[ " ${steps[*]} " != *" $step "* ]]; then
@@ -31,7 +31,7 @@ run_step() {
   case "$1" in
     no-unity) build_and_test build/no-unity 1500 --preset ci -DEVICAL_UNITY=OFF ;;
     debug) build_and_test build/debug 7200 --preset debug ;;
-    clang) build_and_test build/clang 1500 --preset clang ;;
+    gcc) build_and_test build/gcc 1500 --preset gcc ;;
     sanitizers) packaging/sanitizers.sh ;;
     fuzz) packaging/fuzz.sh 190 ;; # seconds for each of 19 targets
     benchmarks) packaging/benchmarks.sh ;;

@@ -48,7 +48,7 @@ check_build_budget() {
   fi
   count_processor
   before=$processor_cs
-  CCACHE_DISABLE=1 g++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o "$scratch/reference.o"
+  CCACHE_DISABLE=1 clang++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o "$scratch/reference.o"
   count_processor
   reference=$((processor_cs - before))
   ratio=$((build_cs / reference))
@@ -63,7 +63,7 @@ step install packaging/install-dependencies.sh test
 step format packaging/check-format.sh
 step texts packaging/check_texts.py
 step weight packaging/weight.sh --check
-step configure cmake --preset ci
+step configure cmake --fresh --preset ci
 rm -f build/ccache.log
 CCACHE_STATSLOG=$PWD/build/ccache.log step build cmake --build --preset ci
 build_cs=$last_processor_cs
