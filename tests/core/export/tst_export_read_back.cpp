@@ -366,7 +366,8 @@ class TestExportReadBack : public QObject {
     kind.fisheye = target == "tum-vie";
     NamedResult result = rig(kind);
     std::swap(result.cameras[0], result.cameras[3]);
-    std::swap(ownResult(result).state.cameras[0], ownResult(result).state.cameras[3]);
+    CalibrationState& state = ownResult(result).state;
+    std::swap(state.cameras[0], state.cameras[3]);
     QTemporaryDir folder;
     const ExportTarget& row = exportTarget(target.toStdString(), "test");
     QVERIFY(exportInto(folder, result, row.name));
