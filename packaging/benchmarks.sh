@@ -6,7 +6,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
 packaging/install-dependencies.sh test
-cmake --preset release -DEVICAL_TESTS=ON
+cmake --fresh --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical evical-gui evical_benchmarks
 scenarios=config/scenarios
 failed=0

@@ -29,7 +29,7 @@ default_base() {
   echo "$base"
 }
 
-cmake --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
+cmake --fresh --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
 if [ "${1:-}" = --changed ]; then
   base=${2:-$(default_base)}
   if [ -n "$base" ]; then

@@ -24,7 +24,7 @@ done
 build_and_test() { # FOLDER TIMEOUT_s CMAKE_ARGUMENT...
   local folder=$1 timeout_s=$2
   shift 2
-  cmake -B "$folder" "$@" && cmake --build "$folder" -j2 &&
+  cmake --fresh -B "$folder" "$@" && cmake --build "$folder" -j2 &&
     ctest --test-dir "$folder" -LE realtime --output-on-failure -j2 --timeout "$timeout_s"
 }
 run_step() {

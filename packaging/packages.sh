@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh run package
-cmake --preset package
+cmake --fresh --preset package
 cmake --build --preset package
 rm -rf build/package/packages
 umask 022
