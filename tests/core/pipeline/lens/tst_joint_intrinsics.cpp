@@ -2,6 +2,7 @@
 // and halves.
 #include "core/geometry/projection_difference.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/rig/calibrated_lenses.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/report_options.h"
@@ -103,6 +104,15 @@ class TestJointIntrinsics : public QObject {
       compared += each.sigma > 0.0;
     }
     QCOMPARE(compared, 7 + 1 + 8);  // extrinsics, drift, lens
+  }
+
+  void movedPrincipalPoint_isComparedWithARotation() {
+    CameraIntrinsics moved = truth_;
+    moved.principal_point_px.x() += 0.02 * truth_.focal_length_px.x();
+    const std::string advice = adviceOnMovedLens(truth_, moved);
+    QVERIFY2(advice.find("turns the camera by 1.15 deg") != std::string::npos, advice.c_str());
+    moved.principal_point_px.x() = truth_.principal_point_px.x() + 0.002 * truth_.focal_length_px.x();
+    QVERIFY(adviceOnMovedLens(truth_, moved).empty());
   }
 
   void halves_solveForThemToo() {

@@ -73,6 +73,10 @@ class TestRealPoints : public QObject {
              note.find("tag corners are 0.3") != std::string::npos;
     };
     QVERIFY(std::ranges::any_of(run.result.notes, isCorrected));
+    const auto isAdvice = [](const std::string& note) {
+      return note.find("principal point is 6") != std::string::npos;
+    };
+    QVERIFY(std::ranges::any_of(run.result.notes, isAdvice) != fixed_lens);
     QVERIFY(std::abs(camera.time_offset_s) < 1e-3);
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   }
