@@ -306,8 +306,10 @@ class Calibration {
     flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
     flagDoubtful(clock_doubt_, result, "clock_step");
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
-    if (result.status == CalibrationStatus::Doubtful)
+    if (result.status == CalibrationStatus::Doubtful) {
+      flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults), result, "stamp_jitter");
       flagDoubtful(saturationIn(input_, options), result, "saturation");
+    }
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -362,6 +364,8 @@ class Calibration {
     if (cause.text.empty())
       if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
         cause = {found->text, found->repair, causeName(found->kind), found->explains};
+    if (cause.text.empty() && !misfit.failure.empty())
+      cause = {scatteringStampsIn(input_, solution, run_.pass.faults), {}, "stamp_jitter"};
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,

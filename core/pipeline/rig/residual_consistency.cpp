@@ -69,6 +69,21 @@ MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& so
   return {wordsBeyond(measures, &Measure::failed), wordsBeyond(measures, &Measure::doubtful)};
 }
 
+std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolution& solution,
+                               const std::vector<RecordingFault>& faults) {
+  constexpr double kAboveNoise = 1.5;
+  std::string found;
+  for (std::size_t k = 0; k < input.imus.size(); ++k) {
+    if (std::max(solution.scales.gyroscopes[k], solution.scales.accelerometers[k]) < kAboveNoise) continue;
+    const std::string& name = input.imus[k].name;
+    for (const RecordingFault& fault : faults) {
+      if (fault.kind != FaultKind::Jitter || fault.stream != name) continue;
+      found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", name, fault.text);
+    }
+  }
+  return found;
+}
+
 std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options) {
   if (!validation.failure.empty() || validation.rms_sigmas <= options.doubtful_halves_sigmas) return {};
   const QuantityDifference* worst = nullptr;

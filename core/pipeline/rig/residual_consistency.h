@@ -4,6 +4,7 @@
 
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
+#include "core/data/recording_fault.h"
 #include "core/optimisation/batch_optimiser.h"
 
 #include <string>
@@ -20,6 +21,11 @@ MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& so
 
 // Reason for doubt if the halves of a recording differ by more than their sigmas allow; otherwise empty.
 std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options);
+
+// Scattering stamps of IMUs whose residuals are larger than their noise; empty if none. Not a separate doubt, but the cause
+// of most others, such as large sigmas.
+std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolution& solution,
+                               const std::vector<RecordingFault>& faults);
 
 // IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others.
 std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);

@@ -48,6 +48,7 @@ class TestSpoiltImu : public QObject {
  private slots:
   void spoiltSamples_areLeftOutAndNamed_data();
   void spoiltSamples_areLeftOutAndNamed();
+  void scatteringStamps_areTheFirstReason();
 };
 
 }  // namespace
@@ -108,6 +109,24 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
                             .arg(quantity.sigma)
                             .arg(notes)));
   }
+}
+
+// Residuals beyond the noise density and large sigmas are only symptoms.
+void TestSpoiltImu::scatteringStamps_areTheFirstReason() {
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
+  scenario.duration_s = 10.0;
+  scenario.imus.front().rate_hz = 200.0;
+  DetectionResult pass = test::perfectPass(scenario, 0.05, 0.015);
+  Samples& samples = pass.imus.front().samples;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> jitter_ns(0.0, 5e6);
+  for (ImuSample& sample : samples) sample.time_ns += std::llround(jitter_ns(random));
+  std::sort(samples.begin(), samples.end(),
+            [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; });
+  const CalibrationRun run = calibrate(test::sessionFor(scenario), std::move(pass), RunContext{});
+  const QString reason = QString::fromStdString(run.result.reason);
+  QVERIFY(run.result.status == CalibrationStatus::Doubtful);
+  QVERIFY2(reason.contains(QRegularExpression("^[^;]*: Sample intervals scatter by ")), qPrintable(reason));
 }
 
 }  // namespace
