@@ -72,7 +72,7 @@ endfunction()
 
 # evical_unite(TARGET [BATCH]): with EVICAL_UNITY several sources are compiled as one unit, since most of a source's compile time
 # goes into headers and templates that its neighbours need, too. Therefore no two sources of a folder may define the same name,
-# not even in unnamed namespaces. Batches of more than 12 sources gain nothing: time per template grows with their number.
+# not even in unnamed namespaces. Batches of more than 12 sources gain nothing: GCC's time per template grows with their number.
 # If most templates are Eigen's, 7 is better.
 function(evical_unite target)
   if(EVICAL_UNITY)

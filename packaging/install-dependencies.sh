@@ -8,7 +8,7 @@
 set -euo pipefail
 
 run=(
-  # build: clang needs half of GCC's time
+  # build: clang needs less time than GCC
   build-essential clang cmake ninja-build ccache mold git ca-certificates
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev

@@ -12,7 +12,7 @@ step() { printf '\n[%d:%02d] %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$1"; }
 if [ -x "$evical" ]; then
   echo "Evical: updates the build and calibrates a simulated recording."
 else
-  echo "Evical: builds, and calibrates a simulated recording. On two cores the first result takes 7 minutes, all programs 9."
+  echo "Evical: builds, and calibrates a simulated recording. On two cores the first result takes 7 minutes, all programs 9, after missing packages are installed."
 fi
 step "1/5 Installing packages"
 packaging/install-dependencies.sh run

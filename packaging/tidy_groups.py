@@ -147,6 +147,8 @@ def main():
         flags[kind_of(entry["file"])].update(dict.fromkeys(flags_of(entry["command"])))
     flags = {kind: [word for flag in own for word in flag] for kind, own in flags.items()}
     sources = sorted({entry["file"] for entry in entries})
+    if not sources:
+        parser.error(f"{asked.build} has no commands for the sources of this folder: configure it again")
     if asked.sources:
         wanted = {str(Path(source).resolve()) for source in asked.sources}
         unknown = wanted - set(sources)

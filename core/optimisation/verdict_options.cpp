@@ -59,6 +59,8 @@ constexpr std::tuple kVerdictFields{
           Level::Expert},
     Field{"largest_scale_share", &VerdictOptions::largest_scale_share, 0.8, within(0.0, 1.0), "",
           "The board's size is tested if its sigma is at most this share of the prior's."},
+    Field{"moved_lens_deg", &VerdictOptions::moved_lens_deg, 0.3, within(0.0, 180.0), "deg",
+          "Smallest rotation by a moved principal point that is noted."},
     Field{"tag_corner_px", &VerdictOptions::tag_corner_px, 0.02, within(0.0, 100.0), "px",
           "Smallest mean displacement of tag corners that is corrected."},
     Field{"tag_corner_sigmas", &VerdictOptions::tag_corner_sigmas, 5.0, within(1.0, 1000.0), "sigma",
@@ -75,6 +77,11 @@ constexpr std::tuple kVerdictFields{
     Field{"failed_imu_misfit", &VerdictOptions::failed_imu_misfit, 200.0, within(1.0, 10000.0), "",
           "The calibration fails if rate or acceleration errors exceed the given noise by this factor.",
           Level::Expert, Applies::WithImu},
+    Field{"scattering_stamps_misfit", &VerdictOptions::scattering_stamps_misfit, 1.5, within(1.0, 10000.0),
+          "",
+          "Scattering stamps are the first reason of a doubtful result if errors of that IMU exceed the "
+          "noise by "
+          "this factor."},
     Field{"doubtful_outliers", &VerdictOptions::doubtful_outliers, 0.25, within(0.0, 1.0), "",
           "The result is doubtful if a larger share of circles than this is rejected as outliers.",
           Level::Expert},

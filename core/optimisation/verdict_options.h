@@ -16,6 +16,7 @@ struct VerdictOptions {
   double turned_gyroscope_sigmas;
   double wrong_lens_sigmas;
   double wrong_lens_px;
+  double moved_lens_deg;
   double other_sensor_sigmas;
   double rolling_shutter_sigmas;
   double rolling_shutter_ms;
@@ -29,6 +30,7 @@ struct VerdictOptions {
   double failed_circle_misfit;
   double doubtful_imu_misfit;
   double failed_imu_misfit;
+  double scattering_stamps_misfit;
   double doubtful_outliers;
   double failed_outliers;
   double saturated_share;

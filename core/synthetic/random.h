@@ -22,7 +22,8 @@ class Random {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
-  // Uniform numbers, the last one first. Arguments of a constructor would be drawn in an order that depends on the compiler.
+  // Uniform numbers, the last one first. Arguments of a constructor would be drawn in an order that depends
+  // on the compiler.
   Eigen::Vector2d uniformPair() {
     const double y = uniform(), x = uniform();
     return {x, y};

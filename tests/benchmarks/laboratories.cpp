@@ -1,8 +1,8 @@
-// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number, calibrated with
-// default options, against the truth: `evical_benchmarks laboratories [--seeds N] [--skip N] [--exact] [--ideal PX]
-// [--detections FOLDER] [--variant OPTION=VALUE,...]... [--faults N]`. Sessions have the usual errors of board size and lens,
-// unless --exact. Fails if a calibration fails, if a wrong result is reported as ok, or if the errors over sigmas of 20
-// laboratories or more leave 0.7 to 1.4.
+// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number,
+// calibrated with default options, against the truth: `evical_benchmarks laboratories [--seeds N] [--skip N]
+// [--exact] [--ideal PX] [--detections FOLDER] [--variant OPTION=VALUE,...]... [--faults N]`. Sessions have
+// the usual errors of board size and lens, unless --exact. Fails if a calibration fails, if a wrong result is
+// reported as ok, or if the errors over sigmas of 20 laboratories or more leave 0.7 to 1.4.
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
 #include "core/pipeline/runs/run_data.h"

@@ -1,10 +1,10 @@
 #include "tests/support/moving_camera.h"
-#include "tests/support/random_vector.h"
 
 #include "core/base/time.h"
 #include "core/egomotion/edge_row.h"
 #include "core/egomotion/egomotion_options.h"
 #include "core/egomotion/window_motion.h"
+#include "tests/support/random_vector.h"
 
 #include <cmath>
 

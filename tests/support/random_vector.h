@@ -1,5 +1,5 @@
-// A vector of random numbers, drawn from the last to the first: the order of a constructor's arguments depends on the compiler, and
-// the numbers would, too.
+// A vector of random numbers, drawn from the last to the first. As arguments of a constructor they would be
+// drawn in an order that depends on the compiler.
 #pragma once
 
 #include <Eigen/Core>

@@ -118,10 +118,15 @@ imus:
 )");
 }
 
-double raysFromEuroc_deg(const CameraState& camera) {
-  Eigen::Matrix3d imu_from_camera;  // T_BS of cam0/sensor.yaml
-  imu_from_camera << 0.0148655429818, -0.999880929698, 0.00414029679422, 0.999557249008, 0.0149672133247,
+RigidTransform eurocImuFromCamera() {
+  Eigen::Matrix3d rotation;
+  rotation << 0.0148655429818, -0.999880929698, 0.00414029679422, 0.999557249008, 0.0149672133247,
       0.025715529948, -0.0257744366974, 0.00375618835797, 0.999660727178;
+  return {Eigen::Quaterniond(rotation), {-0.0216401454975, -0.064676986768, 0.00981073058949}};
+}
+
+double raysFromEuroc_deg(const CameraState& camera) {
+  const Eigen::Quaterniond imu_from_camera = eurocImuFromCamera().rotation;
   double squares = 0.0;
   int count = 0;
   for (double x_px = 75.0; x_px <= 677.0; x_px += 43.0) {

@@ -13,11 +13,14 @@ namespace evical::test {
 // Empty if EVICAL_DATA is not set.
 QString realRecordings();
 
-// EuRoC's AprilGrid in front of its first camera and its IMU: raw corners of tags. They determine another lens than the
-// data set's, whose principal point is 6 px away (docs/accuracy.md, "Known limits").
+// EuRoC's AprilGrid in front of its first camera and its IMU: raw corners of tags. They determine another
+// lens than the data set's, whose principal point is some px away (docs/accuracy.md, "Known limits").
 Session eurocImuApril(const QString& real, const QDir& work);
-// RMS angle in deg between the rays of the data set's calibration and of `camera`, in the IMU's frame, in the middle of the
-// image. Does not depend on how a shift of the principal point and a rotation share the difference.
+// The data set's pose of this camera: T_BS of cam0/sensor.yaml.
+RigidTransform eurocImuFromCamera();
+// RMS angle in deg between the rays of the data set's calibration and of `camera`, in the IMU's frame, in the
+// middle of the image. Does not depend on how a shift of the principal point and a rotation share the
+// difference.
 double raysFromEuroc_deg(const CameraState& camera);
 // An event camera's circles and a frame camera's corners, without an IMU; both lenses unknown. The size of
 // the circles is unknown, so that their apparent displacement would bend a board that is free to bend.

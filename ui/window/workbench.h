@@ -36,7 +36,7 @@ struct Workbench {
   RecordingCheckJob check;   // has its own runner, with lower priority than all others
   GrowingRecording growing;  // the session's files that are still being written
 
-  // Of the current aim's last run; none before the first run.
+  // Status of the current aim's last run; none before the first run.
   std::optional<CalibrationStatus> lastStatus() const {
     if (const auto& run = lens.last().run; run && lens.aim() == CalibrationAim::Camera)
       return run->result.status;

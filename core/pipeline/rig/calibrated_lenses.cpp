@@ -4,6 +4,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/joint_intrinsics.h"
 
 #include <fmt/format.h>
@@ -23,11 +24,11 @@ void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
 
 }  // namespace
 
-std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrinsics& solved) {
-  constexpr double kRemarkable_deg = 0.3;
+std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrinsics& solved,
+                              double noted_deg) {
   const Eigen::Vector2d moved_px = solved.principal_point_px - given.principal_point_px;
   const double turn_deg = kDegPerRad * moved_px.cwiseQuotient(solved.focal_length_px).norm();
-  if (turn_deg < kRemarkable_deg) return {};
+  if (turn_deg < noted_deg) return {};
   return fmt::format(
       "the principal point is {:.1f} px from the given one, which turns the camera by {:.2f} deg. If you "
       "trust the given lens, "
@@ -59,7 +60,9 @@ void tellLenses(const Session& session, CalibrationRun& run) {
     notes.push_back(
         fmt::format("{}: refined in the joint optimisation, which changed the projection by {:.3f} px RMS",
                     name, projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px));
-    const std::string advice = lens.given ? adviceOnMovedLens(*lens.given, *lens.solved) : "";
+    const std::string advice = lens.given ? adviceOnMovedLens(*lens.given, *lens.solved,
+                                                              session.options.optimisation->moved_lens_deg)
+                                          : "";
     if (!advice.empty()) notes.push_back(name + ": " + advice);
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());

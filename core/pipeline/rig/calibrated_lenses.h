@@ -8,8 +8,9 @@
 
 namespace evical {
 
-// What a large shift of the principal point means for the camera's rotation; empty if it is small.
-std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrinsics& solved);
+// Advice on a principal point that has moved, which turns the camera by more than `noted_deg`; else empty.
+std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrinsics& solved,
+                              double noted_deg);
 
 // Adds notes, sigmas and warnings to the result.
 void tellLenses(const Session& session, CalibrationRun& run);

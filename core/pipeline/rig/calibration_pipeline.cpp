@@ -307,7 +307,7 @@ class Calibration {
     flagDoubtful(clock_doubt_, result, "clock_step");
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) {
-      flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults), result, "stamp_jitter");
+      flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
       flagDoubtful(saturationIn(input_, options), result, "saturation");
     }
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
@@ -365,7 +365,7 @@ class Calibration {
       if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
         cause = {found->text, found->repair, causeName(found->kind), found->explains};
     if (cause.text.empty() && !misfit.failure.empty())
-      cause = {scatteringStampsIn(input_, solution, run_.pass.faults), {}, "stamp_jitter"};
+      cause = {scatteringStampsIn(input_, solution, run_.pass.faults, options), {}, "stamp_jitter"};
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,

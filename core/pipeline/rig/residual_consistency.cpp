@@ -70,11 +70,11 @@ MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& so
 }
 
 std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolution& solution,
-                               const std::vector<RecordingFault>& faults) {
-  constexpr double kAboveNoise = 1.5;
+                               const std::vector<RecordingFault>& faults, const VerdictOptions& options) {
   std::string found;
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
-    if (std::max(solution.scales.gyroscopes[k], solution.scales.accelerometers[k]) < kAboveNoise) continue;
+    const double misfit = std::max(solution.scales.gyroscopes[k], solution.scales.accelerometers[k]);
+    if (misfit < options.scattering_stamps_misfit) continue;
     const std::string& name = input.imus[k].name;
     for (const RecordingFault& fault : faults) {
       if (fault.kind != FaultKind::Jitter || fault.stream != name) continue;

@@ -22,10 +22,10 @@ MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& so
 // Reason for doubt if the halves of a recording differ by more than their sigmas allow; otherwise empty.
 std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options);
 
-// Scattering stamps of IMUs whose residuals are larger than their noise; empty if none. Not a separate doubt, but the cause
-// of most others, such as large sigmas.
+// Scattering stamps of IMUs whose residuals are larger than their noise; empty if none. Not a separate
+// doubt, but the cause of most others, such as large sigmas.
 std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolution& solution,
-                               const std::vector<RecordingFault>& faults);
+                               const std::vector<RecordingFault>& faults, const VerdictOptions& options);
 
 // IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others.
 std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);

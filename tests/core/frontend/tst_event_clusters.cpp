@@ -69,12 +69,11 @@ void TestEventClusters::straightEdge_isOther() {
   std::normal_distribution<double> normal;
   NormalFlowField field;
   for (int y = 50; y < 90; ++y) {
-    for (int x = 100; x < 103; ++x)
+    for (int x = 100; x < 103; ++x) {
+      const Eigen::Vector2d noise = test::randomVector<2>([&] { return normal(random); });
       field.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), true, 0.0f,
-                       (Eigen::Vector2d(100.0, 0.0) +
-                        10.0 * test::randomVector<2>([&] {
-                          return normal(random);
-                        })).cast<float>()});
+                       (Eigen::Vector2d(100.0, 0.0) + 10.0 * noise).cast<float>()});
+    }
   }
   const std::vector<EventCluster> clusters = clusterFlow(field, kDavis_px, NormalFlowOptions{});
   QCOMPARE(clusters.size(), 1u);

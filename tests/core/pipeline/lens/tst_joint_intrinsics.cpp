@@ -109,10 +109,10 @@ class TestJointIntrinsics : public QObject {
   void movedPrincipalPoint_isComparedWithARotation() {
     CameraIntrinsics moved = truth_;
     moved.principal_point_px.x() += 0.02 * truth_.focal_length_px.x();
-    const std::string advice = adviceOnMovedLens(truth_, moved);
+    const std::string advice = adviceOnMovedLens(truth_, moved, 0.3);
     QVERIFY2(advice.find("turns the camera by 1.15 deg") != std::string::npos, advice.c_str());
     moved.principal_point_px.x() = truth_.principal_point_px.x() + 0.002 * truth_.focal_length_px.x();
-    QVERIFY(adviceOnMovedLens(truth_, moved).empty());
+    QVERIFY(adviceOnMovedLens(truth_, moved, 0.3).empty());
   }
 
   void halves_solveForThemToo() {

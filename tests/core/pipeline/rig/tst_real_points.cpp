@@ -35,8 +35,9 @@ class TestRealPoints : public QObject {
     if (folder_.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
   }
 
-  // With default options, and with the published lens fixed. These corners determine a lens whose principal point is 6 px from
-  // the published one, which looks like a rotation of 0.7 deg; only rays in the IMU's frame are comparable then.
+  // With default options, and with the published lens fixed. With default options the principal point is 6 px
+  // from the published one, which looks like a rotation of 0.7 deg; only rays in the IMU's frame are
+  // comparable then.
   void aprilGridAndImu_areAsPublished_data() {
     QTest::addColumn<bool>("fixed_lens");
     QTest::addColumn<double>("turn_deg");

@@ -4,6 +4,7 @@
 #include "core/report/report_options.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/perturbations.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
@@ -113,17 +114,13 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
 
 // Residuals beyond the noise density and large sigmas are only symptoms.
 void TestSpoiltImu::scatteringStamps_areTheFirstReason() {
-  Scenario scenario = readScenario(test::scenarioPath("davis346"));
-  scenario.duration_s = 10.0;
-  scenario.imus.front().rate_hz = 200.0;
-  DetectionResult pass = test::perfectPass(scenario, 0.05, 0.015);
-  Samples& samples = pass.imus.front().samples;
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> jitter_ns(0.0, 5e6);
-  for (ImuSample& sample : samples) sample.time_ns += std::llround(jitter_ns(random));
-  std::sort(samples.begin(), samples.end(),
-            [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; });
-  const CalibrationRun run = calibrate(test::sessionFor(scenario), std::move(pass), RunContext{});
+  test::Recorded recorded;
+  recorded.scenario = readScenario(test::scenarioPath("davis346_10s"));
+  recorded.scenario.imus.front().rate_hz = 200.0;
+  recorded.session = test::sessionFor(recorded.scenario);
+  recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.015);
+  test::perturbation("stamp jitter").apply(recorded, 5.0);
+  const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
   const QString reason = QString::fromStdString(run.result.reason);
   QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   QVERIFY2(reason.contains(QRegularExpression("^[^;]*: Sample intervals scatter by ")), qPrintable(reason));
