@@ -10,7 +10,7 @@ seconds=${1:-60}
 targets=("${@:2}")
 [ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text pictures payload detections run_data yaml calibrate)
 
-packaging/install-dependencies.sh test fuzz
+packaging/install-dependencies.sh test sanitizers
 build=build/fuzz
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
       -DEVICAL_FUZZ=ON -DEVICAL_GUI=OFF >/dev/null

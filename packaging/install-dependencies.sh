@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs Debian 12 packages: packaging/install-dependencies.sh [LIST...]. Lists:
-#   run      to build and run the programs (the default)
-#   test     for packaging/test.sh; includes run and package
-#   package  to build and check Debian packages
-#   fuzz     for packaging/fuzz.sh
+#   run         to build and run the programs (the default)
+#   test        for packaging/test.sh; includes run and package
+#   package     to build and check Debian packages
+#   sanitizers  for packaging/sanitizers.sh and packaging/fuzz.sh
 # Does nothing, and needs no root rights, if all packages are installed. With --list in front it only prints their names.
 set -euo pipefail
 
@@ -33,7 +33,7 @@ test=(
   # other programs' loaders for the files that Evical exports, and their libraries
   python3-camera-calibration-parsers liburdfdom-tools python3-yaml libcereal-dev libgflags-dev
 )
-fuzz=(libclang-rt-14-dev)
+sanitizers=(libclang-rt-14-dev)
 
 only_list=
 if [ "${1:-}" = --list ]; then
@@ -47,9 +47,9 @@ for list in "$@"; do
     run) packages+=("${run[@]}") ;;
     package) packages+=("${package[@]}") ;;
     test) packages+=("${run[@]}" "${package[@]}" "${test[@]}") ;;
-    fuzz) packages+=("${fuzz[@]}") ;;
+    sanitizers) packages+=("${sanitizers[@]}") ;;
     *)
-      echo "There is no list '$list'. Choose from run, test, package, fuzz." >&2
+      echo "There is no list '$list'. Choose from run, test, package, sanitizers." >&2
       exit 2
       ;;
   esac

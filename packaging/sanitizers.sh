@@ -7,11 +7,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 which=${1:-both}
 
-packaging/install-dependencies.sh test
+packaging/install-dependencies.sh test sanitizers
 suppressions=$PWD/packaging/sanitizers
 
 if [ "$which" != tsan ]; then
-  cmake --preset asan
+  cmake --fresh --preset asan
   nice -n 5 cmake --build --preset asan --target ui_tests
   export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:strict_string_checks=1
   export LSAN_OPTIONS=suppressions=$suppressions/leaks.txt:print_suppressions=0
@@ -21,7 +21,7 @@ if [ "$which" != tsan ]; then
 fi
 
 if [ "$which" != asan ]; then
-  cmake --preset tsan
+  cmake --fresh --preset tsan
   nice -n 5 cmake --build --preset tsan --target tst_job_pattern
   TSAN_OPTIONS=second_deadlock_stack=1:suppressions=$suppressions/races.txt \
     ctest --preset tsan -R '^tst_job_pattern$' --timeout 3600
