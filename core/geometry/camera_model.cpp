@@ -159,6 +159,16 @@ UndistortionTable::UndistortionTable(const CameraIntrinsics& camera)
   }
 }
 
+// x and y are exchanged: the principal point is far from the image's centre, and would be near it in the other order.
+bool hasExchangedPrincipalPoint(const CameraIntrinsics& camera) {
+  constexpr double kFar = 0.1, kNear = 0.25;  // of the image's longer side; of the distance as given
+  const Eigen::Vector2d size_px(camera.resolution_px.width_px, camera.resolution_px.height_px);
+  const Eigen::Vector2d& given_px = camera.principal_point_px;
+  const double distance_px = (given_px - 0.5 * size_px).norm();
+  return distance_px > kFar * size_px.maxCoeff() &&
+         (given_px.reverse() - 0.5 * size_px).norm() < kNear * distance_px;
+}
+
 void validate(const CameraIntrinsics& camera, const std::string& place) {
   if (!camera.resolution_px.known()) {
     throw badInput(place, "resolution_px is missing or not positive", "Give [width, height] in pixels");
@@ -167,6 +177,13 @@ void validate(const CameraIntrinsics& camera, const std::string& place) {
     throw badInput(place, "focal_length_px must be two numbers greater than 0");
   }
   if (!camera.principal_point_px.allFinite()) throw badInput(place, "principal_point_px must be two numbers");
+  if (hasExchangedPrincipalPoint(camera))
+    throw badInput(place,
+                   fmt::format("the principal point ({:.1f}, {:.1f}) seems to have x and y exchanged, since the "
+                               "image has {} x {} px",
+                               camera.principal_point_px.x(), camera.principal_point_px.y(),
+                               camera.resolution_px.width_px, camera.resolution_px.height_px),
+                   "Give x, along the image's width, first");
   for (const double d : camera.distortion) {
     if (!std::isfinite(d)) throw badInput(place, "distortion contains a value that is not a finite number");
   }

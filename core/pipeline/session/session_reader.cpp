@@ -2,6 +2,7 @@
 #include "core/base/nearest_name.h"
 #include "core/export/export_target.h"
 #include "core/format/intrinsics_yaml.h"
+#include "core/geometry/camera_model.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/numerics/normal_gravity.h"
 #include "core/optimisation/optimisation_options.h"
@@ -115,7 +116,10 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, co
   camera.intrinsics = known.camera;
   camera.intrinsics_uncertainty = known.uncertainty;
   Resolution& own = camera.intrinsics->resolution_px;
-  if (!own.known()) own = camera.resolution_px;
+  if (!own.known() && camera.resolution_px.known()) {
+    own = camera.resolution_px;
+    validate(*camera.intrinsics, intrinsics->place());
+  }
   if (!camera.resolution_px.known()) camera.resolution_px = own;
   if (own != camera.resolution_px)
     throw intrinsics->error(

@@ -432,6 +432,35 @@ class TestCameraModel : public QObject {
     }
   }
 
+  void exchangedPrincipalPoint_isRefused_data() {
+    QTest::addColumn<double>("x_px");
+    QTest::addColumn<double>("y_px");
+    QTest::addColumn<int>("height_px");
+    QTest::addColumn<bool>("is_refused");
+    QTest::newRow("exchanged") << 131.0 << 170.0 << 260 << true;
+    QTest::newRow("in order") << 170.0 << 131.0 << 260 << false;
+    QTest::newRow("shifted lens") << 110.0 << 131.0 << 260 << false;
+    QTest::newRow("lens shifted towards the exchanged one") << 110.0 << 145.0 << 260 << false;
+    QTest::newRow("square image") << 131.0 << 170.0 << 346 << false;
+  }
+  void exchangedPrincipalPoint_isRefused() {
+    QFETCH(double, x_px);
+    QFETCH(double, y_px);
+    QFETCH(int, height_px);
+    QFETCH(bool, is_refused);
+    CameraIntrinsics c = camera(CameraModel::PinholeRadtan, {});
+    c.principal_point_px = {x_px, y_px};
+    c.resolution_px.height_px = height_px;
+    if (!is_refused) return validate(c, "left");
+    try {
+      validate(c, "left");
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(QString(error.what()).contains("x and y exchanged"), error.what());
+    }
+  }
+
   void coefficientsOutOfRange_areRefused_data() {
     QTest::addColumn<int>("model");
     QTest::addColumn<double>("first");

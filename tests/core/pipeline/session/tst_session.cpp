@@ -623,6 +623,8 @@ correlation:
         {"imus.left_imu.stream", "already another sensor's"});
     row("resolution", "[346, 260]", "[346]", {"cameras.left.resolution_px (line 14)", "width, height"});
     row("negative focal length", "260.5", "-260.5", {"cameras.left.intrinsics", "focal_length_px"});
+    row("exchanged principal point", "principal_point_px: [170, 131]", "principal_point_px: [131, 170]",
+        {"cameras.left.intrinsics", "x and y exchanged"});
     row("distortion", "0.1, 0.001, 0.002", "0.1", {"intrinsics.distortion (line 19)", "k1, k2, p1, p2"});
     row("camera model", "pinhole_radtan", "pinhole", {"intrinsics.model (line 16)", "'pinhole'"});
     row("noise", "1.86e-3", "0", {"imus.left_imu.accelerometer_noise_density (line 23)", "below"});
