@@ -3,8 +3,8 @@
 
 namespace evical::ui {
 
-// Under sanitizers everything takes longer: limits and waiting times of tests are multiplied by this.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// Limits and waiting times of tests are multiplied by this: sanitizers and debug builds take longer.
+#ifdef EVICAL_SLOW_BUILD
 inline constexpr int kSlowdown = 20;
 #else
 inline constexpr int kSlowdown = 1;

@@ -239,8 +239,8 @@ class TestDetectionScreen : public QObject {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     std::vector<int> bursts;
-    for (const CircleObservation& circle : asked.at(recorded_->goodWindow()).trace().circles)
-      bursts.push_back(circle.events);
+    const WindowAnalysis good = asked.at(recorded_->goodWindow());
+    for (const CircleObservation& circle : good.trace().circles) bursts.push_back(circle.events);
     std::sort(bursts.begin(), bursts.end());
     asked.question.options.tracking.least_circle_bursts = bursts.at(2) + 1;  // the poorest three have fewer
     const WindowAnalysis analysis = asked.again();
@@ -254,8 +254,8 @@ class TestDetectionScreen : public QObject {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     std::vector<int> bursts;
-    for (const CircleObservation& circle : asked.at(recorded_->goodWindow()).trace().circles)
-      bursts.push_back(circle.events);
+    const WindowAnalysis good = asked.at(recorded_->goodWindow());
+    for (const CircleObservation& circle : good.trace().circles) bursts.push_back(circle.events);
     std::nth_element(bursts.begin(), bursts.begin() + 2, bursts.end());
     asked.question.options.tracking.least_circle_bursts = bursts.at(2) + 1;
     asked.question.options.grid.least_partial = 1.0;
