@@ -178,12 +178,13 @@ void validate(const CameraIntrinsics& camera, const std::string& place) {
   }
   if (!camera.principal_point_px.allFinite()) throw badInput(place, "principal_point_px must be two numbers");
   if (hasExchangedPrincipalPoint(camera))
-    throw badInput(place,
-                   fmt::format("the principal point ({:.1f}, {:.1f}) seems to have x and y exchanged, since the "
-                               "image has {} x {} px",
-                               camera.principal_point_px.x(), camera.principal_point_px.y(),
-                               camera.resolution_px.width_px, camera.resolution_px.height_px),
-                   "Give x, along the image's width, first");
+    throw badInput(
+        place,
+        fmt::format("the principal point ({:.1f}, {:.1f}) seems to have x and y exchanged, since the "
+                    "image has {} x {} px",
+                    camera.principal_point_px.x(), camera.principal_point_px.y(),
+                    camera.resolution_px.width_px, camera.resolution_px.height_px),
+        "Give x, along the image's width, first");
   for (const double d : camera.distortion) {
     if (!std::isfinite(d)) throw badInput(place, "distortion contains a value that is not a finite number");
   }
