@@ -120,7 +120,8 @@ struct IterationRecord {
 struct CircleResidual {
   int camera = 0, view = 0, circle = 0;
   double time_s = 0.0;
-  Eigen::Vector2d centre_px, residual_px, sigma_px;
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero(), residual_px = Eigen::Vector2d::Zero(),
+                  sigma_px = Eigen::Vector2d::Zero();
   bool used = true;
 };
 
