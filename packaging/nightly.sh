@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night.
 #   no-unity    build each source as a separate unit, and run all tests except the real-time ones
-#   debug       build almost without optimisation and with assertions, and run the same tests
+#   debug       build the preset debug (-O0, -O1 for code that processes recordings, assertions), and run the same tests
 #   gcc         build with GCC, warnings as errors, and run the same tests
 #   sanitizers  packaging/sanitizers.sh
 #   fuzz        packaging/fuzz.sh, one hour over all targets

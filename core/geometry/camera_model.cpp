@@ -76,6 +76,16 @@ Eigen::Vector2d normalisedAt(const CameraIntrinsics& camera, const Eigen::Vector
   return (ideal_pixel - camera.principal_point_px).cwiseQuotient(idealFocalLength_px(camera));
 }
 
+// x and y are exchanged: the principal point is far from the image's centre, and would be near it in the other order.
+bool hasExchangedPrincipalPoint(const CameraIntrinsics& camera) {
+  constexpr double kFar = 0.1, kNear = 0.25;  // of the image's longer side; of the distance as given
+  const Eigen::Vector2d size_px(camera.resolution_px.width_px, camera.resolution_px.height_px);
+  const Eigen::Vector2d& given_px = camera.principal_point_px;
+  const double distance_px = (given_px - 0.5 * size_px).norm();
+  return distance_px > kFar * size_px.maxCoeff() &&
+         (given_px.reverse() - 0.5 * size_px).norm() < kNear * distance_px;
+}
+
 }  // namespace
 
 Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised,
@@ -157,16 +167,6 @@ UndistortionTable::UndistortionTable(const CameraIntrinsics& camera)
                                 : Eigen::Vector2f(kNowhere, kNowhere));
     }
   }
-}
-
-// x and y are exchanged: the principal point is far from the image's centre, and would be near it in the other order.
-bool hasExchangedPrincipalPoint(const CameraIntrinsics& camera) {
-  constexpr double kFar = 0.1, kNear = 0.25;  // of the image's longer side; of the distance as given
-  const Eigen::Vector2d size_px(camera.resolution_px.width_px, camera.resolution_px.height_px);
-  const Eigen::Vector2d& given_px = camera.principal_point_px;
-  const double distance_px = (given_px - 0.5 * size_px).norm();
-  return distance_px > kFar * size_px.maxCoeff() &&
-         (given_px.reverse() - 0.5 * size_px).norm() < kNear * distance_px;
 }
 
 void validate(const CameraIntrinsics& camera, const std::string& place) {
