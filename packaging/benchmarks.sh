@@ -1,13 +1,28 @@
 #!/usr/bin/env bash
-# Prints every figure of docs/accuracy.md: all scenarios of config/scenarios, seeds, single disturbances, circle centres,
-# intrinsics, start times, then the costs of the hot paths and of reading files. Takes some hours on two cores. Fails if a wrong
-# result is called ok, if the ratio of errors to sigmas over twenty seeds is outside 0.7 to 1.4, or if a benchmark misses its targets.
+# Prints every figure of docs/accuracy.md: packaging/benchmarks.sh [GROUP...]. Without groups all run, for more than a night.
+#   accuracy       all scenarios of config/scenarios, seeds, circle centres, start times
+#   laboratories   random rigs, boards, lenses, light and motions, and single faults in them: an hour
+#   lenses         frame cameras and intrinsics; also real recordings, if EVICAL_DATA is set
+#   checks         single deviations from the session, several recordings of a rig, an old result against a new recording
+#   without-board  rooms, and logs of IMUs over time: three hours
+#   speed          the costs of the hot paths, of the window and of reading files
+# Fails if a wrong result is called ok, if the ratio of errors to sigmas over twenty seeds is outside 0.7 to 1.4, or if a
+# benchmark misses its targets.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
+groups=(accuracy laboratories lenses checks without-board speed)
+[ "$#" -gt 0 ] || set -- "${groups[@]}"
+for group in "$@"; do
+  if [[ " ${groups[*]} " != *" $group "* ]]; then
+    echo "There is no group '$group'. Choose from: ${groups[*]}" >&2
+    exit 2
+  fi
+done
+
 packaging/install-dependencies.sh test
 cmake --fresh --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical evical-gui evical_benchmarks
+cmake --build --preset release --target evical evical-gui evical_benchmarks || exit 1
 scenarios=config/scenarios
 failed=0
 
@@ -26,53 +41,59 @@ for file in "$scenarios"/*.yaml; do
     *) single+=("$file") ;;
   esac
 done
-run accuracy --verdicts "${single[@]}"
-run accuracy --verdicts --quantities "${rigs[@]}"
-for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
 
-# Random rigs, boards, lenses, light and motions, and single faults in them: an hour.
-run laboratories --seeds 40 --common --faults 8
+run_accuracy() {
+  run accuracy --verdicts "${single[@]}"
+  run accuracy --verdicts --quantities "${rigs[@]}"
+  for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
+  # Circle centres along the motion, in ordinary and in small motions.
+  run centre_errors --speeds --common --duration 10 \
+    "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
+  run board_starts --duration 20 "${single[@]}"
+}
 
-# Circle centres along the motion, in ordinary and in small motions.
-run centre_errors --speeds --common --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
+run_laboratories() {
+  run laboratories --seeds 40 --common --faults 8
+}
 
-# Detection of the board from different start times.
-run board_starts --duration 20 "${single[@]}"
+run_lenses() {
+  run frame_cameras
+  run intrinsics "$scenarios"/intrinsics_*.yaml
+  run intrinsics --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
+  run intrinsics --seeds 20 "$scenarios/wide_frame.yaml"
+  run unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
+}
 
-# Frame cameras, further boards, lenses; also real recordings, if EVICAL_DATA is set.
-run frame_cameras
+run_checks() {
+  run stress "$scenarios/davis346_10s.yaml"
+  run stress --perfect --seeds 5 "$scenarios/davis346_10s.yaml"
+  run stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yaml"
+  # Five recordings of each of three boards, alone and together: half an hour.
+  run protocol --folder "$(mktemp -d)/recording" config/protocol
+  run check "$scenarios/davis346.yaml"
+}
 
-run intrinsics "$scenarios"/intrinsics_*.yaml
-run intrinsics --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
-run intrinsics --seeds 20 "$scenarios/wide_frame.yaml"
-run unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
+run_without-board() {
+  tests/benchmarks/without_board.sh build/release || failed=1
+}
 
-# One deviation from the session at a time; fails if a wrong result is called ok.
-run stress "$scenarios/davis346_10s.yaml"
-run stress --perfect --seeds 5 "$scenarios/davis346_10s.yaml"
-run stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yaml"
+run_speed() {
+  run speed "$scenarios/davis346.yaml"
+  run costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
+  run costs "$scenarios/davis346.yaml" --durations 10 30 60 120
+  run speed --duration 3 "$scenarios/hd.yaml"
 
-# Five recordings of each of three boards, alone and together: half an hour.
-run protocol --folder "$(mktemp -d)/recording" config/protocol
+  # A run in the window compared with one on the command line.
+  local window
+  window=$(mktemp -d)
+  printf 'base: %s/config/scenarios/davis346.yaml\n' "$PWD" > "$window/scenario.yaml"
+  build/release/evical simulate "$window/scenario.yaml" -o "$window/recording" --quiet
+  tests/benchmarks/window_cost.sh build/release "$window/recording/session.yaml" || failed=1
+  rm -rf "$window"
 
-# Checks of an old result against a new recording, a hundred times.
-run check "$scenarios/davis346.yaml"
+  # Decoding speed per format; fails if a packed format is below 20 million events/s.
+  run formats "$scenarios/davis346.yaml"
+}
 
-# Without a board: rooms, and logs of IMUs over time. Three hours.
-tests/benchmarks/without_board.sh build/release || failed=1
-
-run speed "$scenarios/davis346.yaml"
-run costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
-run costs "$scenarios/davis346.yaml" --durations 10 30 60 120
-run speed --duration 3 "$scenarios/hd.yaml"
-
-# A run in the window compared with one on the command line.
-window=$(mktemp -d)
-printf 'base: %s/config/scenarios/davis346.yaml\n' "$PWD" > "$window/scenario.yaml"
-build/release/evical simulate "$window/scenario.yaml" -o "$window/recording" --quiet
-tests/benchmarks/window_cost.sh build/release "$window/recording/session.yaml" || failed=1
-rm -rf "$window"
-
-# Decoding speed per format; fails if a packed format is below 20 million events/s.
-run formats "$scenarios/davis346.yaml"
+for group in "$@"; do "run_$group"; done
 exit "$failed"

@@ -1,17 +1,16 @@
 #!/usr/bin/env bash
-# Checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night.
-#   no-unity    build each source as a separate unit, and run all tests except the real-time ones
+# Checks that are too slow for each commit: packaging/nightly.sh [STEP...]. Without steps all run, which takes a night or longer.
+#   gcc         build with GCC, each source alone (without unity), warnings as errors; run all tests except the real-time ones
 #   debug       build the preset debug (-O0, -O1 for code that processes recordings, assertions), and run the same tests
-#   gcc         build with GCC, warnings as errors, and run the same tests
 #   sanitizers  packaging/sanitizers.sh
 #   fuzz        packaging/fuzz.sh, one hour over all targets
-#   benchmarks  packaging/benchmarks.sh, with their targets
 #   tidy        clang-tidy on all sources
+#   accuracy laboratories lenses checks without-board speed    packaging/benchmarks.sh, with their targets
 # A failed step does not stop the others. Output is in build/nightly/STEP.log; the exit code is 1 if a step has failed.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
-steps=(no-unity debug gcc sanitizers fuzz benchmarks tidy)
+steps=(gcc debug sanitizers fuzz tidy accuracy laboratories lenses checks without-board speed)
 [ "$#" -gt 0 ] || set -- "${steps[@]}"
 for step in "$@"; do
   if [[ " ${steps[*]} " != *" $step "* ]]; then
@@ -29,13 +28,12 @@ build_and_test() { # FOLDER TIMEOUT_s CMAKE_ARGUMENT...
 }
 run_step() {
   case "$1" in
-    no-unity) build_and_test build/no-unity 1500 --preset ci -DEVICAL_UNITY=OFF ;;
+    gcc) build_and_test build/gcc 1500 --preset gcc -DEVICAL_UNITY=OFF ;;
     debug) build_and_test build/debug 7200 --preset debug ;;
-    gcc) build_and_test build/gcc 1500 --preset gcc ;;
     sanitizers) packaging/sanitizers.sh ;;
     fuzz) packaging/fuzz.sh 190 ;; # seconds for each of 19 targets
-    benchmarks) packaging/benchmarks.sh ;;
     tidy) packaging/check-tidy.sh ;;
+    *) packaging/benchmarks.sh "$1" ;;
   esac
 }
 
@@ -46,7 +44,7 @@ for step in "$@"; do
   begin=$SECONDS outcome=passed
   echo "$step: output in build/nightly/$step.log"
   run_step "$step" >"build/nightly/$step.log" 2>&1 || { outcome=FAILED; failed=1; tail -n 40 "build/nightly/$step.log"; }
-  table+=("$(printf '%-12s %7d s  %s' "$step" $((SECONDS - begin)) "$outcome")")
+  table+=("$(printf '%-13s %7d s  %s' "$step" $((SECONDS - begin)) "$outcome")")
 done
 printf '\n'
 printf '%s\n' "${table[@]}"
