@@ -55,7 +55,7 @@ bool printRow(const Scenario& scenario, const Outcome& o) {
   if (!o.comparison) {
     fmt::print("| {} | {} | {:.1f} | {:.1f} % | | | | {:.1f} | {:.1f} | {} | |\n", scenario.name,
                scenario.seed, o.events_per_s * 1e-6, 100.0 * o.windows_found, o.detect_s, o.solve_s,
-               o.verdict);
+               o.verdictText());
     return false;
   }
   const CameraError error = worstCamera(*o.comparison);

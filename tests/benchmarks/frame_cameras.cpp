@@ -124,7 +124,7 @@ void davisWithFrames(Table& table, std::optional<double> seconds) {
   of_events.cameras.resize(1);
   const Outcome events = runScenario(of_events);
   if (!both.result || !apart.result || !events.result || both.result->latencies.empty())
-    return table.failed(name, both.verdict);
+    return table.failed(name, both.verdictText());
   const CalibrationState truth = trueState(scenario);
   const double latency_s = truth.cameras[1].time_offset_s - truth.cameras[0].time_offset_s;
   table.atMost(name, "events' latency", kMsPerS * std::abs(both.result->latencies[0].latency_s - latency_s),
@@ -144,7 +144,7 @@ void davisWithFrames(Table& table, std::optional<double> seconds) {
 std::optional<Outcome> eventsToFrames(Table& table, const std::string& name, const Scenario& scenario) {
   Outcome outcome = runScenario(scenario);
   if (!outcome.result) {
-    table.failed(name, outcome.verdict);
+    table.failed(name, outcome.verdictText());
     return std::nullopt;
   }
   addError(table, name, "events to frames", camerasError(outcome.result->state, trueState(scenario), 0, 1),
@@ -222,12 +222,12 @@ void rollingShutter(Table& table, std::optional<double> seconds) {
   const Outcome rolling = runScenario(scenario);
   const Outcome global =
       runScenario(scenario, [](Session& session) { session.cameras[0].shutter = Shutter::Global; });
-  if (!rolling.result) return table.failed(name, rolling.verdict);
+  if (!rolling.result) return table.failed(name, rolling.verdictText());
   table.atMost(
       name, fmt::format("line delay of {:g} us", scenario.cameras[0].frames->line_delay_us),
       std::abs(rolling.result->state.cameras[0].line_delay_us - scenario.cameras[0].frames->line_delay_us),
       0.3, "us");
-  const std::string said = global.result ? global.result->reason : global.verdict;
+  const std::string& said = global.reason;
   table.add(name, "taken for global", global.verdict + ", " + said.substr(0, said.find(':', 20)),
             "doubtful, the shutter is rolling",
             global.verdict == "doubtful" && said.find("the shutter is rolling") != std::string::npos);

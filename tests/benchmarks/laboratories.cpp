@@ -283,7 +283,7 @@ void Results::add(const Scenario& scenario, Outcome outcome) {
                                       variant.empty() ? "default" : variant);
   if (!outcome.comparison) {
     ++failed;
-    fmt::print("{} | | | | {} |\n", who, outcome.verdict);
+    fmt::print("{} | | | | {} |\n", who, outcome.verdictText());
   } else {
     const CameraError& error = outcome.comparison->cameras.front();
     rotation_deg.push_back(error.rotation_deg);
@@ -297,7 +297,7 @@ void Results::add(const Scenario& scenario, Outcome outcome) {
                errors.rotation.rms(), error.translation_mm,
                1e3 * outcome.uncertainty->translation_std_m.norm(), errors.translation.rms(),
                error.time_offset_ms, errors.time_offset.rms(), outcome.solve_s, is_wrong ? "WRONG but " : "",
-               outcome.verdict == "ok" ? "ok" : outcome.verdict + ": " + outcome.reason);
+               outcome.verdictText());
   }
   std::fflush(stdout);
   outcome.result.reset();

@@ -31,10 +31,6 @@ std::vector<std::string> checksOf(const Outcome& outcome) {
   return names;
 }
 
-std::string reasonOf(const Outcome& outcome) {
-  return std::string(test::firstReason(outcome.result ? outcome.reason : outcome.verdict));
-}
-
 }  // namespace
 
 void LaboratoryFaults::add(const Scenario& scenario, const DetectionResult& detections, const Outcome& valid,
@@ -48,8 +44,7 @@ void LaboratoryFaults::add(const Scenario& scenario, const DetectionResult& dete
     const Outcome outcome = calibrateSession(recorded.scenario, recorded.session, std::move(recorded.pass));
     addCase(*fault, outcome, valid);
     fmt::print("| {} | {} {:g} {} | {}{} |\n", scenario.name, fault->name, size, fault->unit,
-               isWrongOk(outcome) ? "WRONG but " : "",
-               outcome.verdict == "ok" || !outcome.result ? outcome.verdict : "doubtful: " + outcome.reason);
+               isWrongOk(outcome) ? "WRONG but " : "", outcome.verdictText());
     std::fflush(stdout);
   }
 }
@@ -70,7 +65,7 @@ void LaboratoryFaults::addCase(const test::Perturbation& fault, const Outcome& o
     ++row.right;
     return;
   }
-  const bool named = fault.isNamedIn(reasonOf(outcome));
+  const bool named = fault.isNamedIn(test::firstReason(outcome.reason));
   ++(named ? row.named : row.other);
   const std::string first = checks.empty() ? "other" : checks.front();
   ++(named ? checks_[first].right : checks_[first].other);

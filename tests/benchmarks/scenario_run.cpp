@@ -19,6 +19,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -100,6 +103,24 @@ double windowsFound(const Scenario& scenario, const BoardObservations& observati
   return seen == 0 ? 0.0 : static_cast<double>(found) / seen;
 }
 
+PartError partError(const TruthComparison& comparison, const std::string& part) {
+  std::map<std::string, std::array<double, 2>> squares;  // of error and sigma, by sensor
+  PartError worst;
+  for (const QuantityDifference& quantity : comparison.quantities) {
+    const std::size_t at = quantity.name.find(part);
+    if (at == std::string::npos || quantity.name.find("drift") != std::string::npos) continue;
+    auto& [error2, sigma2] = squares[quantity.name.substr(0, at)];
+    error2 += quantity.difference * quantity.difference;
+    sigma2 += quantity.sigma * quantity.sigma;
+    worst.sigmas = std::max(worst.sigmas, std::abs(quantity.normalised()));
+  }
+  for (const auto& [sensor, square] : squares) {
+    worst.size = std::max(worst.size, std::sqrt(square[0]));
+    worst.sigma = std::max(worst.sigma, std::sqrt(square[1]));
+  }
+  return worst;
+}
+
 }  // namespace
 
 DetectionResult detectScenario(const Scenario& scenario) {
@@ -142,7 +163,7 @@ Outcome calibrateSession(const Scenario& scenario, const Session& session, Detec
     }
     outcome.result = run.result;
   } catch (const CalibrationError& error) {
-    outcome.verdict = std::string("failed: ") + error.what();
+    outcome.reason = error.what();
   }
   outcome.solve_s = stopwatch.elapsed_s();
   return outcome;
@@ -177,19 +198,27 @@ bool NormalisedErrors::print() const {
          (isRight(rotation) && isRight(translation) && isRight(time_offset) && isRight(all));
 }
 
-bool isWrongOk(const Outcome& outcome) {
-  if (!outcome.comparison || outcome.verdict != "ok") return false;
-  const auto isWrong = [](const QuantityDifference& quantity) {
-    constexpr double kSigmas = 4.0, kRotation_deg = 0.1, kTranslation_mm = 3.0, kTimeOffset_ms = 1.0;
-    const auto beyond = [&](const char* part, double bound) {
-      return quantity.name.find(part) != std::string::npos && std::abs(quantity.difference) > bound;
-    };
-    return std::abs(quantity.normalised()) > kSigmas &&
-           (beyond(".rotation.", kRotation_deg) || beyond(".translation.", kTranslation_mm) ||
-            (beyond(".time_offset", kTimeOffset_ms) && quantity.name.find("drift") == std::string::npos));
+PartError rotationError_deg(const TruthComparison& comparison) {
+  return partError(comparison, ".rotation.");
+}
+PartError translationError_mm(const TruthComparison& comparison) {
+  return partError(comparison, ".translation.");
+}
+PartError timeOffsetError_ms(const TruthComparison& comparison) {
+  return partError(comparison, ".time_offset");
+}
+
+bool isWrong(const Outcome& outcome) {
+  const auto exceeds = [](const PartError& error, double bound) {
+    return error.size > bound && error.sigmas > kWrongSigmas;
   };
-  const std::vector<QuantityDifference>& all = outcome.comparison->quantities;
-  return std::any_of(all.begin(), all.end(), isWrong);
+  return outcome.comparison && (exceeds(rotationError_deg(*outcome.comparison), kWrongRotation_deg) ||
+                                exceeds(translationError_mm(*outcome.comparison), kWrongTranslation_mm) ||
+                                exceeds(timeOffsetError_ms(*outcome.comparison), kWrongTimeOffset_ms));
+}
+
+bool isWrongOk(const Outcome& outcome) {
+  return outcome.verdict == statusName(CalibrationStatus::Ok) && isWrong(outcome);
 }
 
 void printQuantities(const Outcome& outcome) {

@@ -4,6 +4,7 @@
 #include "core/data/calibration_result.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
+#include "core/report/result_yaml.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario.h"
 
@@ -17,13 +18,16 @@
 namespace evical {
 
 struct Outcome {
-  std::string verdict, weakest, reason;
+  std::string verdict = statusName(CalibrationStatus::Failed);
+  std::string weakest, reason;
   double windows_found = 0.0;  // of those with enough of the board in view
   double events_per_s = 0.0;
   double detect_s = 0.0, solve_s = 0.0;
   std::optional<TruthComparison> comparison;
   std::optional<CameraUncertainty> uncertainty;  // of the camera whose translation is least certain
-  std::optional<CalibrationResult> result;
+  std::optional<CalibrationResult> result;       // empty if it failed
+
+  std::string verdictText() const { return verdict == "ok" ? verdict : verdict + ": " + reason; }
 };
 
 // `change` modifies the session that matches the scenario, before the calibration.
@@ -50,7 +54,19 @@ struct NormalisedErrors {
   bool print() const;
 };
 
-// An error of more than 4 sigmas that matters, in a result with status ok.
+// Error of the sensor with the largest one, in the report's units.
+struct PartError {
+  double size = 0.0, sigma = 0.0;
+  double sigmas = 0.0;  // of the worst number
+};
+PartError rotationError_deg(const TruthComparison& comparison);
+PartError translationError_mm(const TruthComparison& comparison);
+PartError timeOffsetError_ms(const TruthComparison& comparison);
+
+// A result is wrong if a number has an error of more than kWrongSigmas, and its vector one that matters.
+inline constexpr double kWrongSigmas = 4.0;
+inline constexpr double kWrongRotation_deg = 0.1, kWrongTranslation_mm = 3.0, kWrongTimeOffset_ms = 1.0;
+bool isWrong(const Outcome& outcome);
 bool isWrongOk(const Outcome& outcome);
 
 void printQuantities(const Outcome& outcome);

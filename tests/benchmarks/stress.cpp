@@ -2,11 +2,8 @@
 // stress [--only NAME...] [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs
 // once per recording; perturbations apply to the later stages, unless their row states otherwise
 // (tests/support/perturbations.cpp).
-#include "core/numerics/angles.h"
-#include "core/pipeline/rig/calibration_pipeline.h"
-#include "core/pipeline/runs/result_files.h"
-#include "core/report/truth_comparison.h"
 #include "tests/benchmarks/benchmark_program.h"
+#include "tests/benchmarks/scenario_run.h"
 #include "tests/support/perturbations.h"
 #include "tests/support/scenario_session.h"
 
@@ -14,10 +11,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,96 +24,30 @@ using test::Perturbation;
 using test::PerturbedStage;
 using test::Recorded;
 
-// A result that is called ok is wrong if its error exceeds both.
-constexpr double kWrongSigmas = 4.0;
-constexpr double kWrongRotation_deg = 0.1, kWrongTranslation_mm = 3.0, kWrongTimeOffset_ms = 1.0;
-
-// Errors of the worst camera, in the report's units; `sigmas`: of its worst quantity.
-struct PartError {
-  double size = 0.0, sigma = 0.0, sigmas = 0.0;
-
-  bool isWrong(double bound) const { return size > bound && sigmas > kWrongSigmas; }
-};
-
 // Figures of the worst sensor: spread of residuals over the given noise, share of rejected circles, and the
 // difference between the recording's halves in sigmas.
 struct Misfit {
   double circles = 0.0, gyroscope = 0.0, accelerometer = 0.0, outliers = 0.0, halves_sigmas = 0.0;
 };
 
-struct Outcome {
-  CalibrationStatus status = CalibrationStatus::Failed;
-  std::string reason;
-  std::vector<std::string> notes;
-  PartError rotation_deg, translation_mm, time_offset_ms;
+Misfit misfitOf(const CalibrationResult& result, const std::vector<ImuData>& imus) {
   Misfit misfit;
-
-  bool isWrong() const {
-    return status != CalibrationStatus::Failed &&
-           (rotation_deg.isWrong(kWrongRotation_deg) || translation_mm.isWrong(kWrongTranslation_mm) ||
-            time_offset_ms.isWrong(kWrongTimeOffset_ms));
-  }
-};
-
-PartError partError(const TruthComparison& comparison, const std::string& part) {
-  std::map<std::string, std::array<double, 2>> squares;  // squares of error and sigma by camera
-  PartError error;
-  for (const QuantityDifference& quantity : comparison.quantities) {
-    const std::size_t at = quantity.name.find(part);
-    if (at == std::string::npos || quantity.name.find("drift") != std::string::npos) continue;
-    const std::string sensor = quantity.name.substr(0, at);
-    const auto is_it = [&](const CameraError& camera) { return camera.name == sensor; };
-    if (std::none_of(comparison.cameras.begin(), comparison.cameras.end(), is_it)) continue;
-    auto& [error2, sigma2] = squares[sensor];
-    error2 += quantity.difference * quantity.difference;
-    sigma2 += quantity.sigma * quantity.sigma;
-    error.sigmas = std::max(error.sigmas, std::abs(quantity.normalised()));
-  }
-  for (const auto& [sensor, square] : squares) {
-    error.size = std::max(error.size, std::sqrt(square[0]));
-    error.sigma = std::max(error.sigma, std::sqrt(square[1]));
-  }
-  return error;
-}
-
-Misfit misfitOf(const CalibrationRun& run) {
-  Misfit misfit;
-  for (const CameraFit& fit : run.result.cameras) {
+  for (const CameraFit& fit : result.cameras) {
     misfit.circles = std::max(misfit.circles, fit.normalised_rms);
     const double circles = std::max(1, fit.circles_used + fit.circles_rejected);
     misfit.outliers = std::max(misfit.outliers, fit.circles_rejected / circles);
   }
-  for (std::size_t k = 0; k < run.result.imus.size(); ++k) {
-    const ImuFit& fit = run.result.imus[k];
-    const ImuData& imu = run.pass.imus[k];
+  for (std::size_t k = 0; k < result.imus.size(); ++k) {
+    const ImuFit& fit = result.imus[k];
+    const ImuData& imu = imus.at(k);
     const double root_rate = std::sqrt(imu.rate_hz());
     misfit.gyroscope =
         std::max(misfit.gyroscope, fit.gyroscope_rms_rad_s / (imu.noise.gyroscope_density * root_rate));
     misfit.accelerometer = std::max(
         misfit.accelerometer, fit.accelerometer_rms_m_s2 / (imu.noise.accelerometer_density * root_rate));
   }
-  if (run.result.split_half_check) misfit.halves_sigmas = run.result.split_half_check->rms_sigmas;
+  if (result.split_half_check) misfit.halves_sigmas = result.split_half_check->rms_sigmas;
   return misfit;
-}
-
-Outcome calibrated(const Recorded& recorded) {
-  Outcome outcome;
-  try {
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
-    outcome.status = run.result.status;
-    outcome.reason = run.result.reason;
-    outcome.notes = run.result.notes;
-    outcome.misfit = misfitOf(run);
-    const TruthComparison comparison = compareWithTruth(
-        namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "benchmark"),
-        test::truthOf(recorded.scenario));
-    outcome.rotation_deg = partError(comparison, ".rotation.");
-    outcome.translation_mm = partError(comparison, ".translation.");
-    outcome.time_offset_ms = partError(comparison, ".time_offset");
-  } catch (const CalibrationError& error) {
-    outcome.reason = error.what();
-  }
-  return outcome;
 }
 
 struct Source {
@@ -131,18 +60,23 @@ struct Source {
   }
 };
 
-Outcome perturbed(const Recorded& base, const Perturbation& perturbation, double size, const Source& source) {
+struct Case {
+  Outcome outcome;
+  Misfit misfit;
+};
+
+Case calibrated(const Recorded& recorded) {
+  Case of{calibrateSession(recorded.scenario, recorded.session, recorded.pass), {}};
+  if (of.outcome.result) of.misfit = misfitOf(*of.outcome.result, recorded.pass.imus);
+  return of;
+}
+
+Case perturbed(const Recorded& base, const Perturbation& perturbation, double size, const Source& source) {
   Recorded recorded = base;
   perturbation.apply(recorded, size);
   if (perturbation.stage == PerturbedStage::FrontEnd)
     recorded.pass = source.pass(recorded.scenario, recorded.session);
   return calibrated(recorded);
-}
-
-const char* wordOf(CalibrationStatus status) {
-  return status == CalibrationStatus::Ok         ? "ok"
-         : status == CalibrationStatus::Doubtful ? "doubtful"
-                                                 : "failed";
 }
 
 // The quantity that the motion leaves too uncertain, if that is the first reason; else empty.
@@ -155,8 +89,8 @@ std::string_view tooUncertain(const Outcome& outcome) {
 // Correct within its sigmas, and doubtful only because this recording moves too little, with or without the
 // perturbation.
 bool isDoubtfulAsUnspoilt(const Outcome& outcome, const Outcome& unspoilt) {
-  return !outcome.isWrong() && outcome.status == CalibrationStatus::Doubtful &&
-         !tooUncertain(outcome).empty() && tooUncertain(outcome) == tooUncertain(unspoilt);
+  return !isWrong(outcome) && outcome.verdict == "doubtful" && !tooUncertain(outcome).empty() &&
+         tooUncertain(outcome) == tooUncertain(unspoilt);
 }
 
 struct Summary {
@@ -167,14 +101,14 @@ struct Summary {
 
   void add(const Perturbation& perturbation, const Outcome& outcome, const Outcome& twin) {
     ++cases;
-    wrong += outcome.isWrong();
-    wrong_ok += outcome.isWrong() && outcome.status == CalibrationStatus::Ok;
+    wrong += isWrong(outcome);
+    wrong_ok += isWrongOk(outcome);
     if (perturbation.causes.empty()) {
       ++unspoilt;
-      ok_unspoilt += outcome.status == CalibrationStatus::Ok;
+      ok_unspoilt += outcome.verdict == "ok";
       return;
     }
-    if (outcome.status == CalibrationStatus::Ok) return;
+    if (outcome.verdict == "ok") return;
     if (isDoubtfulAsUnspoilt(outcome, twin)) {
       ++as_unspoilt;
       return;
@@ -212,19 +146,20 @@ std::string cells(const Misfit& misfit) {
                      misfit.accelerometer, 100.0 * misfit.outliers, misfit.halves_sigmas);
 }
 
-void printRow(const Scenario& scenario, const Perturbation& perturbation, double size,
-              const Outcome& outcome) {
-  const bool result = outcome.status != CalibrationStatus::Failed;
+void printRow(const Scenario& scenario, const Perturbation& perturbation, double size, const Case& of) {
+  const Outcome& outcome = of.outcome;
   const std::string_view reason = test::firstReason(outcome.reason);
-  const bool named = perturbation.isNamedIn(reason);
-  fmt::print("| {} | {} | {} | {:g} {} | {} | {} | {} | {} | {}{} | {}{} |\n", scenario.name, scenario.seed,
-             perturbation.name, size, perturbation.unit, result ? cell(outcome.rotation_deg) : "",
-             result ? cell(outcome.translation_mm) : "", result ? cell(outcome.time_offset_ms) : "",
-             result ? cells(outcome.misfit) : " | | ", outcome.isWrong() ? "WRONG, " : "",
-             wordOf(outcome.status),
-             outcome.status == CalibrationStatus::Ok || perturbation.causes.empty() ? ""
-             : named                                                                ? "(named) "
-                                                                                    : "(other) ",
+  std::string figures = " | | | | | ";
+  if (outcome.comparison)
+    figures = fmt::format("{} | {} | {} | {}", cell(rotationError_deg(*outcome.comparison)),
+                          cell(translationError_mm(*outcome.comparison)),
+                          cell(timeOffsetError_ms(*outcome.comparison)), cells(of.misfit));
+  fmt::print("| {} | {} | {} | {:g} {} | {} | {}{} | {}{} |\n", scenario.name, scenario.seed,
+             perturbation.name, size, perturbation.unit, figures, isWrong(outcome) ? "WRONG, " : "",
+             outcome.verdict,
+             outcome.verdict == "ok" || perturbation.causes.empty() ? ""
+             : perturbation.isNamedIn(reason)                       ? "(named) "
+                                                                    : "(other) ",
              reason);
   std::fflush(stdout);
 }
@@ -273,13 +208,14 @@ int run(int argc, char** argv) {
       base.scenario = arguments.scenarios.read(file, k);
       base.session = test::sessionFor(base.scenario);
       base.pass = arguments.source.pass(base.scenario, base.session);
-      const Outcome twin = calibrated(base);
+      const Outcome twin = calibrated(base).outcome;
       for (const Perturbation& row : arguments.rows()) {
         for (const double size : row.sizes) {
-          const Outcome outcome = perturbed(base, row, size, arguments.source);
-          printRow(base.scenario, row, size, outcome);
-          if (arguments.notes) fmt::print("{}\n", fmt::join(outcome.notes, "\n"));
-          summary.add(row, outcome, twin);
+          const Case of = perturbed(base, row, size, arguments.source);
+          printRow(base.scenario, row, size, of);
+          if (arguments.notes && of.outcome.result)
+            fmt::print("{}\n", fmt::join(of.outcome.result->notes, "\n"));
+          summary.add(row, of.outcome, twin);
         }
       }
     }
