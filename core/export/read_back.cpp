@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/export/imu_frames.h"
+#include "core/export/rig.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
