@@ -152,8 +152,8 @@ QuantityAddress RigQuantity::address(std::size_t part) const {
 
 Eigen::VectorXd RigQuantity::numbers(const CalibrationState& state) const {
   Eigen::VectorXd numbers;
-  visitQuantity(first, std::tie(state), [&](const auto& row, const auto& sensor) {
-    numbers = quantityNumbers(row.value(sensor)).head(size());
+  visitQuantity(first, std::tie(state), [&](const auto& row, const auto& owner) {
+    numbers = quantityNumbers(row.value(owner)).head(size());
   });
   return numbers;
 }
@@ -167,16 +167,16 @@ Eigen::VectorXd RigQuantity::difference(const CalibrationState& a, const Calibra
 }
 
 void RigQuantity::move(const Eigen::VectorXd& by, CalibrationState& state) const {
-  visitQuantity(first, std::tie(state), [&](const auto& row, auto& sensor) {
-    auto value = row.value(std::as_const(sensor));
+  visitQuantity(first, std::tie(state), [&](const auto& row, auto& owner) {
+    auto value = row.value(std::as_const(owner));
     moveValue(row.info, by, value);
-    row.value(sensor) = value;
+    row.value(owner) = value;
   });
 }
 
 void RigQuantity::copy(const CalibrationState& from, CalibrationState& to) const {
-  visitQuantity(first, std::tie(from, to), [](const auto& row, const auto& source, auto& sensor) {
-    row.value(sensor) = row.value(source);
+  visitQuantity(first, std::tie(from, to), [](const auto& row, const auto& source, auto& owner) {
+    row.value(owner) = row.value(source);
   });
 }
 
