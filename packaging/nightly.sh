@@ -19,11 +19,11 @@ for step in "$@"; do
   fi
 done
 
-# Real-time limits apply to release builds only: packaging/realtime-tests.sh.
+# With all errors of the build in the log. Real-time limits apply to release builds only: packaging/realtime-tests.sh.
 build_and_test() { # FOLDER TIMEOUT_s CMAKE_ARGUMENT...
   local folder=$1 timeout_s=$2
   shift 2
-  cmake --fresh -B "$folder" "$@" && cmake --build "$folder" -j2 &&
+  cmake --fresh -B "$folder" "$@" && cmake --build "$folder" -j2 -- -k 0 &&
     ctest --test-dir "$folder" -LE realtime --output-on-failure -j2 --timeout "$timeout_s"
 }
 run_step() {
