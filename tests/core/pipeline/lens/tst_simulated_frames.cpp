@@ -1,5 +1,6 @@
 // Frame cameras from the recording to the result, against the truth of simulated frames.
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/session/session.h"
