@@ -32,12 +32,12 @@ run() {
   echo "FAILED: evical_benchmarks $*"
 }
 
-# All scenarios except those without an IMU to calibrate and those for many seeds.
+# All scenarios except those without a board, those for intrinsics, and those for many seeds.
 rigs=("$scenarios"/{stereo,stereo_two_imus,three_cameras,disjoint_views}.yaml)
 single=()
 for file in "$scenarios"/*.yaml; do
   case "$(basename "$file" .yaml)" in
-    intrinsics_* | symmetric_board | *_10s | stereo* | three_cameras | disjoint_views) ;;
+    intrinsics_* | symmetric_board | blinking | wide_frame | room* | *_10s | stereo* | three_cameras | disjoint_views) ;;
     *) single+=("$file") ;;
   esac
 done
