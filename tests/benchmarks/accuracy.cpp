@@ -80,9 +80,9 @@ double worstSigmas(const Outcome& outcome, bool with_board) {
   if (!outcome.comparison) return std::numeric_limits<double>::max();
   double worst = 0.0;
   for (const QuantityDifference& quantity : outcome.comparison->quantities) {
-    const auto has = [&](const char* part) { return quantity.name.find(part) != std::string::npos; };
-    const bool needed = (has(".rotation.") || has(".translation.") || has(".time_offset")) && !has("drift");
-    if (needed || (with_board && has("board."))) worst = std::max(worst, std::abs(quantity.normalised()));
+    const bool needed = isOf(".rotation.", quantity) || isOf(".translation.", quantity) ||
+                        isOf(".time_offset", quantity) || (with_board && isOf("board.", quantity));
+    if (needed) worst = std::max(worst, std::abs(quantity.normalised()));
   }
   return worst;
 }
@@ -98,7 +98,7 @@ struct OffsetSpread {
     if (!outcome.comparison || std::find(kVaried.begin(), kVaried.end(), scenario.name) == kVaried.end())
       return;
     for (const QuantityDifference& quantity : outcome.comparison->quantities) {
-      if (quantity.name.find(".time_offset") == std::string::npos) continue;
+      if (!isOf(".time_offset", quantity)) continue;
       smallest_ms = scenarios.empty() ? quantity.difference : std::min(smallest_ms, quantity.difference);
       largest_ms = scenarios.empty() ? quantity.difference : std::max(largest_ms, quantity.difference);
     }

@@ -103,13 +103,12 @@ double windowsFound(const Scenario& scenario, const BoardObservations& observati
   return seen == 0 ? 0.0 : static_cast<double>(found) / seen;
 }
 
-PartError partError(const TruthComparison& comparison, const std::string& part) {
+PartError partError(const TruthComparison& comparison, const char* part) {
   std::map<std::string, std::array<double, 2>> squares;  // of error and sigma, by sensor
   PartError worst;
   for (const QuantityDifference& quantity : comparison.quantities) {
-    const std::size_t at = quantity.name.find(part);
-    if (at == std::string::npos || quantity.name.find("drift") != std::string::npos) continue;
-    auto& [error2, sigma2] = squares[quantity.name.substr(0, at)];
+    if (!isOf(part, quantity)) continue;
+    auto& [error2, sigma2] = squares[quantity.name.substr(0, quantity.name.find(part))];
     error2 += quantity.difference * quantity.difference;
     sigma2 += quantity.sigma * quantity.sigma;
     worst.sigmas = std::max(worst.sigmas, std::abs(quantity.normalised()));
@@ -196,6 +195,10 @@ bool NormalisedErrors::print() const {
   const auto isRight = [](const Sum& sum) { return sum.rms() >= 0.7 && sum.rms() <= 1.4; };
   return recordings < kEnoughRecordings ||
          (isRight(rotation) && isRight(translation) && isRight(time_offset) && isRight(all));
+}
+
+bool isOf(const char* part, const QuantityDifference& number) {
+  return number.name.find(part) != std::string::npos && number.name.find("drift") == std::string::npos;
 }
 
 PartError rotationError_deg(const TruthComparison& comparison) {

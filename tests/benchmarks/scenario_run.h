@@ -54,6 +54,9 @@ struct NormalisedErrors {
   bool print() const;
 };
 
+// True for a number of this vector: ".rotation.", ".translation." or ".time_offset", which is not its drift.
+bool isOf(const char* part, const QuantityDifference& number);
+
 // Error of the sensor with the largest one, in the report's units.
 struct PartError {
   double size = 0.0, sigma = 0.0;
