@@ -67,7 +67,7 @@ RigidTransform together(double share) {
 }  // namespace
 
 const std::vector<ShownMotion>& shownMotions() {
-  const Eigen::Vector3d ahead(0.0, 0.0, 0.28), corner(0.066, -0.05, 0.1);
+  const Eigen::Vector3d lens(0.0, 0.0, 0.0), ahead(0.0, 0.0, 0.28), corner(0.066, -0.05, 0.1);
   static const std::vector<ShownMotion> all = {
       {"left_right", QObject::tr("Turn left and right"),
        QObject::tr("Turn the camera to the left and to the right, 20 degrees to either side, and back. "
@@ -81,22 +81,15 @@ const std::vector<ShownMotion>& shownMotions() {
                    "forgotten "
                    "most often, and no other motion replaces it."),
        &aboutTheLens, corner},
-      {"sideways",
-       QObject::tr("Move left and right"),
+      {"sideways", QObject::tr("Move left and right"),
        QObject::tr("Move the camera sideways, briskly: the accelerometer measures only changes of speed."),
-       &sideways,
-       {}},
-      {"upwards",
-       QObject::tr("Move up and down"),
-       QObject::tr("Move the camera up and down, as briskly."),
-       &upwards,
-       {}},
-      {"nearer",
-       QObject::tr("Nearer and farther"),
+       &sideways, lens},
+      {"upwards", QObject::tr("Move up and down"), QObject::tr("Move the camera up and down, as briskly."),
+       &upwards, lens},
+      {"nearer", QObject::tr("Nearer and farther"),
        QObject::tr(
            "Move towards the board and back, between 0.4 and 1 m. Up close, the board may exceed the image."),
-       &nearer,
-       {}},
+       &nearer, lens},
       {"corners", QObject::tr("Into the corners"),
        QObject::tr(
            "Move the board once around the image, into all corners: a lens is calibrated only where circles "
