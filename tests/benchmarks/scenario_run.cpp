@@ -162,6 +162,7 @@ Outcome calibrateSession(const Scenario& scenario, const Session& session, Detec
     }
     outcome.result = run.result;
   } catch (const CalibrationError& error) {
+    outcome.verdict = statusName(CalibrationStatus::Failed);
     outcome.reason = error.what();
   }
   outcome.solve_s = stopwatch.elapsed_s();
@@ -221,7 +222,7 @@ bool isWrong(const Outcome& outcome) {
 }
 
 bool isWrongOk(const Outcome& outcome) {
-  return outcome.verdict == statusName(CalibrationStatus::Ok) && isWrong(outcome);
+  return outcome.verdict == "ok" && isWrong(outcome);
 }
 
 void printQuantities(const Outcome& outcome) {

@@ -4,7 +4,6 @@
 #include "core/data/calibration_result.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
-#include "core/report/result_yaml.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario.h"
 
@@ -18,8 +17,7 @@
 namespace evical {
 
 struct Outcome {
-  std::string verdict = statusName(CalibrationStatus::Failed);
-  std::string weakest, reason;
+  std::string verdict, weakest, reason;
   double windows_found = 0.0;  // of those with enough of the board in view
   double events_per_s = 0.0;
   double detect_s = 0.0, solve_s = 0.0;
