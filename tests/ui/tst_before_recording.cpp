@@ -275,6 +275,27 @@ class TestBeforeRecording : public QObject {
     }
   }
 
+  // Board, camera and arrows stay inside pictures of any shape.
+  void motions_areNotCut() {
+    MotionPicture picture;
+    picture.setSceneOnly(true);
+    for (const QSize& size : {QSize(300, 500), QSize(600, 200)}) {
+      picture.resize(size);
+      for (const ShownMotion& motion : shownMotions()) {
+        picture.setMotion(motion);
+        for (const double share : {0.0, 0.08, 0.12, 0.25, 0.42, 0.6, 0.75}) {
+          picture.setShare(share);
+          const QImage image = picture.grab().toImage();
+          const QRect inside = image.rect().adjusted(1, 1, -1, -1);
+          for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+              if (!inside.contains(x, y))
+                QVERIFY2(image.pixel(x, y) == image.pixel(0, 0), qPrintable(motion.name));
+        }
+      }
+    }
+  }
+
   void motions_areSteppedThrough() {
     HowToRecordDialog dialog(Motion::Reduced, nullptr);
     dialog.show();

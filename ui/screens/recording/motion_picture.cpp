@@ -32,6 +32,8 @@ Eigen::Vector3d onBoard(const Board& board, const Eigen::Vector2d& point_m) {
   return {from_middle_m.y(), -from_middle_m.x(), kShownDistance_m};
 }
 
+using FourPoints = std::array<Eigen::Vector3d, 4>;
+
 // Pinhole view of the scene.
 struct Looker {
   RigidTransform looker_from_world;
@@ -42,17 +44,59 @@ struct Looker {
     const Eigen::Vector3d seen = looker_from_world * point_m;
     return middle + focal_px / std::max(seen.z(), 0.05) * QPointF(seen.x(), seen.y());
   }
+  QPolygonF project(const FourPoints& points_m) const {
+    QPolygonF seen;
+    for (const Eigen::Vector3d& point_m : points_m) seen << project(point_m);
+    return seen;
+  }
 };
 
-// From behind and above, to the left of the person with the camera.
+// Camera body and field of view, as drawn.
+constexpr double kSight_m = 0.1, kBody_m = 0.03, kBodyDepth_m = 0.04;
+
+// Corners of a rectangle that faces the optical axis.
+FourPoints rectangle(double x, double y, double z) {
+  return {{{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}};
+}
+FourPoints sightEnd() {
+  return rectangle(0.5 * kWidth_px / kFocal_px * kSight_m, 0.5 * kHeight_px / kFocal_px * kSight_m, kSight_m);
+}
+FourPoints boardOutline(const Board& board) {
+  constexpr double kAround_m = 0.03;
+  const Eigen::Vector2d low = Eigen::Vector2d::Constant(-kAround_m), high = board.extent_m() - low;
+  return {{onBoard(board, low), onBoard(board, {high.x(), low.y()}), onBoard(board, high),
+           onBoard(board, {low.x(), high.y()})}};
+}
+
+// Area that board, camera and arrows need during all motions: the picture does not jump from one to the next.
+QRectF neededArea(const Looker& looker) {
+  constexpr int kSteps = 40;
+  QPolygonF seen;
+  for (const Eigen::Vector3d& point : boardOutline(shownBoard())) seen << looker.project(point);
+  for (const ShownMotion& motion : shownMotions())
+    for (int i = 0; i < kSteps; ++i) {
+      const RigidTransform pose = motion.world_from_camera(static_cast<double>(i) / kSteps);
+      for (const FourPoints& points : {sightEnd(), rectangle(kBody_m, kBody_m, -kBodyDepth_m)})
+        for (const Eigen::Vector3d& point : points) seen << looker.project(pose * point);
+      seen << looker.project(pose * motion.followed);
+    }
+  return seen.boundingRect();
+}
+
+// From behind and above, to the left of the person with the camera. All motions fit into the box.
 Looker looksOver(const QRectF& box) {
-  const Eigen::Vector3d eye(-0.75, -0.5, -0.45), at(0.02, 0.0, 0.32);
+  constexpr double kShare = 0.94;  // of the box: arrowheads and thick lines need some
+  const Eigen::Vector3d eye(-0.6, -0.62, -0.62), at(0.02, 0.0, 0.32);
   const Eigen::Vector3d ahead = (at - eye).normalized();
   const Eigen::Vector3d right = Eigen::Vector3d::UnitY().cross(ahead).normalized();
   Eigen::Matrix3d rows;
   rows << right.transpose(), ahead.cross(right).transpose(), ahead.transpose();
   const Eigen::Quaterniond rotation(rows);
-  return {{rotation, -(rotation * eye)}, 1.8 * std::min(box.width(), 1.3 * box.height()), box.center()};
+  Looker looker{{rotation, -(rotation * eye)}, 1.0, {}};
+  static const QRectF needed = neededArea(looker);
+  looker.focal_px = kShare * std::min(box.width() / needed.width(), box.height() / needed.height());
+  looker.middle = box.center() - looker.focal_px * needed.center();
+  return looker;
 }
 
 void paintArrowHead(QPainter& painter, QPointF tip, QPointF from) {
@@ -93,14 +137,10 @@ void paintWay(QPainter& painter, const Looker& looker, const ShownMotion& motion
 }
 
 void paintBoard(QPainter& painter, const Looker& looker) {
-  constexpr double kAround_m = 0.03;
   const Board board = shownBoard();
-  const Eigen::Vector2d low = Eigen::Vector2d::Constant(-kAround_m), high = board.extent_m() - low;
   painter.setPen(QPen(theme().grid_line, 1.0));
   painter.setBrush(Qt::white);
-  painter.drawPolygon(
-      QPolygonF{looker.project(onBoard(board, low)), looker.project(onBoard(board, {high.x(), low.y()})),
-                looker.project(onBoard(board, high)), looker.project(onBoard(board, {low.x(), high.y()}))});
+  painter.drawPolygon(looker.project(boardOutline(board)));
   painter.setPen(Qt::NoPen);
   painter.setBrush(Qt::black);
   constexpr int kCorners = 16;
@@ -115,20 +155,14 @@ void paintBoard(QPainter& painter, const Looker& looker) {
   }
 }
 
-// Camera body and field of view.
 void paintCamera(QPainter& painter, const Looker& looker, const RigidTransform& world_from_camera,
                  double opacity) {
-  constexpr double kAhead_m = 0.1;
-  const double x = 0.5 * kWidth_px / kFocal_px * kAhead_m, y = 0.5 * kHeight_px / kFocal_px * kAhead_m;
-  const auto at = [&](double px, double py, double pz) {
-    return looker.project(world_from_camera * Eigen::Vector3d(px, py, pz));
+  const auto at = [&](FourPoints points) {
+    for (Eigen::Vector3d& point : points) point = world_from_camera * point;
+    return looker.project(points);
   };
-  const QPolygonF front{at(-x, -y, kAhead_m), at(x, -y, kAhead_m), at(x, y, kAhead_m), at(-x, y, kAhead_m)};
-  constexpr double kBody_m = 0.03;
-  const QPolygonF back{at(-kBody_m, -kBody_m, -0.04), at(kBody_m, -kBody_m, -0.04),
-                       at(kBody_m, kBody_m, -0.04), at(-kBody_m, kBody_m, -0.04)};
-  const QPolygonF face{at(-kBody_m, -kBody_m, 0.0), at(kBody_m, -kBody_m, 0.0), at(kBody_m, kBody_m, 0.0),
-                       at(-kBody_m, kBody_m, 0.0)};
+  const QPolygonF front = at(sightEnd()), back = at(rectangle(kBody_m, kBody_m, -kBodyDepth_m)),
+                  face = at(rectangle(kBody_m, kBody_m, 0.0));
   painter.save();
   painter.setOpacity(opacity);
   painter.setPen(QPen(theme().text, 1.5));
@@ -141,7 +175,7 @@ void paintCamera(QPainter& painter, const Looker& looker, const RigidTransform& 
   sight.setAlphaF(0.18F);
   painter.setBrush(sight);
   painter.setPen(QPen(theme().accent, 1.5));
-  const QPointF centre = at(0.0, 0.0, 0.0);
+  const QPointF centre = looker.project(world_from_camera.translation_m);
   for (int i = 0; i < 4; ++i) painter.drawPolygon(QPolygonF{centre, front[i], front[(i + 1) % 4]});
   // Upper edge, which makes rotations about the optical axis visible.
   painter.setPen(QPen(theme().warning, 3.0));

@@ -84,8 +84,8 @@ const std::vector<ShownMotion>& shownMotions() {
       {"sideways", QObject::tr("Move left and right"),
        QObject::tr("Move the camera sideways, briskly: the accelerometer measures only changes of speed."),
        &sideways, lens},
-      {"upwards", QObject::tr("Move up and down"), QObject::tr("Move the camera up and down, as briskly."),
-       &upwards, lens},
+      {"upwards", QObject::tr("Move up and down"),
+       QObject::tr("Move the camera up and down, just as briskly."), &upwards, lens},
       {"nearer", QObject::tr("Nearer and farther"),
        QObject::tr(
            "Move towards the board and back, between 0.4 and 1 m. Up close, the board may exceed the image."),
