@@ -309,13 +309,8 @@ class TestDetectionScreen : public QObject {
 
   void screen_showsTheWindowAtTheCursor() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
     screen.setRun(recorded_->run(), recorded_->session);
-    const WindowReport window = recorded_->goodWindow();
-    screen.setTime(window.time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QVERIFY(screen.view().frame()->events > 1000);
     QVERIFY(screen.analysis()->held());
     QVERIFY2(screen.panel().text().contains("In the last run: complete"), qPrintable(screen.panel().text()));
@@ -340,19 +335,15 @@ class TestDetectionScreen : public QObject {
 
   void screen_stepsScrubsAndPlays() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
     screen.setRun(recorded_->run(), recorded_->session);
-    const WindowReport window = recorded_->goodWindow();
-    screen.setTime(window.time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
+    const double shown_s = screen.time_s();
     QVERIFY(QTest::qWaitForWindowActive(&screen));  // its keys are shortcuts
     QSignalSpy selected(&screen, &DetectionScreen::timeSelected);
     QTest::keyClick(&screen.view(), Qt::Key_Right);
-    QVERIFY(screen.time_s() > window.time_s);
+    QVERIFY(screen.time_s() > shown_s);
     QTest::keyClick(&screen.view(), Qt::Key_Left);
-    QVERIFY(std::abs(screen.time_s() - window.time_s) < 1e-9);
+    QVERIFY(std::abs(screen.time_s() - shown_s) < 1e-9);
     QTest::mouseClick(&screen.timeline(), Qt::LeftButton, {},
                       {static_cast<int>(screen.timeline().xOf(0.5)), 40});
     QVERIFY(std::abs(screen.time_s() - 0.5) < 0.01);
