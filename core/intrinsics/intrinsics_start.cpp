@@ -45,8 +45,10 @@ std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, R
   try {
     cv::Mat matrix, distortion;
     std::vector<cv::Mat> rotations, translations;
+    // LU: OpenCV's default, a singular value decomposition, took longer than our own estimate.
     cv::calibrateCamera(on_board, pixels, {resolution_px.width_px, resolution_px.height_px}, matrix,
-                        distortion, rotations, translations, cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3);
+                        distortion, rotations, translations,
+                        cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3 | cv::CALIB_USE_LU);
     CameraIntrinsics camera = plain(CameraModel::PinholeRadtan, resolution_px);
     camera.focal_length_px = {matrix.at<double>(0, 0), matrix.at<double>(1, 1)};
     camera.principal_point_px = {matrix.at<double>(0, 2), matrix.at<double>(1, 2)};
