@@ -1,9 +1,14 @@
 #!/usr/bin/env bash
 # Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
-# clang-tidy on changed sources, and every test. At the end it prints wall time and processor time of each step. Fails if
-# a build without hits in ccache needed much more processor time than its budget.
+# clang-tidy on changed sources, and the tests, with --all also those of tests/slow_tests.txt, like CI. At the end it prints
+# wall time and processor time of each step. Fails if a build without hits in ccache needed much more processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+case "${1:-}" in
+  '' | --all) ;;
+  *) echo "There is no '$1'. Usage: packaging/test.sh [--all]" >&2; exit 2 ;;
+esac
+all=${1:-}
 
 # Processor time of a build without hits in ccache, divided by that of compiling packaging/build_reference.cpp on the same machine.
 build_budget=125
@@ -59,6 +64,22 @@ check_build_budget() {
   fi
 }
 
+run_tests() {
+  local slow known
+  slow=$(paste -sd '|' tests/slow_tests.txt)
+  known=$(ctest --preset ci -N -FA . -R "^($slow)$" | grep -c 'Test *#' || true)
+  if [ "$known" -ne "$(wc -l <tests/slow_tests.txt)" ]; then
+    echo "tests/slow_tests.txt: $known of its $(wc -l <tests/slow_tests.txt) lines are names of tests. Remove the others." >&2
+    return 1
+  fi
+  if [ "$all" = --all ]; then
+    ctest --preset ci -LE realtime
+  else
+    echo "Without the $known tests of tests/slow_tests.txt: packaging/test.sh --all runs them, too."
+    ctest --preset ci -LE realtime -E "^($slow)$"
+  fi
+}
+
 step install packaging/install-dependencies.sh test
 step format packaging/check-format.sh
 step texts packaging/check_texts.py
@@ -69,7 +90,7 @@ CCACHE_STATSLOG=$PWD/build/ccache.log step build cmake --build --preset ci
 build_cs=$last_processor_cs
 step "build budget" check_build_budget
 step clang-tidy packaging/check-tidy.sh --changed
-step tests ctest --preset ci -LE realtime
+step tests run_tests
 step "real-time tests" packaging/realtime-tests.sh
 # Processor time of a calibration's stages.
 cat build/ci/speed_guard.txt 2>/dev/null || true

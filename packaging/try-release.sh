@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tests the current commit on another release of Debian, in a temporary root:
-# packaging/try-release.sh RELEASE [COMMAND...], e.g. trixie. Without a command it runs packaging/test.sh. Needs root and the
+# packaging/try-release.sh RELEASE [COMMAND...], e.g. trixie. Without a command it runs packaging/test.sh --all. Needs root and the
 # package mmdebstrap. EVICAL_DATA, if set, is available there, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,7 +10,7 @@ if [ "$#" -eq 0 ]; then
 fi
 release=$1
 shift
-[ "$#" -gt 0 ] || set -- packaging/test.sh
+[ "$#" -gt 0 ] || set -- packaging/test.sh --all
 if ! command -v mmdebstrap >/dev/null; then
   echo "mmdebstrap is missing. Install it as root: apt-get install mmdebstrap" >&2
   exit 1
