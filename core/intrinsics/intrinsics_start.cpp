@@ -133,7 +133,9 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
       !detection_intrinsics || detection_intrinsics->distortion == CameraIntrinsics{}.distortion;
   const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;
   if (camera) starts.push_back(sameLens(*camera, model));
-  if (isSphereModel(model)) {
+  // Even a start that is nearly right is not enough: if its errors are smaller than those of the views' first
+  // poses, views at the border are rejected, and never return.
+  if (model != CameraModel::PinholeRadtan) {
     for (const CameraIntrinsics& guess : wideGuesses(model, resolution_px)) starts.push_back(guess);
     sortByError(views, board, starts);
     constexpr std::size_t kTried = 2;

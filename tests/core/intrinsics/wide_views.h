@@ -30,6 +30,9 @@ inline CameraIntrinsics wideCamera(CameraModel model) {
     camera.focal_length_px = {158.3, 158.2};
     camera.distortion = {-0.172, 0.593, 0.0, 0.0, 0.0};
   }
+  // A fisheye of 130 degrees, as in scenario fisheye.
+  if (model == CameraModel::PinholeEquidistant)
+    camera = {model, {640, 480}, {283.5, 283.9}, {321.3, 241.8}, {0.012, -0.006, 0.003, -0.001, 0.0}};
   if (model == CameraModel::OmniRadtan) {
     camera.focal_length_px = {330.0, 330.5};
     camera.distortion = {1.2, -0.03, 0.01, 4e-4, -3e-4};
