@@ -51,7 +51,7 @@ compile_reference() {
   for k in 1 2; do
     CCACHE_DISABLE=1 clang++ -std=c++20 -O3 -isystem /usr/include/eigen3 -c packaging/build_reference.cpp -o "$scratch/reference$k.o" &
   done
-  wait
+  wait -n && wait -n || return 1
   count_processor
   reference_cs=$((reference_cs + processor_cs - before)) references=$((references + 2))
 }
@@ -64,7 +64,7 @@ check_build_budget() {
     echo "Build budget: not checked, since $hits of $((hits + misses)) objects came from ccache."
     return
   fi
-  compile_reference
+  compile_reference || return 1
   ratio=$((build_cs * references / reference_cs))
   echo "Build budget: the build took $ratio times the reference's $((reference_cs / references / 100)) s of processor time; the budget is $build_budget."
   if [ $((100 * ratio)) -gt $((build_budget * (100 + build_may_exceed_percent))) ]; then

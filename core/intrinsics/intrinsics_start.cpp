@@ -4,7 +4,6 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
 #include "core/geometry/projection_difference.h"
-#include "core/geometry/sphere_lens.h"
 #include "core/intrinsics/board_pose.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
@@ -60,7 +59,8 @@ std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, R
   }
 }
 
-// Stereographic lenses with these angles at the image's corners.
+// Lenses without distortion, with the focal lengths of stereographic lenses that have these angles at the
+// image's corners.
 std::vector<CameraIntrinsics> wideGuesses(CameraModel model, Resolution resolution_px) {
   const double corner_px = 0.5 * std::hypot(resolution_px.width_px, resolution_px.height_px);
   std::vector<CameraIntrinsics> guesses;
@@ -133,8 +133,8 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
       !detection_intrinsics || detection_intrinsics->distortion == CameraIntrinsics{}.distortion;
   const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;
   if (camera) starts.push_back(sameLens(*camera, model));
-  // Even a start that is nearly right is not enough: if its errors are smaller than those of the views' first
-  // poses, views at the border are rejected, and never return.
+  // Even a start that is nearly right is not enough: it can make most errors so small that all views with
+  // larger first errors are rejected, and never return.
   if (model != CameraModel::PinholeRadtan) {
     for (const CameraIntrinsics& guess : wideGuesses(model, resolution_px)) starts.push_back(guess);
     sortByError(views, board, starts);

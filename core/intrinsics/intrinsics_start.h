@@ -20,8 +20,8 @@ CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
 CameraIntrinsics otherSide(const CameraIntrinsics& sphere);
 
 // At least one: the front end's lens; if that was a guess, one without distortion coefficients, and OpenCV's
-// calibration that treats centres as points. For the wide models, the two closest of these and of a few
-// lenses with fields of view from 100 to 200 degrees.
+// calibration that treats centres as points. Except for radial-tangential lenses, the two closest of these and
+// of a few lenses with fields of view from 100 to 200 degrees.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& detection_intrinsics);

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/geometry/lens_fit.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
 #include "core/intrinsics/circle_centre_cost.h"
@@ -8,6 +9,7 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/seen_through.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
@@ -245,15 +247,7 @@ class TestIntrinsics : public QObject {
     rough.focal_length_px *= 1.03;
     rough.distortion[0] += 0.02;
     BoardObservations ideal = sensor;
-    for (BoardView& view : ideal.views) {
-      for (CircleObservation& circle : view.circles) {
-        circle.centre_px = *idealPixel(rough, circle.centre_px);
-        const Eigen::Matrix2d scale = idealPixelScale(rough, circle.centre_px);
-        circle.covariance_px2 = (scale * circle.covariance_px2 * scale.transpose()).eval();
-        circle.velocity_px_s = scale * circle.velocity_px_s;
-        circle.edge_localisation_bias_effect = scale * circle.edge_localisation_bias_effect;
-      }
-    }
+    test::seeThrough(plainLens(rough, CameraModel::PinholeRadtan), rough, ideal);
     const Resolution size = rough.resolution_px;
     const IntrinsicsResult one = estimateIntrinsics({truth.board, size, sensor, {}, rough}, {}, {});
     const IntrinsicsResult other = estimateIntrinsics({truth.board, size, ideal, rough, rough}, {}, {});
