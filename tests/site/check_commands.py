@@ -58,7 +58,7 @@ def check(line, where):
             faults.append(f"{where}: {line}: {ran.stderr.strip()}")
 
 
-documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md", "resources/user_guide.md")]
+documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md")]
 documents += [f"{root}/docs/{name}" for name in sorted(os.listdir(f"{root}/docs")) if name.endswith(".md")]
 for document in documents:
     with open(document, encoding="utf-8") as file:

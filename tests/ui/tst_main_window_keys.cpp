@@ -191,6 +191,10 @@ class TestMainWindowKeys : public QObject {
     auto* const contents = guide->findChild<QListWidget*>("contents");
     auto* const browser = guide->findChild<QTextBrowser*>();
     QVERIFY(contents->count() >= 6);
+    QVERIFY(contents->item(0)->font().bold() &&
+            !contents->findItems("Print a board", Qt::MatchExactly).value(0)->font().bold());
+    QVERIFY(!browser->toPlainText().contains("](") &&
+            !browser->toHtml().contains("href"));             // no links to other pages
     QCOMPARE(contents->horizontalScrollBar()->maximum(), 0);  // long headings end with dots
     QCOMPARE(contents->item(2)->toolTip(), contents->item(2)->text());
     contents->setCurrentRow(3);

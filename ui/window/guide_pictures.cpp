@@ -3,35 +3,16 @@
 
 #include "ui/screens/recording/motion_picture.h"
 
+#include <QDir>
 #include <QImage>
 #include <QPixmap>
+#include <QRegularExpression>
 #include <QTextDocument>
 #include <QUrl>
-
-#include <algorithm>
-#include <array>
 
 namespace evical::ui {
 namespace {
 
-struct GuidePicture {
-  const char *part, *name, *title;  // heading of its part; file in pictures/
-};
-
-constexpr std::array<GuidePicture, 12> kPictures = {{
-    {"The shortest way", "start-light", "Start"},
-    {"Before you record", "print-board-light", "Print a board"},
-    {"Before you record", "check-light", "Recording: the card shows whether the recording is good enough"},
-    {"Your own recording", "recording-light", "Recording: streams, board and sensors"},
-    {"A camera alone", "lens-light", "Result of a camera alone"},
-    {"While it calibrates", "detection-dark", "Detection: events and the board detected in them"},
-    {"Reading the result", "result-light", "Result: every number with its sigma"},
-    {"Windows one by one", "residuals-light", "Residuals over the image, by window, and their distribution"},
-    {"Trajectory and convergence", "trajectory-light", "Trajectory"},
-    {"Trajectory and convergence", "convergence-light", "Convergence"},
-    {"Trajectory and convergence", "signals-light", "Signals: measured, predicted, and their difference"},
-    {"Copying and handing on", "export-light", "Export: programs, folder, and the check of the files"},
-}};
 constexpr const char *kMotionsPart = "Before you record", *kMotion = "motion-";
 constexpr double kMotionShape = 0.5;  // height by width
 
@@ -39,23 +20,11 @@ QString urlOf(const QString& name) {
   return "picture:" + name;
 }
 
-QString imageOf(const QString& title, const QString& name) {
-  return QString("\n![%1](%2)\n\n*%1*\n").arg(title, urlOf(name));
-}
-
 QString motions() {
   QString text = "\n### How to move\n\n";
   for (const ShownMotion& motion : shownMotions())
     text += QString("**%1.** %2\n").arg(motion.title, motion.words) +
             QString("\n![%1](%2)\n\n").arg(motion.title, urlOf(kMotion + motion.name));
-  return text;
-}
-
-QString picturesOf(const QString& part) {
-  QString text;
-  for (const GuidePicture& picture : kPictures)
-    if (part == picture.part) text += imageOf(QObject::tr(picture.title), picture.name);
-  if (part == kMotionsPart) text += motions();
   return text;
 }
 
@@ -80,21 +49,24 @@ QImage drawingOf(const ShownMotion& motion, int width_px, double pixel_ratio) {
 }  // namespace
 
 QString withPictures(const QString& markdown) {
+  static const QRegularExpression picture(R"(^!\[([^\]]*)\]\(pictures/([\w-]+)\.png\)$)");
+  static const QRegularExpression link(R"((?<!!)\[([^\]]*)\]\([^)]*\))");  // to a page of the documentation
   QString all, part;
   for (const QString& line : markdown.split('\n')) {
     if (line.startsWith("## ")) {
-      all += picturesOf(part) + '\n';
+      if (part == kMotionsPart) all += motions() + '\n';
       part = line.mid(3).trimmed();
     }
-    all += line + '\n';
+    if (const QRegularExpressionMatch found = picture.match(line); found.hasMatch())
+      all += QString("![%1](%2)\n\n*%1*\n").arg(found.captured(1), urlOf(found.captured(2)));
+    else
+      all += QString(line).replace(link, "\\1") + '\n';
   }
-  return all + picturesOf(part);
+  return all;
 }
 
 QStringList guidePictures() {
-  QStringList names;
-  for (const GuidePicture& picture : kPictures) names << picture.name;
-  return names;
+  return QDir(":/pictures").entryList().replaceInStrings(".png", "");
 }
 
 void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio) {

@@ -10,11 +10,11 @@ class QTextDocument;
 
 namespace evical::ui {
 
-// The guide with the pictures of each part below its text.
+// The guide for the program's dialog: embedded pictures with their titles, drawn motions, and no links to other pages.
 QString withPictures(const QString& markdown);
 
 // Adds the pictures that the guide refers to, at this width.
 void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio);
-QStringList guidePictures();  // the names
+QStringList guidePictures();  // names of the embedded pictures
 
 }  // namespace evical::ui

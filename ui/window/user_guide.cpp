@@ -59,6 +59,10 @@ QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
     auto* const entry = new QListWidgetItem(block.text(), contents);
     entry->setData(Qt::UserRole, block.blockNumber());
     entry->setToolTip(block.text());
+    if (level > 2) continue;
+    QFont font = contents->font();
+    font.setBold(true);
+    entry->setFont(font);
   }
   QObject::connect(contents, &QListWidget::currentItemChanged, browser, [browser](QListWidgetItem* entry) {
     if (entry != nullptr) scrollTo(*browser, entry->data(Qt::UserRole).toInt());
