@@ -12,7 +12,7 @@ step() { printf '\n[%d:%02d] %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$1"; }
 if [ -x "$evical" ]; then
   echo "Evical: updates the build and calibrates a simulated recording."
 else
-  echo "Evical: builds, and calibrates a simulated recording. On two cores the first result takes 7 minutes, all programs 9, after missing packages are installed."
+  echo "Evical: builds, and calibrates a simulated recording. On two cores the first result takes 7 to 10 minutes, all programs 9 to 14, after missing packages are installed."
 fi
 step "1/5 Installing packages"
 packaging/install-dependencies.sh run
@@ -33,7 +33,8 @@ cat <<TEXT
 
 programs    $evical, build/release/evical-gui
 recording   $demo/recording.bag, with $demo/session.yaml and $demo/truth.yaml
-result      $demo/result: result.yaml, trajectory.csv, detections.csv, log.txt
+result      open $demo/result/report.html; next to it result.yaml, trajectory.csv, detections.csv, log.txt
+paths       export PATH=$PWD/build/release:\$PATH PYTHONPATH=$PWD/build/release/python
 TEXT
 step "Done"
 
