@@ -160,7 +160,7 @@ void bindNumbers(py::class_<CameraIntrinsics>& camera) {
           [](const CameraIntrinsics& c) {
             return py::make_tuple(c.resolution_px.width_px, c.resolution_px.height_px);
           },
-          "(width, height).")
+          "Tuple (width, height) in px.")
       .def_property_readonly(
           "focal_length_px",
           [](const CameraIntrinsics& c) { return arrayOf(Eigen::VectorXd(c.focal_length_px)); },

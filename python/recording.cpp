@@ -189,7 +189,7 @@ void bindParts(py::module_& module) {
           "message", [](const Stream& s) { return s.info.message; }, "The file's name for the type of data.")
       .def_property_readonly(
           "resolution_px", [](const Stream& s) { return resolutionOf(s.info.resolution_px); },
-          "(width, height), or None if the file does not state it.")
+          "Tuple (width, height) in px; None if the file does not state it.")
       .def_property_readonly(
           "readable", [](const Stream& s) { return s.info.readable; },
           "False: the stream is only listed and cannot be read.")

@@ -111,7 +111,7 @@ void bindCamera(py::module_& module) {
                              [](const CameraOfResult& c) { return c.fit().reprojection_rms_px; })
       .def_property_readonly(
           "windows", [](const CameraOfResult& c) { return windowsOf(c.fit()); },
-          "Numbers of windows: total, complete, partial, used.")
+          "Numbers of event windows: total, complete, partial, used.")
       .def("__repr__",
            [](const CameraOfResult& c) { return fmt::format("<evical.CameraResult '{}'>", c.known().name); });
 }
@@ -199,8 +199,9 @@ void bindVerdict(py::class_<Result, Shared>& result) {
       .def_property_readonly("notes", [](const Result& r) { return r.numbers().notes; })
       .def_property_readonly(
           "version", [](const Result& r) { return r.named.version; }, "Version of Evical that wrote it.")
-      .def_readonly("missing", &Result::missing,
-                    "Missing parts of an older or damaged folder, with the reason; empty if complete.")
+      .def_readonly(
+          "missing", &Result::missing,
+          "List of str: each missing part of an older or damaged folder, with the reason; empty if complete.")
       .def_property_readonly("timing_s", timingOf);
 }
 

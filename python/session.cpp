@@ -170,7 +170,8 @@ void bindSensors(py::module_& module) {
             if (!c.resolution_px.known()) return std::nullopt;
             return std::array<int, 2>{c.resolution_px.width_px, c.resolution_px.height_px};
           },
-          setResolution, "[width, height]; None: the recording states it.")
+          setResolution,
+          "List [width, height] in px, assigned from a list or tuple; None: the recording states it.")
       .def_readwrite("recording", &SessionCamera::recording, "Separate recording; empty: the session's.")
       .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s,
                      "Known offset that is added to the stream's times.");

@@ -7,7 +7,7 @@ namespace evical {
 // without thread priorities (other systems than Linux).
 void makeThreadModest();
 
-// The same for work that nobody waits for: lowest priority.
+// Gives the calling thread and those that it will start the lowest priority, for work that nobody waits for.
 void makeThreadLast();
 
 }  // namespace evical

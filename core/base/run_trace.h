@@ -62,7 +62,7 @@ class RunTrace final : public ProgressSink {
   std::map<int, Thread> threads_;    // existing threads, by their id
   double looked_s_ = 0.0, spent_s_;  // latest sample: time, and computing time of the process
   std::atomic<int> watcher_id_ = 0;
-  std::jthread watcher_;  // last member: uses the others
+  std::jthread watcher_;  // last member, so that it ends before the members that it uses are destroyed
 };
 
 }  // namespace evical

@@ -188,7 +188,7 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
   const Eigen::Matrix3d matrix = gyroscope.imu.gyroscopeMatrix();
   std::vector<WindowMotion>& windows = record.windows;
   if (std::count_if(windows.begin(), windows.end(), isUsed) < kAlignmentNumbers)
-    return failed("too few windows determine the camera's rotation");
+    return failed("too few event windows determine the camera's rotation");
   const AlignmentState before{start.imu_from_camera.toRotationMatrix(), start.time_offset_s,
                               gyroscope.imu.gyroscope_bias_rad_s};
   RotationAlignment out;

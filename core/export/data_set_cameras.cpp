@@ -35,7 +35,7 @@ DataSetCameras dataSetCameras(const Rig& rig, const char* program, ExportNotes& 
   const Rig events = rigOfKind(rig, false), frames = rigOfKind(rig, true);
   if (events.cameras.empty())
     throw badInput("result", fmt::format("has no event camera, which {} requires", program),
-                   fmt::format("Leave {} out", program));
+                   fmt::format("Omit the target {}", program));
   DataSetCameras placed;
   dataSetCamerasPlace(events, program, placed.left_event, placed.right_event);
   dataSetCamerasPlace(frames, program, placed.left_frame, placed.right_frame);

@@ -21,8 +21,8 @@ CameraIntrinsics rightCamera(const RigCamera& camera, const CameraIntrinsics& le
   if (camera.intrinsics.resolution_px != left.resolution_px)
     throw badInput(
         fmt::format("result: cameras.{}", camera.name),
-        fmt::format("has another resolution than the left camera, and {} supports one for both", program),
-        fmt::format("Leave {} out", program));
+        fmt::format("has a different resolution from the left camera; {} has one for both", program),
+        fmt::format("Omit the target {}", program));
   const bool radtan = left.model == CameraModel::PinholeRadtan;
   return cameraFor(camera, {program, radtan, false, !radtan}, notes);
 }

@@ -55,7 +55,9 @@ std::string kalibrLensText(const CameraIntrinsics& camera) {
   const bool spheres = camera.model == CameraModel::DoubleSphere || camera.model == CameraModel::Eucm;
   const bool omni = camera.model == CameraModel::OmniRadtan;
   const auto* const coefficients = camera.distortion.data();
-  const std::ptrdiff_t own = spheres ? 2 : omni ? 1 : 0;  // number of them that precede the intrinsics
+  const std::ptrdiff_t own = spheres ? 2
+                             : omni  ? 1
+                                     : 0;  // coefficients that Kalibr lists before the focal lengths
   std::vector<double> intrinsics(coefficients, coefficients + own);
   intrinsics.insert(intrinsics.end(), camera.focal_length_px.begin(), camera.focal_length_px.end());
   intrinsics.insert(intrinsics.end(), camera.principal_point_px.begin(), camera.principal_point_px.end());

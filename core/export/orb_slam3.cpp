@@ -52,8 +52,8 @@ std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
     cameras.push_back(cameraFor(rig.cameras[i], {kOrbSlam3Program, radtan, true, !radtan}, notes));
     if (cameras[i].resolution_px != cameras[0].resolution_px)
       throw badInput(fmt::format("result: cameras.{}", rig.cameras[i].name),
-                     "has another resolution than the first camera, and ORB-SLAM3 supports one for both",
-                     "Leave out orb-slam3");
+                     "has a different resolution from the first camera; ORB-SLAM3 has one for both",
+                     "Omit the target orb-slam3");
   }
   return cameras;
 }

@@ -47,13 +47,13 @@ std::optional<StereoPair> sideBySide(const Rig& rig) {
 StereoPair stereoPair(const Rig& rig, const char* program) {
   if (rig.cameras.size() < 2)
     throw badInput("result", fmt::format("has one camera, and {} requires two", program),
-                   fmt::format("Leave {} out, or calibrate two cameras", program));
+                   fmt::format("Omit the target {}, or calibrate two cameras", program));
   std::optional<StereoPair> pair = sideBySide(rig);
   if (!pair)
     throw badInput("result",
                    fmt::format("{} and {} are not side by side, as {} requires", rig.cameras[0].name,
                                rig.cameras[1].name, program),
-                   fmt::format("Leave {} out", program));
+                   fmt::format("Omit the target {}", program));
   return *std::move(pair);
 }
 

@@ -45,7 +45,7 @@ double yamlSigmaFactor(const QuantityInfo& info);
 // The map with the quantity's keys; nullopt if the section is missing.
 std::optional<YamlNode> quantitySection(const YamlNode& sensor, const QuantityInfo& info);
 
-// Allowed keys of a sensor's map, including sections by their names, or of one of its sections.
+// Keys allowed in a sensor's map (with the names of its sections), or in the section `section`.
 template <class Rows>
 std::vector<std::string> quantityKeys(const Rows& rows, const std::string& section = {}) {
   std::vector<std::string> keys;

@@ -17,7 +17,7 @@ constexpr std::tuple kBlinkFields{
     Field{"least_share", &BlinkOptions::least_share, 0.3, within(0.01, 1.0), "",
           "Smallest share of events from pixels that brighten and darken in every period."},
     Field{"look_s", &BlinkOptions::look_s, 1.0, within(0.1, 10.0), "s",
-          "Length of the intervals of the recording in which a blink is searched."},
+          "Length of the time intervals that are searched for blinking."},
     Field{"largest_move_px", &BlinkOptions::largest_move_px, 0.3, within(0.01, 10.0), "px",
           "Largest movement of the board while flashes are summed to one picture."},
     Field{"still_px", &BlinkOptions::still_px, 0.5, within(0.0, 100.0), "px",

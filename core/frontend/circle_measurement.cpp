@@ -54,7 +54,7 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
 
 struct CentreFit {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();    // centre x, y in ideal pixels; radius offset in pixels
-  Eigen::Vector3d by_lead = Eigen::Vector3d::Zero();  // of the shift, by an edge localisation bias in pixels
+  Eigen::Vector3d by_lead = Eigen::Vector3d::Zero();  // derivative of the shift by an edge localisation bias
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double weight = 0.0, squares = 0.0, time_s = 0.0;
   int points = 0, inliers = 0;

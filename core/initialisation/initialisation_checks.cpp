@@ -66,11 +66,12 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
 void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options) {
   const std::size_t views = camera.observations.views.size();
   if (static_cast<int>(views) < options.least_views) {
-    throw calibrationFailed(camera.name,
-                            fmt::format("the board was detected in {} of {} windows, but {} are needed",
-                                        views, camera.observations.windows.size(), options.least_views),
-                            "Check the detections " + howTo(HowTo::LookAtDetections) +
-                                " and the board's rows and columns, and keep the board in view");
+    throw calibrationFailed(
+        camera.name,
+        fmt::format("the board was detected in {} of {} event windows or frames, but {} are needed", views,
+                    camera.observations.windows.size(), options.least_views),
+        "Check the detections " + howTo(HowTo::LookAtDetections) +
+            " and the board's rows and columns, and keep the board in view");
   }
   if (static_cast<int>(found.poses.size()) < options.least_views) {
     throw calibrationFailed(

@@ -95,7 +95,8 @@ struct TurnAgreement {
   Eigen::Quaterniond imu_from_body = Eigen::Quaterniond::Identity();  // the best rotation
   double correlation = 0.0;  // of rates after this rotation; 1: complete agreement
 };
-// Rates by pairs, of the trajectory's body and of the gyroscope.
+// Rotation and agreement of simultaneous angular rates in rad/s: of the trajectory's body, and of the
+// gyroscope (equally many).
 TurnAgreement turnAgreement(const std::vector<Eigen::Vector3d>& of_body,
                             const std::vector<Eigen::Vector3d>& of_imu);
 

@@ -38,7 +38,7 @@ enum Block {
   kExposureShare,
   kBoardRotation,
   kBoardTranslation,
-  kIntrinsics,  // where they are free
+  kIntrinsics,  // only if they are estimated
   kBlocks
 };
 constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1,

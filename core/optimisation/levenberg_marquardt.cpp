@@ -116,7 +116,7 @@ Eigen::VectorXd Solver::damping() const {
   return added;
 }
 
-// Numbers at a bound that the step would cross.
+// Fixes unknowns at a bound that the step would cross.
 void Solver::holdAtBounds(Eigen::VectorXd& added) const {
   for (const Unknown& each : columns_.unknowns()) {
     if (each.columns == 0 || each.lower.empty()) continue;

@@ -75,7 +75,8 @@ constexpr std::tuple kModelFields{
     Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
           "Sigma added in quadrature to the covariance of each measured centre."},
     Field{"common_displacement_px", &ModelOptions::common_displacement_px, 0.008, within(0.0, 10.0), "px",
-          "Event cameras: sigma of a displacement that all circles of a window have in common, fast motion."},
+          "Event cameras: sigma of a displacement that all circles of an event window have in common, fast "
+          "motion."},
     Field{"common_displacement_px2_s", &ModelOptions::common_displacement_px2_s, 2.0, within(0.0, 1000.0),
           "px^2/s", "Event cameras: product of the same sigma and the image speed, slow motion."},
     Field{"common_displacement_px_s", &ModelOptions::common_displacement_px_s, 15.0, within(0.1, 1000.0),
@@ -87,7 +88,8 @@ constexpr std::tuple kModelFields{
         "Circles with larger errors, in units of the spread, are rejected between stages; so are single IMU "
         "samples that also exceed their neighbours' spread."},
     Field{"outlier_window_fraction", &ModelOptions::outlier_window_fraction, 0.5, within(0.1, 1.0), "",
-          "All circles of a window are rejected if more than this share of them are outliers."}};
+          "All circles of an event window or frame are rejected if more than this share of them are "
+          "outliers."}};
 constexpr auto kModelDefaults = defaultsOf<ModelOptions, kModelFields>();
 
 }  // namespace

@@ -29,7 +29,7 @@ constexpr std::tuple kPriorFields{
     Field{
         "exposure_share_sigma", &PriorOptions::exposure_share_sigma, 0.5, within(1e-4, 100.0), "",
         "Sigma of the prior, around 0, on the exposure's share between stamp and middle (0.5: stamped at the "
-        "begin), estimated if exposures vary.",
+        "beginning), estimated if exposures vary.",
         Level::Expert, Applies::WithFrames},
     Field{"mapping_sigma", &PriorOptions::mapping_sigma, 0.05, within(1e-6, 10.0), "",
           "Sigma of the weak prior on each entry of M_g and M_a, around the identity.", Level::Expert,

@@ -144,11 +144,11 @@ void BlockReader::finish() {
   }
   report(FaultKind::Outside, found.outside, "events are outside of the sensor and are left out");
   report(FaultKind::Untimed, found.untimed, "events have no time or place yet and are left out");
-  report(FaultKind::Corrupt, found.unknown, "records are of no known kind and are left out");
+  report(FaultKind::Corrupt, found.unknown, "records have an unknown kind and are left out");
   report(FaultKind::TimeWrap, found.wraps, "wraps of the time counter; times continue");
-  report(FaultKind::ImuLeftOut, found.imu, "IMU records have no known scale and are left out");
+  report(FaultKind::ImuLeftOut, found.imu, "IMU records have an unknown scale and are left out");
   report(FaultKind::ExposureLeftOut, found.exposure,
-         "events measure grey levels of no complete frame; they are left out");
+         "grey-level events belong to incomplete frames and are left out");
   if (found.rolling_frames > 0)
     faults_.push_back(
         {format_.streams.at(frames_stream_).name, FaultKind::Metadata, 0.0,

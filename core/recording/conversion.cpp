@@ -66,8 +66,8 @@ void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& form
         stream.type == StreamType::Points)
       names += (names.empty() ? "" : ", ") + stream.name;
   if (!names.empty())
-    context.progress.log(LogLevel::Warning, fmt::format("{} cannot contain {}; left out: {}.", format.name,
-                                                        format.frames ? "points, nor frames without times"
+    context.progress.log(LogLevel::Warning, fmt::format("{} cannot contain {}; omitted: {}.", format.name,
+                                                        format.frames       ? "points or frames without times"
                                                         : format.one_camera ? "IMU samples, frames and points"
                                                                             : "frames and points",
                                                         names));
@@ -108,7 +108,7 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
     if (stream.type != StreamType::Events) continue;
     context.progress.log(
         LogLevel::Warning,
-        fmt::format("The sensor size of {} is not in the file. Its events reach {} x {}; this size is "
+        fmt::format("The resolution of {} is not in the file. Its events reach {} x {}; this resolution is "
                     "written.",
                     stream.name, stream.resolution_px.width_px, stream.resolution_px.height_px));
   }

@@ -49,9 +49,10 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
     if (i <= kMostFirstSamples && interval_s > kUnset_s) {
       faults.push_back(
           {name, FaultKind::Corrupt, 0.0,
-           fmt::format("The first {} samples are stamped {:.3f} s before the next one, as if the clock was "
-                       "not set yet: calibrations leave them out.",
-                       i, interval_s)});
+           fmt::format(
+               "The first {} samples are stamped {:.3f} s before the next one; the clock was probably "
+               "not set yet. Calibrations exclude them.",
+               i, interval_s)});
     } else if (interval_s < 0.0) {
       const char* reset =
           samples[i - 1].time_ns - samples[i].time_ns > kClockReset_ns ? "; the clock was reset" : "";

@@ -356,9 +356,11 @@ void SeparateReader::takeFirstState() {
     throw calibrationFailed(
         path_.string(), fmt::format("the process that reads HDF5 files cannot be started ({})", how.reason),
         "Install Evical again");
-  throw badInput(path_.string(),
-                 fmt::format("the process that reads it ended ({}): the file is damaged", how.reason),
-                 "Copy it again, or record again");
+  throw badInput(
+      path_.string(),
+      fmt::format("the process that reads it ended unexpectedly ({}): the file is probably damaged",
+                  how.reason),
+      "Copy it again, or record again");
 }
 
 SeparateReader::~SeparateReader() {
@@ -411,14 +413,14 @@ bool SeparateReader::read(Packet& packet) {
     const End end = howItEnded();
     throwIfKilled(end);
     const double percent = 100.0 * fraction_read_;
-    faults_.push_back(
-        {"", FaultKind::Corrupt, 0.0,
-         end.kind == End::Kind::Silent
-             ? fmt::format("The file can only be read up to {:.0f} %: {}. The rest is lost.", percent,
-                           end.reason)
-             : fmt::format("The file is damaged: the process that reads it ended ({}) after {:.0f} %. "
-                           "The rest is lost.",
-                           end.reason, percent)});
+    faults_.push_back({"", FaultKind::Corrupt, 0.0,
+                       end.kind == End::Kind::Silent
+                           ? fmt::format("The file can only be read up to {:.0f} %: {}. The rest is lost.",
+                                         percent, end.reason)
+                           : fmt::format("The file is probably damaged: the process that reads it ended "
+                                         "unexpectedly ({}) after {:.0f} %. "
+                                         "The rest is lost.",
+                                         end.reason, percent)});
     return false;
   }
   const auto kind = static_cast<Answer>(message_.front());

@@ -366,8 +366,9 @@ std::string shownUnit(const std::string& unit) {
 }
 
 std::string windowsText(const CheckedWindows& windows) {
-  std::string text = fmt::format("windows of {}: {} of {} used; rotation alone explains the motion in {}",
-                                 windows.sensor, windows.used, windows.all, windows.turning_alone);
+  std::string text =
+      fmt::format("event windows of {}: {} of {} used; rotation alone explains the motion in {}",
+                  windows.sensor, windows.used, windows.all, windows.turning_alone);
   for (const CheckedWindows::LeftOut& one : windows.left_out)
     text += fmt::format("; {} excluded: {}", one.windows, one.words);
   return text;

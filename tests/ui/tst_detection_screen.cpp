@@ -190,7 +190,7 @@ class TestDetectionScreen : public QObject {
   void caption_countsTheWindowsEvents_inEveryMode() {
     DetectionScreen screen;
     showGoodWindow(screen, *recorded_);
-    const QRegularExpression count("([\\d,. ]+) events in the window");
+    const QRegularExpression count("([\\d,. ]+) events in the event window");
     QStringList counts;
     for (const SurfaceMode mode : {SurfaceMode::Accumulated, SurfaceMode::NormalFlow, SurfaceMode::Decayed}) {
       screen.setMode(mode);

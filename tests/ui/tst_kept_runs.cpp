@@ -190,7 +190,7 @@ class TestKeptRuns : public QObject {
     auto* const list = panel->findChild<QTreeWidget*>();
     QTRY_COMPARE_WITH_TIMEOUT(list->topLevelItemCount(), 2, kPatience_ms);
     QVERIFY(list->topLevelItem(0)->text(3).toInt() > 0);  // the newest first, with its rejected windows
-    QVERIFY(list->topLevelItem(0)->text(5).contains("windows rejected"));
+    QVERIFY(list->topLevelItem(0)->text(5).contains("event windows rejected"));
     test.press(Qt::Key_H, Qt::ControlModifier);
     QTRY_VERIFY(panel->isVisible());
 

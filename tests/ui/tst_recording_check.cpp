@@ -60,7 +60,7 @@ class TestRecordingCheck : public QObject {
     QTest::mouseClick(test.child<QToolButton>("check_details"), Qt::LeftButton);
     const QString details = test.card()->text();
     for (const char* const said : {"Duration", "Board in view", "Coverage", "Angular rate", "Accelerations",
-                                   "Expected translation", "px/s", "s, required 15 s"})
+                                   "Expected uncertainty of the translation", "px/s", "s, required 15 s"})
       QVERIFY2(details.contains(said), qPrintable(details));
     QVERIFY(test.card()->findChildren<LightMark*>().size() > 8);
     QVERIFY2(test.pageText().contains("Ready to calibrate"), qPrintable(test.pageText()));

@@ -230,12 +230,12 @@ QWidget* DetectionScreen::makeTransport() {
   row->setSpacing(4);
   connect(addButton(row, "to-start", tr("To the start (Home)")), &QToolButton::clicked, this,
           [this] { select(timeline_->begin_s()); });
-  connect(addButton(row, "step-back", tr("Previous window or frame (Left)")), &QToolButton::clicked, this,
-          [this] { step(-1); });
+  connect(addButton(row, "step-back", tr("Previous event window or frame (Left)")), &QToolButton::clicked,
+          this, [this] { step(-1); });
   play_button_ = addButton(row, "play", tr("Play (Space)"));
   connect(play_button_, &QToolButton::clicked, this, [this] { setPlaying(!isPlaying()); });
-  connect(addButton(row, "step-forward", tr("Next window or frame (Right)")), &QToolButton::clicked, this,
-          [this] { step(+1); });
+  connect(addButton(row, "step-forward", tr("Next event window or frame (Right)")), &QToolButton::clicked,
+          this, [this] { step(+1); });
   connect(addButton(row, "to-end", tr("To the end (End)")), &QToolButton::clicked, this,
           [this] { select(timeline_->end_s()); });
   speed_box_ = new QComboBox;
@@ -260,7 +260,7 @@ QWidget* DetectionScreen::makeTransport() {
   row->addSpacing(8);
   addMissedButtons(row);
   row->addStretch(1);
-  follow_button_ = addButton(row, "follow", tr("Show the windows during the detection"));
+  follow_button_ = addButton(row, "follow", tr("Show the event windows during the detection"));
   follow_button_->setText(tr("Follow the run"));
   follow_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   follow_button_->setCheckable(true);
@@ -277,7 +277,7 @@ void DetectionScreen::adaptTo(CameraKind kind) {
   kind_ = kind;
   const bool frames = framesInView();
   mode_box_->setVisible(!frames);
-  verdict_title_->setText(frames ? tr("This frame") : tr("This window"));
+  verdict_title_->setText(frames ? tr("This frame") : tr("This event window"));
   view_->setAccessibleName(frames ? tr("Frame") : tr("Events"));
   layOutLayers();
 }

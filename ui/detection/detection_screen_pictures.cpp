@@ -112,7 +112,7 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
                 .arg(static_cast<qulonglong>(label->number))
                 .arg(static_cast<qulonglong>(label->count));
   if (frame.window_events)
-    text += tr("    %L1 events in the window").arg(static_cast<qulonglong>(*frame.window_events));
+    text += tr("    %L1 events in the event window").arg(static_cast<qulonglong>(*frame.window_events));
   else if (!frame.photograph || frame.events > 0)
     text += tr("    %L1 events").arg(static_cast<qulonglong>(frame.events));
   return text;

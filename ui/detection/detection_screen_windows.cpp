@@ -50,7 +50,7 @@ void DetectionScreen::makeWindowList() {
 }
 
 void DetectionScreen::addListButton(QHBoxLayout* row) {
-  list_button_ = addButton(row, "report", tr("List of windows (W)"));
+  list_button_ = addButton(row, "report", tr("List of event windows (W)"));
   list_button_->setText(tr("Windows"));
   list_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   list_button_->setCheckable(true);
@@ -59,9 +59,9 @@ void DetectionScreen::addListButton(QHBoxLayout* row) {
 
 void DetectionScreen::addMissedButtons(QHBoxLayout* row) {
   row->addWidget(new QLabel(tr("Missed")));
-  connect(addButton(row, "missed-before", tr("Previous missed window (Shift+M)")), &QToolButton::clicked,
-          this, [this] { stepToMissed(-1); });
-  connect(addButton(row, "missed-next", tr("Next missed window (M)")), &QToolButton::clicked, this,
+  connect(addButton(row, "missed-before", tr("Previous missed event window (Shift+M)")),
+          &QToolButton::clicked, this, [this] { stepToMissed(-1); });
+  connect(addButton(row, "missed-next", tr("Next missed event window (M)")), &QToolButton::clicked, this,
           [this] { stepToMissed(+1); });
 }
 
@@ -92,8 +92,8 @@ void DetectionScreen::resizeEvent(QResizeEvent* event) {
 void DetectionScreen::listWindows() {
   const CalibrationRun* const run = live_ ? nullptr : runInView();
   list_->setRun(run != nullptr ? run_ : nullptr, camera_,
-                live_ ? tr("The windows will be listed when the detection is complete.")
-                      : tr("Calibrate (F5) to list the windows, each with its picture, outcome "
+                live_ ? tr("The event windows will be listed when the detection is complete.")
+                      : tr("Calibrate (F5) to list the event windows, each with its picture, outcome "
                            "and fit."));
   showRejections();
   showPictures();

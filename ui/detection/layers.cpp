@@ -279,7 +279,7 @@ QPolygonF moved(const QPolygonF& outline, const Eigen::Vector2d& by_ideal_px,
 LayerWords layerWords(Layer layer) {
   switch (layer) {
     case Layer::Flow:
-      return {tr("Flow vectors"), tr("Normal flow of edges: their motion over the window")};
+      return {tr("Flow vectors"), tr("Normal flow of edges: their motion over the event window")};
     case Layer::Clusters:
       return {tr("Clusters"),
               tr("Connected flow: leading arcs (green), trailing arcs (yellow), others (grey)")};

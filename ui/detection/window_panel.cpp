@@ -114,7 +114,7 @@ WindowPanel::WindowPanel(QWidget* parent) : QTextBrowser(parent) {
   setUndoRedoEnabled(false);
   setOpenLinks(false);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  setAccessibleName(tr("Outcome of this window"));
+  setAccessibleName(tr("Outcome of this event window"));
 }
 
 void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<WindowReport>& report,
@@ -134,7 +134,7 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
       html += coloured(theme().faint_text, tr("Computed in %1 ms").arg(1e3 * analysis->took_s, 0, 'f', 0));
   } else {
     html = coloured(theme().faint_text,
-                    tr("The front end's stages for the window at the cursor are shown here."));
+                    tr("The front end's stages for the event window at the cursor are shown here."));
   }
   if (html == html_) return;
   html_ = html;

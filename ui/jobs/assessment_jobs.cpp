@@ -20,7 +20,7 @@ void addStages(RunStart start, const std::string& part, double weight, std::vect
 
 // The lens is fixed by the old result; the second run starts from the detections of the first one.
 std::vector<JobStage> resultCheckStages() {
-  constexpr double kTogether = 0.4;  // of the first run's time
+  constexpr double kTogether = 0.4;  // share of the first run's time
   std::vector<JobStage> stages;
   addStages(RunStart::KnownIntrinsics, {}, 1.0, stages);
   addStages(RunStart::Detections, kTogetherPart, kTogether, stages);

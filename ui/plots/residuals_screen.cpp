@@ -123,22 +123,23 @@ QWidget* ResidualsScreen::makeBar() {
   threshold_->setSingleStep(0.005);
   threshold_->setSuffix(" px");
   threshold_->setToolTip(
-      tr("Windows with a larger RMS of their circles are marked. The line in the chart of windows "
+      tr("Event windows with a larger RMS of their circles are marked. The line in the chart of windows "
          "can also be dragged."));
   auto* const threshold_label = new QLabel(tr("Reject &above"));
   threshold_label->setBuddy(threshold_);
   count_ = new QLabel;
   count_->setForegroundRole(QPalette::PlaceholderText);
   recalibrate_ = new QPushButton(tr("&Reject and recalibrate"));
-  recalibrate_->setToolTip(tr("Calibrates again without the marked windows; detections are not repeated"));
+  recalibrate_->setToolTip(
+      tr("Calibrates again without the marked event windows; detections are not repeated"));
   for (QWidget* widget :
        std::initializer_list<QWidget*>{camera_label_, camera_, threshold_label, threshold_, count_})
     layout->addWidget(widget);
   layout->addStretch(1);
   show_window_ = new QToolButton;
-  show_window_->setText(tr("Show window"));
+  show_window_->setText(tr("Show event window"));
   show_window_->setToolTip(
-      tr("Shows the window at the cursor on Detection; click a point or a bar to choose one"));
+      tr("Shows the event window at the cursor on Detection; click a point or a bar to choose one"));
   show_window_->setEnabled(false);
   layout->addWidget(show_window_);
   layout->addWidget(makeSaveButton(*this, "residuals"));
@@ -177,9 +178,9 @@ void ResidualsScreen::makeScatter() {
 }
 
 void ResidualsScreen::makeWindows() {
-  windows_ = new PlotPanel({.title = tr("Windows"),
+  windows_ = new PlotPanel({.title = tr("Event windows"),
                             .x_label = tr("time (s)"),
-                            .y_label = tr("RMS of a window (px)"),
+                            .y_label = tr("RMS of an event window (px)"),
                             .time = true});
   window_series_.kept = windows_->addSeries(Kind::Bars, {.name = tr("kept"), .colour = PlotColour::Accent});
   window_series_.rejected =

@@ -80,7 +80,8 @@ void TrajectoryTools::addLayers() {
       {tr("Gravity"), tr("Estimated direction of gravity")},
       {tr("Ground"), tr("A level grid below everything")},
       {tr("Board axes"), tr("x, y and z of the board's frame, which is the world frame")},
-      {tr("Events now"), tr("The camera's events at the cursor's time, on the image plane of its frustum")},
+      {tr("Events now"),
+       tr("The camera's events at the cursor's time, on the image plane of its viewing pyramid")},
   }};
   QToolButton* const button = addButton(tr("Layers"), "layers", tr("Visible layers"));
   button->setPopupMode(QToolButton::InstantPopup);

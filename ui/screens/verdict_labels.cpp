@@ -42,11 +42,11 @@ QString titleOf(AssessedThing thing) {
     case AssessedThing::Accelerations:
       return QObject::tr("Accelerations (x, y, z)");
     case AssessedThing::Rotation:
-      return QObject::tr("Expected rotation");
+      return QObject::tr("Expected uncertainty of the rotation");
     case AssessedThing::Translation:
-      return QObject::tr("Expected translation");
+      return QObject::tr("Expected uncertainty of the translation");
     case AssessedThing::TimeOffset:
-      return QObject::tr("Expected time offset");
+      return QObject::tr("Expected uncertainty of the time offset");
     case AssessedThing::Obstacle:
       return QObject::tr("Problem");
   }

@@ -31,7 +31,7 @@ QWidget* makeSummary(const QString& version, QWidget* parent) {
   auto* const text = new QLabel(
       QObject::tr(
           "<p>Calibrates event cameras, frame cameras and IMUs from one recording of a printed board.</p>"
-          "<p>This window is free software under the <a "
+          "<p>The desktop program is free software under the <a "
           "href='https://www.gnu.org/licenses/gpl-3.0.html'>GNU General Public License</a>, version 3 "
           "or later. The calibration itself and the command line are under the BSD 3-Clause License.</p>"
           "<p>With Qt %1, Ceres, OpenCV, Eigen, VTK and QCustomPlot.</p>")
@@ -61,7 +61,7 @@ void showAbout(QWidget* window, const QString& version) {
   QDialog* const dialog = makeReadingDialog(window, "about", QObject::tr("About Evical"));
   auto* const tabs = new QTabWidget(dialog);
   tabs->addTab(makeSummary(version, tabs), QObject::tr("Evical"));
-  tabs->addTab(makeLicence(":/licences/gpl-3.0", tabs), QObject::tr("Licence of the window"));
+  tabs->addTab(makeLicence(":/licences/gpl-3.0", tabs), QObject::tr("Licence of the desktop program"));
   tabs->addTab(makeLicence(":/licences/bsd-3-clause", tabs), QObject::tr("Licence of the calibration"));
   dialog->layout()->addWidget(tabs);
   addCloseButton(dialog);

@@ -239,7 +239,7 @@ void MainWindow::wireJobs() {
             RunRecord record{std::move(run), session, log};
             const bool same_detections = workbench_.calibration.startedFrom() == RunStart::Detections;
             if (same_detections && leavesOutOthers(record, workbench_.document.last()))
-              workbench_.document.addUndoableRun(record, tr("Reject windows"));
+              workbench_.document.addUndoableRun(record, tr("Reject event windows"));
             else
               workbench_.document.addRun(std::move(record));
             showResultSoon();

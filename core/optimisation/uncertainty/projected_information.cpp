@@ -81,7 +81,7 @@ struct Sums {
   std::vector<MeasurementGroup> groups;
   Eigen::VectorXd gradient;
   std::map<std::int64_t, StretchSums> stretches;
-  std::vector<Eigen::VectorXd> pixel_errors;  // by camera; as many as have any
+  std::vector<Eigen::VectorXd> pixel_errors;  // by camera index, up to the last camera with any
   std::map<std::pair<std::size_t, ResidualCluster>, Eigen::VectorXd> clusters;  // by group
   Eigen::Index first_row = 0;                                                   // of the band
   RowMajorMatrix signed_rows;  // J_x^T times random signs: rows of the band from there on, by group

@@ -84,7 +84,7 @@ Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& stat
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
   return fmt::format(
       "accelerations make the {6} {0:.2g} % {1} than specified (spacing {2:.4g} m), or gravity {0:.2g} "
-      "% {3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
+      "% {3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as possible, and "
       "give gravity.latitude_deg",
       100.0 * std::abs(excess.found), excess.found > 0.0 ? "larger" : "smaller", input.board.spacing_m,
       excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()),
@@ -95,15 +95,15 @@ std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
 std::string ratioDoubt(const CalibrationInput& input, std::size_t board, const Weighed& ratio) {
   return fmt::format(
       "the boards {} and {} contradict each other: measured against the first, the second is {:.2g} % {} "
-      "than specified (spacing {:.4g} m, {:.1f} sigmas): measure both over as many spacings as there are",
+      "than specified (spacing {:.4g} m, {:.1f} sigmas): measure both over as many spacings as possible",
       input.boardName(0), input.boardName(board), 100.0 * std::abs(ratio.found),
       ratio.found > 0.0 ? "larger" : "smaller", input.boardAt(board).spacing_m, std::abs(ratio.sigmas()));
 }
 
 std::string stretchDoubt(const std::string& board, const Weighed& stretch) {
   return fmt::format(
-      "the {} is stretched: {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
-      "board.spacing_std allows: measure it in both directions, and mount it flat",
+      "the {} is stretched: it is {:.2g} % {} along its rows than along its columns ({:.1f} sigmas of "
+      "board.spacing_std). Measure it in both directions, and mount it flat",
       board, 100.0 * std::abs(stretch.found), stretch.found > 0.0 ? "longer" : "shorter",
       std::abs(stretch.sigmas()));
 }

@@ -163,9 +163,9 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   if (input.session.board_blinks || !seen.isRare(input.session.options.check->least_board_share))
     return checked;
   CheckRun without = checkWithoutBoard(input, context);
-  without.check.notes.push_back(
-      fmt::format("the board was found in only {} of {} windows, so the check does not use it",
-                  seen.with_board, seen.windows));
+  without.check.notes.push_back(fmt::format(
+      "the board was found in only {} of {} event windows or frames, so the check does not use it",
+      seen.with_board, seen.windows));
   return without;
 }
 

@@ -66,8 +66,8 @@ void checkDirection(const ImuMeans& own, const ImuMeans& reference,
   constexpr double kAgainst = -0.5;
   if (cosines.size() < kFewestUnitWindows || medianOf(std::move(cosines)) > kAgainst) return;
   throw badInput(own.name,
-                 fmt::format("its specific force is opposite to that of {}: one of the two logs has the "
-                             "direction of gravity, or an IMU was mounted upside down",
+                 fmt::format("its specific force is opposite to that of {}: one of the two logs has "
+                             "gravity instead of specific force (unit -g), or an IMU was mounted upside down",
                              reference.name),
                  "Convert the wrong log (" + howTo(HowTo::SetAccelerationUnit, {"-g"}) +
                      " applies to all logs), or calibrate again");

@@ -193,8 +193,8 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
                                         projectionDifference(detection_intrinsics, given).max_px < kSame_px);
   if (!same)
     throw node->error("the detections were made with intrinsics other than the session's",
-                      "Use these in the session, or leave " + howTo(HowTo::UseDetections) +
-                          " out to detect the board again");
+                      "Use the intrinsics of the detections in the session, or omit " +
+                          howTo(HowTo::UseDetections) + " to detect the board again");
   return detection_intrinsics;
 }
 

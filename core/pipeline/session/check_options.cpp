@@ -55,7 +55,7 @@ constexpr std::tuple kCheckFields{
           "Largest relative difference between camera and gyroscope rotation without a board; above it, the "
           "lens is a different one."},
     Field{"least_board_share", &CheckOptions::least_board_share, 0.02, within(0.0, 1.0), "",
-          "Smallest share of windows with the board; below it, the check does not use the board."}};
+          "Smallest share of event windows with the board; below it, the check does not use the board."}};
 constexpr auto kCheckDefaults = defaultsOf<CheckOptions, kCheckFields>();
 
 }  // namespace

@@ -33,7 +33,7 @@ void checkFrom(const ImportRequest& request, const std::vector<ImportSource>& so
     const bool lens = source.kind == ImportKind::Intrinsics;  // eKalibr's, ROS's or Evical's own
     if (request.from != programOf(source.kind) && !(lens && request.from == "ekalibr"))
       throw badInput(source.path.string(), fmt::format("is not a file of {}", request.from),
-                     "Leave out " + howTo(HowTo::Option, {"from"}));
+                     "Omit " + howTo(HowTo::Option, {"from"}));
   }
 }
 

@@ -24,6 +24,7 @@ struct ImportedSession {
   std::vector<std::string> notes;
 };
 
+// Reads the files and returns the session that they describe; writes nothing.
 // Throws CalibrationError (BadInput) for files of another kind, duplicates, or an incomplete session: no
 // recording, no board, no camera.
 ImportedSession importSession(const ImportRequest& request);
@@ -33,7 +34,7 @@ struct ImportedFiles {
   std::vector<std::string> notes;
 };
 
-// Files that `evical import` writes: the session as `output`; or, if all files have only camera intrinsics,
+// Contents of the files that `evical import` writes: the session as `output`; or, if all files have only camera intrinsics,
 // Evical's intrinsics, one file per camera ("left.yaml"; for several "left-cam0.yaml", ...).
 ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output);
 

@@ -60,6 +60,11 @@ std::string optionMarkdown() {
   return "# Options\n\nSet them in a session file under `options`, or with `--set group.option=value`. The "
          "middle part of a name with three parts can be omitted: `optimisation.threads` is "
          "`optimisation.solver.threads`. This page is the output of `evical options --markdown`.\n\n"
+         "Most users change only these: the needed accuracy (`optimisation.verdict.needed_rotation_deg`, "
+         "`optimisation.verdict.needed_translation_mm`, `optimisation.verdict.needed_time_offset_ms`), "
+         "`optimisation.model.camera_intrinsics`, `frames.rate_hz` and "
+         "`initialisation.time_offset_search_s`. "
+         "The accuracy of the board is not an option: it is `measured` or `spacing_std` of the board.\n\n"
          "## Common options\n" +
          markdownTable(Level::Public) + "\n## Expert options\n" + markdownTable(Level::Expert);
 }

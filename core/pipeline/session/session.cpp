@@ -81,7 +81,8 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
         fmt::format("Give the prior only for '{}'; only time offsets are separate", camera.same_sensor_as));
   if (session.imus.empty() && session.reference == camera.name)
     throw badInput(place + ": reference",
-                   fmt::format("'{}' has its pose from '{}'", camera.name, camera.same_sensor_as),
+                   fmt::format("'{}' shares the pose of '{}' (same_sensor_as), so it cannot be the reference",
+                               camera.name, camera.same_sensor_as),
                    fmt::format("Make '{}' the reference", camera.same_sensor_as));
 }
 

@@ -233,12 +233,13 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
     own.emplace_back("intrinsics: camera.yaml  # if absent: calibrated first, from the same recording");
     for (std::string& line : framesBeside(camera, recordings)) own.push_back(std::move(line));
     if (!camera.recording.empty())
-      own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
+      own.emplace_back("clock_offset_s: 0.0  # seconds, added to the times of this file");
   }
   for (const SessionImu& imu : session.imus) {
     std::vector<std::string>& own = remarks.sensors[imu.name];
     own.emplace_back("These noise densities are typical values: take those of your IMU from its data sheet.");
-    if (!imu.recording.empty()) own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
+    if (!imu.recording.empty())
+      own.emplace_back("clock_offset_s: 0.0  # seconds, added to the times of this file");
   }
   return remarks;
 }

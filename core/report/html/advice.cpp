@@ -55,11 +55,10 @@ void adviseDetection(const std::string& name, const CameraMeasures& camera, std:
     const WindowOutcome worst = mostFrequentLoss(camera);
     const int lost = camera.outcomes[static_cast<std::size_t>(worst)];
     if (lost > kWorthNaming * camera.windows)
-      all.push_back(
-          {remedy(worst),
-           fmt::format(
-               "{}: the board was found in {} of the windows. Most frequent reason for the others: {} ({}).",
-               name, percent(camera.detectionRate()), windowOutcomeName(worst), lost)});
+      all.push_back({remedy(worst),
+                     fmt::format("{}: the board was found in {} of the event windows or frames. Most "
+                                 "frequent reason for the others: {} ({}).",
+                                 name, percent(camera.detectionRate()), windowOutcomeName(worst), lost)});
   }
   if (camera.views > 0 && camera.partial > kManyPartial * camera.views)
     all.push_back(

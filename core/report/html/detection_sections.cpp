@@ -48,7 +48,7 @@ PlotTable circlesTable(const BoardObservations& camera, std::size_t index) {
 std::string timelineSvg(const PlotTable& runs, const PlotTable& counts, const CameraMeasures& camera,
                         int on_board) {
   PlotFrame frame;
-  frame.title = "windows over time by outcome";
+  frame.title = "event windows over time by outcome";
   frame.x_label = "time [s]";
   frame.y_label = "circles in the grid";
   frame.x = {runs.values[1].front(), std::max(runs.values[2].back(), runs.values[1].front() + 1e-3)};
@@ -80,7 +80,7 @@ std::string outcomeTable(const CameraMeasures& camera) {
       "circles lost in the joint fit of all circles: blur or clutter",
       "the board moved too far during the exposure of the frame",
       "a damaged image",
-      "the board was found, but the window was rejected by hand because of its residuals"};
+      "the board was found, but the event window was rejected by hand because of its residuals"};
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < kWindowOutcomeCount; ++k) {
     if (camera.outcomes[k] == 0) continue;
@@ -225,9 +225,10 @@ void writeDetections(const ReportData& data, const Measures& measures, ReportPag
     const PlotTable runs = timelineTable(data.cameras[i], i), counts = circlesTable(data.cameras[i], i);
     page.figure(
         timelineSvg(runs, counts, camera, points),
-        fmt::format("The bar shows each window's outcome, the dots the number of found circles (the board "
-                    "has {}). Stretches without the board do not contribute to the calibration.",
-                    points),
+        fmt::format(
+            "The bar shows each event window's outcome, the dots the number of found circles (the board "
+            "has {}). Stretches without the board do not contribute to the calibration.",
+            points),
         &runs);
     page.text(outcomeTable(camera));
     page.keep(runs);

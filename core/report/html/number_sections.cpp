@@ -97,7 +97,7 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
                fmt::format("RMS of {} circles", fit.circles_used));
   if (i < measures.cameras.size())
     text += tile(name + ": board found", number(100.0 * measures.cameras[i].detectionRate(), 0) + " %",
-                 fmt::format("of {} windows", measures.cameras[i].windows));
+                 fmt::format("of {} event windows or frames", measures.cameras[i].windows));
   return text;
 }
 
@@ -209,7 +209,7 @@ std::string repairText(const std::optional<Repair>& repair) {
   if (!repair) return {};
   return paragraph("repair", "Possible fix: calibrate again with " +
                                  element("code", "", escaped("--set " + shellWord(repair->text()))) +
-                                 ", or with the button next to the verdict in the window.");
+                                 ", or with the button next to the verdict in the desktop program.");
 }
 
 }  // namespace
@@ -231,7 +231,7 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
     for (std::size_t i = 0; i < measures.cameras.size(); ++i)
       tiles += tile(escaped(cameraName(data, i)) + ": board found",
                     number(100.0 * measures.cameras[i].detectionRate(), 0) + " %",
-                    fmt::format("of {} windows", measures.cameras[i].windows));
+                    fmt::format("of {} event windows or frames", measures.cameras[i].windows));
   if (measures.duration_s > 0.0)
     tiles += tile("recording", number(measures.duration_s, 1) + " s", escaped(data.recording));
   if (!tiles.empty()) page.text("<div class=\"tiles\">\n" + tiles + "</div>\n");

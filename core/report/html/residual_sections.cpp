@@ -110,7 +110,7 @@ void writePerWindow(const std::vector<CircleResidual>& residuals, std::size_t in
           {sum.time_s / sum.count, std::sqrt(sum.squares / sum.count), static_cast<double>(sum.count)});
   }
   PlotFrame frame;
-  frame.title = "reprojection RMS of each window";
+  frame.title = "reprojection RMS of each event window";
   frame.x_label = "time [s]";
   frame.y_label = "RMS [px]";
   frame.x = rangeOf(windows.values[0], 0.01);
@@ -118,10 +118,11 @@ void writePerWindow(const std::vector<CircleResidual>& residuals, std::size_t in
   frame.height = 190.0;
   SvgPlot plot(frame);
   plot.points(windows.values[0], windows.values[1], "c2", 2.8);
-  page.figure(plot.svg(),
-              "RMS of each window. Spikes: misidentified boards, or shocks to the rig. Slow drifts: motion "
-              "that the trajectory's spline cannot follow.",
-              &windows);
+  page.figure(
+      plot.svg(),
+      "RMS of each event window. Spikes: misidentified boards, or shocks to the rig. Slow drifts: motion "
+      "that the trajectory's spline cannot follow.",
+      &windows);
   page.keep(windows);
 }
 
@@ -245,11 +246,12 @@ void writeReprojection(const ReportData& data, const Measures& measures, ReportP
     const std::vector<CircleResidual> residuals = usedResiduals(data, i);
     if (residuals.empty()) continue;
     page.heading("Camera " + cameraName(data, i));
-    page.text(
-        paragraph("", fmt::format("{} px RMS over {} circles of {} windows; {} circles rejected as outliers. "
-                                  "The residuals are {} times those expected by the front end.",
-                                  significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
-                                  fit.circles_rejected, significant(fit.normalised_rms, 2))));
+    page.text(paragraph(
+        "", fmt::format(
+                "{} px RMS over {} circles of {} event windows or frames; {} circles rejected as outliers. "
+                "The residuals are {} times those expected by the front end.",
+                significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
+                fit.circles_rejected, significant(fit.normalised_rms, 2))));
     page.beginRow();
     writeScatter(residuals, i, fit.reprojection_rms_px, page);
     if (i < measures.cameras.size()) writeBias(measures.cameras[i], i, page);

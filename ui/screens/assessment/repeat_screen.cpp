@@ -54,8 +54,8 @@ RepeatScreen::RepeatScreen(QWidget* parent)
           tr("Sessions or recordings of the same rig with the same board. For recordings, sensors and board\n"
              "are those of the open session, else of the first one in the list"),
           this)),
-      add_open_(repeatButton("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"),
-                             this)),
+      add_open_(repeatButton("add_open", "add", tr("Add the open one"),
+                             tr("Add what is open in this program"), this)),
       folder_(new PathRow(
           "repeat_folder", tr("&Results folder"),
           tr("Folder for the results of each recording and of all together, a report, and tables"), grid(),

@@ -16,15 +16,16 @@ ResultCheckScreen::ResultCheckScreen(QWidget* parent)
           {"check_result", "check", tr("Is an old calibration still good?"), tr("Check"),
            tr("Calibrate the new recording, and test each quantity's change"),
            tr("Move the rig in front of the board for about ten seconds, as for a calibration, and "
-              "choose that recording above. It is calibrated again and compared with the old "
-              "result. The verdict on each quantity is \"unchanged\", \"changed\", or \"cannot tell\" (the "
+              "choose that recording above. Evical calibrates the new recording and compares it with the "
+              "old result. The verdict on each quantity is \"unchanged\", \"changed\", or \"cannot tell\" "
+              "(the "
               "recording is too weak).")},
           parent),
       result_(new OldResultRow("old_result", grid(), this)),
       recording_(new PathRow("new_recording", tr("&New recording"),
-                             tr("About ten seconds in front of the same board, or a session of such a "
-                                "recording. For a recording,\n"
-                                "board and sensors are those stored with the old result."),
+                             tr("A recording of about ten seconds in front of the same board, or a session "
+                                "for it.\n"
+                                "Without a session, board and sensors of the old result are used."),
                              grid(), this)),
       table_(new FindingTable(this)) {
   constexpr int kNotes_px = 110;

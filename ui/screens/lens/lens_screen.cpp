@@ -121,7 +121,7 @@ QPushButton* LensScreen::makeSave() {
   auto* const save = new QPushButton(icon("export"), tr("Save as..."), this);
   save->setObjectName("save_lens");
   save->setAccessibleName(tr("Save the lens as"));
-  save->setToolTip(tr("Save one file of the lens, all of them, or files for another program (Ctrl+E: all)"));
+  save->setToolTip(tr("Save the lens as one file, as all files, or for another program (Ctrl+E: all)"));
   auto* const menu = new QMenu(save);
   for (std::size_t k = 0; k < kLensFiles.size(); ++k) {
     const QString title = QCoreApplication::translate("LensFile", kLensFiles[k].title);

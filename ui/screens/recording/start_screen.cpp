@@ -117,7 +117,7 @@ QWidget* StartScreen::makeSteps() {
       1);
   layout->addWidget(
       stepCard(new StartPicture(StartPicture::Shows::Events, steps), tr("3. Open the recording"),
-               tr("Then press Calibrate. You can also drop a file anywhere in this window."), {recording}),
+               tr("Then press Calibrate. You can also drop a file anywhere on this program."), {recording}),
       1);
   connect(recording, &QPushButton::clicked, this, &StartScreen::openRecordingRequested);
   connect(print_board, &QPushButton::clicked, this, &StartScreen::printBoardRequested);

@@ -48,7 +48,7 @@ QLineEdit* timeField(const QString& help, QWidget* parent) {
 
 TimeRangeForm::TimeRangeForm(QWidget* parent)
     : QWidget(parent),
-      begin_(timeField(tr("Begin in seconds since the recording's start; empty: from the start"), this)),
+      begin_(timeField(tr("Beginning in seconds since the recording's start; empty: from the start"), this)),
       end_(timeField(tr("End in seconds since the recording's start; empty: to its end"), this)),
       all_(new QToolButton(this)),
       words_(new QLabel(this)) {
@@ -105,7 +105,7 @@ void TimeRangeForm::take() {
   const double end_s = to_the_end ? *duration_s_ : end.time_s;
   if (duration_s_ && begin.time_s >= *duration_s_)
     return say(tr("The recording ends at %1 s.").arg(*duration_s_, 0, 'f', 2));
-  if (end_s <= begin.time_s) return say(tr("The end must be after the begin."));
+  if (end_s <= begin.time_s) return say(tr("The end must be after the beginning."));
   const std::array<double, 2> typed = {begin.time_s, end_s};
   if (range_s_ != typed) emit edited(typed);
   showAdvice();

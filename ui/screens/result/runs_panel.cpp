@@ -48,7 +48,7 @@ QString differencesText(const RunSummary* before, const RunSummary& run) {
   if (before == nullptr) return QObject::tr("the first run");
   QStringList texts;
   for (const std::string& text : differingFrom(*before, run)) texts << QString::fromStdString(text);
-  if (run.rejected_windows != before->rejected_windows) texts.prepend(QObject::tr("windows rejected"));
+  if (run.rejected_windows != before->rejected_windows) texts.prepend(QObject::tr("event windows rejected"));
   return texts.isEmpty() ? QObject::tr("no option") : texts.join(", ");
 }
 
