@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks texts against docs/style.md: check_texts.py [SOURCE]
 
-Fails on long lines in Markdown, a long README, long help of options, and phrases of the style's table in Markdown, in comments
-and in string literals of C++ sources. A phrase that is right in its place is allowed by a comment on its line: style: PHRASE,
-as <!-- style: held --> or // style: held. What still has phrases has a maximum below: lower it when texts improve."""
+Fails on long lines in Markdown, a long README, long help of options, and phrases of the style's table in Markdown (with the page
+of the API), in notebooks, in our part of LICENSE, in comments and in string literals of C++ sources. A phrase that is right in its
+place is allowed by a comment on its line: style: PHRASE, as <!-- style: held --> or // style: held. What still has phrases has a maximum below: lower it when texts improve."""
 import collections
+import json
 import os
 import re
 import sys
@@ -72,6 +73,17 @@ class Check:
                 self.fault(path, number, f"{len(line)} characters in a line, at most {LONGEST_LINE}")
             self.prose(path, number, LINK_TARGET.sub("]", LABEL.sub("", CODE_SPAN.sub("``", line))), allowed)
 
+    def notebook(self, path):
+        for number, cell in enumerate(json.loads(read(f"{self.root}/{path}"))["cells"], 1):
+            for line in "".join(cell["source"]).split("\n"):
+                text = CODE_SPAN.sub("``", line) if cell["cell_type"] == "markdown" else line.partition("#")[2]
+                self.prose(path, number, LINK_TARGET.sub("]", text), [])
+
+    def licence(self):
+        if os.path.exists(f"{self.root}/LICENSE"):
+            for number, line in enumerate(read(f"{self.root}/LICENSE").partition("BSD 3-Clause License\n")[0].split("\n"), 1):
+                self.prose("LICENSE", number, line, [])
+
     def source(self, path):
         self.sources += 1
         text = read(f"{self.root}/{path}")
@@ -99,6 +111,10 @@ class Check:
         documents = sorted(path for path in files(self.root, ("",), ".md") if path not in NOT_WRITTEN_HERE)
         for path in documents:
             self.markdown(path)
+        notebooks = sorted(files(self.root, ("",), ".ipynb"))
+        for path in notebooks:
+            self.notebook(path)
+        self.licence()
         for path in sorted(path for end in (".h", ".cpp") for path in files(self.root, CODE, end)):
             self.source(path)
         self.readme()
@@ -110,7 +126,7 @@ class Check:
                 self.faults[key] = found + [f"{key}: {len(found)} faults, at most {most} in packaging/check_texts.py"]
         for fault in sum(self.faults.values(), []):
             print(fault)
-        print(f"Texts: {len(documents)} documents, {self.sources} sources; allowed for now: {', '.join(counts) or 'nothing'}.")
+        print(f"Texts: {len(documents)} documents, {len(notebooks)} notebooks, {self.sources} sources; allowed for now: {', '.join(counts) or 'nothing'}.")
         return 1 if self.faults else 0
 
 

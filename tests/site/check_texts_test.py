@@ -16,6 +16,8 @@ GOOD = {
     "docs/allowed.md": "A value is held. <!-- style: held -->\nA hand-held camera.\n",
     "core/a/a.h": 'int beside;  // next to it\nconst char* b = "beside";  // a name\nint d;  // held by a prior // style: held\n',
     "core/a/a_options.cpp": ROW % '"Help of a row."',
+    "docs/a.ipynb": '{"cells": [{"cell_type": "markdown", "source": ["`beside` in code"]}, {"cell_type": "code", "source": ["beside = 1"]}]}',
+    "LICENSE": "Ours.\n\nBSD 3-Clause License\n\nBeside the point: not ours.\n",
 }
 BAD = {
     "a long line": ("docs/a.md", "word " * 30, "docs/a.md:1: 150 characters in a line"),
@@ -27,6 +29,11 @@ BAD = {
     "a README of many words": ("README.md", ("word " * 20 + "\n") * 50, "1000 words"),
     "a phrase in a comment": ("core/a/b.cpp", "int a;\nint b;  // beside it", 'core/a/b.cpp:2: "beside"'),
     "a phrase in a string": ("ui/b.cpp", 'const char* a = "it \\"is said\\" twice";', 'ui/b.cpp:1: "is said"'),
+    "a phrase in a notebook": ("docs/a.ipynb", '{"cells": [{"cell_type": "markdown", "source": ["One.\\n", "It lies here."]}]}',
+                               'docs/a.ipynb:1: "lies"'),
+    "a phrase in a notebook's comment": ("docs/a.ipynb", '{"cells": [{"cell_type": "code", "source": ["a = 1  # beside it"]}]}', '"beside"'),
+    "a phrase in LICENSE": ("LICENSE", "What is licensed how\n\nBSD 3-Clause License\n", 'LICENSE:1: "is licensed how"'),
+    "a phrase in the page of the API": ("docs/api/main_page.md", "How the folders hang together", '"hang together"'),
     "a long help": ("core/a/b_options.cpp", ROW % ('"%s"\n  "%s"' % ("word " * 20, "word " * 20)), "help of 200 characters"),
 }
 scratch, wrong = sys.argv[2], []
