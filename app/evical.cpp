@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
   holdStandardStreams();
   // Exceeding a file size limit is an error of write(), like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  // If the parent ignores it, this process would inherit that and miss the exit codes of jobs.
+  // A parent that ignores SIGCHLD would pass this on, and the exit codes of jobs would be lost.
   std::signal(SIGCHLD, SIG_DFL);
   const int exit_code = runOrFail(argc, argv);
   const std::string lost = lostOutput();

@@ -561,7 +561,7 @@ void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Vector3d& value);
 void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Matrix3d& value);
 void setQuantityNumbers(const Eigen::VectorXd& numbers, std::optional<std::array<double, 9>>& sigmas);
 
-// a - b, rotations about the axes of their shape.
+// a - b; of rotations a rotation vector about the axes that their shape states.
 template <class Value>
 Eigen::VectorXd quantityDifference(const QuantityInfo&, const Value& a, const Value& b) {
   return quantityNumbers(a) - quantityNumbers(b);

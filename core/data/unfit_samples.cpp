@@ -105,7 +105,7 @@ class SpikeSearch {
     return error > kSpike_medians * medianOf(std::vector<double>(first, last));
   }
 
-  // The largest of outliers within two samples of each other: it may cause the others.
+  // Of outliers within two samples of each other the largest, which may have caused the others.
   std::vector<std::ptrdiff_t> worstOfEachPlace() const {
     std::vector<std::ptrdiff_t> worst;
     std::ptrdiff_t last = -kNeighbours;

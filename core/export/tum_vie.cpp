@@ -19,7 +19,7 @@ constexpr KnownModels kTumVieModels{kTumVieProgram, false, false,
 std::vector<RigCamera> inTheirOrder(const DataSetCameras& placed, ExportNotes& notes) {
   if (!placed.right_event)
     throw badInput("result", fmt::format("has one event camera, and {} requires two", kTumVieProgram),
-                   "Use basalt, whose layout is the same");
+                   "Use the target basalt, whose layout is the same");
   if (!placed.left_frame || !placed.right_frame)
     notes.push_back(fmt::format(
         "{} expects four cameras, frame cameras first: missing ones are replaced by the event camera of "
@@ -48,7 +48,8 @@ ExportedFiles exportTumVie(const NamedResult& result) {
   std::vector<std::string> lines{
       "Cameras: 0 and 1 are frame cameras, left and right, 2 and 3 event cameras.",
       "mocap-imu-calibrationA.json is not written: Evical does not use markers of a motion capture system.",
-      "calib_accel_bias and calib_gyro_bias are for raw samples; those of TUM-VIE's imu_data.txt are "
+      "calib_accel_bias and calib_gyro_bias are for raw samples. The samples in TUM-VIE's imu_data.txt are "
+      "already "
       "corrected."};
   const std::vector<std::string> meanings = basaltMeanings(rig.imus.front());
   lines.insert(lines.end(), meanings.begin(), meanings.end());

@@ -19,9 +19,9 @@ CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
 // correct, but no optimiser step leads from one to the other: this function does.
 CameraIntrinsics otherSide(const CameraIntrinsics& sphere);
 
-// At least one: the front end's lens; if that was a guess, one without distortion coefficients, and OpenCV's
-// calibration that treats centres as points. Except for radial-tangential lenses, the two closest of these and
-// of a few lenses with fields of view from 100 to 200 degrees.
+// Starts of the optimisation, at least one: the front end's lens and, if that is missing or a guess, OpenCV's
+// calibration of centres as points. For all models except radial-tangential, lenses with fields of view from 100 to
+// 200 degrees are added, and the two with the smallest errors remain.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& detection_intrinsics);

@@ -49,7 +49,7 @@ double typicalVariance(const std::vector<OwnFit>& fits) {
     freedom += fit.freedom;
   }
   if (variances.empty()) return 0.0;
-  // The median of chi squared over its freedom (E. B. Wilson, M. M. Hilferty 1931).
+  // Median of chi squared divided by its degrees of freedom (E. B. Wilson, M. M. Hilferty 1931).
   const double mean_freedom = freedom / static_cast<double>(variances.size());
   return medianOf(std::move(variances)) / std::pow(1.0 - 2.0 / (9.0 * mean_freedom), 3);
 }

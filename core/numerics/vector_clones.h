@@ -2,7 +2,7 @@
 // years, and selected at program start. Sums of the two versions differ in the last digit.
 #pragma once
 
-// Sanitizers are not ready at the time of that selection.
+// Not with sanitizers: the selection runs before they are initialised.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define EVICAL_VECTOR_CLONES __attribute__((target_clones("arch=haswell", "default")))

@@ -99,7 +99,7 @@ struct Accelerometer {
   double timeOf_s(const InertialMeasurement& sample) const {
     return sample.time_s + time_offset_s + sample.by_drift_s * time_offset_drift_ppm - delay_s;
   }
-  // Rates act through the lever arm and on the derivative of the force.
+  // Angular rates change the force through the lever arm, and its derivative by time through the rotation.
   RotationOrder order(bool with_rate) const {
     return further     ? RotationOrder::Acceleration
            : with_rate ? RotationOrder::Velocity

@@ -61,7 +61,7 @@ class PartialSums {
 
   NormalEquations& equations_;
   Eigen::Index end_row_;
-  std::vector<Eigen::VectorXd> beside_;  // rows from end_row_ on: band, border, gradient
+  std::vector<Eigen::VectorXd> beside_;  // sums for the rows from end_row_ on: band, border, gradient
   BorderedBand::RowMajorMatrix corner_;  // lower triangle
   Eigen::VectorXd border_gradient_;
   double squares_ = 0.0;

@@ -21,7 +21,7 @@ constexpr std::tuple kVerdictFields{
           "Tolerated delay between brightening and darkening edges; beyond it pixels are called slow, and a "
           "quarter of the excess is added to time offset sigmas."},
     Field{"missed_motion_us", &VerdictOptions::missed_motion_us, 5.0, within(0.0, 1e4), "us",
-          "Error of an accelerometer's delay by motion between knots; part of its sigma."},
+          "Error of an accelerometer's delay caused by motion between knots; included in its sigma."},
     Field{"contradiction_sigmas", &VerdictOptions::contradiction_sigmas, 4.0, within(1.0, 1000.0), "sigma",
           "A warning is issued if a given or prior value differs from the data by more than this."},
     Field{"doubtful_contradiction_sigmas", &VerdictOptions::doubtful_contradiction_sigmas, 8.0,
@@ -57,10 +57,11 @@ constexpr std::tuple kVerdictFields{
           "The result is doubtful if the board's size or gravity differs from its given value by more than "
           "this.",
           Level::Expert},
-    Field{"largest_scale_share", &VerdictOptions::largest_scale_share, 0.8, within(0.0, 1.0), "",
-          "The board's size is tested if its sigma is at most this share of the prior's."},
+    Field{
+        "largest_scale_share", &VerdictOptions::largest_scale_share, 0.8, within(0.0, 1.0), "",
+        "The board's size is tested only if its sigma, divided by the sigma of its prior, is at most this."},
     Field{"moved_lens_deg", &VerdictOptions::moved_lens_deg, 0.3, within(0.0, 180.0), "deg",
-          "Smallest rotation by a moved principal point that is noted."},
+          "Smallest camera rotation caused by a moved principal point that a note reports."},
     Field{"tag_corner_px", &VerdictOptions::tag_corner_px, 0.02, within(0.0, 100.0), "px",
           "Smallest mean displacement of tag corners that is corrected."},
     Field{"tag_corner_sigmas", &VerdictOptions::tag_corner_sigmas, 5.0, within(1.0, 1000.0), "sigma",
@@ -89,7 +90,8 @@ constexpr std::tuple kVerdictFields{
           "The calibration fails if a larger share of circles than this is rejected as outliers.",
           Level::Expert},
     Field{"saturated_share", &VerdictOptions::saturated_share, 0.01, within(0.0, 1.0), "",
-          "Saturation is the first reason of a doubtful result if a larger share of an IMU's samples is at a "
+          "Saturation is named first as reason of a doubtful result if a larger share of an IMU's samples is "
+          "at a "
           "limit.",
           Level::Expert, Applies::WithImu},
     Field{"doubtful_halves_sigmas", &VerdictOptions::doubtful_halves_sigmas, 3.0, within(0.5, 1000.0),

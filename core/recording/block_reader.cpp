@@ -145,7 +145,7 @@ void BlockReader::finish() {
   report(FaultKind::Outside, found.outside, "events are outside of the sensor and are left out");
   report(FaultKind::Untimed, found.untimed, "events have no time or place yet and are left out");
   report(FaultKind::Corrupt, found.unknown, "records have an unknown kind and are left out");
-  report(FaultKind::TimeWrap, found.wraps, "wraps of the time counter; times continue");
+  report(FaultKind::TimeWrap, found.wraps, "overflows of the time counter were corrected");
   report(FaultKind::ImuLeftOut, found.imu, "IMU records have an unknown scale and are left out");
   report(FaultKind::ExposureLeftOut, found.exposure,
          "grey-level events belong to incomplete frames and are left out");

@@ -17,7 +17,7 @@ struct StampTolerance {
 // Events hardly ever pause for longer; longer pauses are checked, at little cost. Packets of IMU samples may.
 inline constexpr StampTolerance kEventStamps = {100'000'000, 1'000'000'000, 16};
 inline constexpr StampTolerance kSampleStamps = {1'000'000'000, 1'000'000'000, 3};
-// Stamps within one frame agree, and do not confirm one another.
+// All points of a frame have the same stamp, so they do not confirm each other: more of them are needed.
 inline constexpr StampTolerance kPointStamps = {1'000'000'000, 1'000'000'000, 1000};
 
 // Items of one sensor in the order of recording. Items after a jump wait until enough following ones agree

@@ -168,7 +168,7 @@ void PixelArray::begin(double begin_s, double end_s,
   for (int k = 0; k <= steps; ++k) instants_.push_back(instantAt(begin_s + (end_s - begin_s) * k / steps));
 }
 
-// In steps as long as a screen takes to switch.
+// Simulates a row in steps that are as long as a screen takes to switch.
 void PixelArray::runFlashingRow(int tile_row, std::vector<Event>& events) {
   constexpr double kStep_s = 7e-4;
   const double length_s = end_s_ - begin_s_;

@@ -64,7 +64,7 @@ class RecordingCheckJob : public QObject {
   std::shared_ptr<CheckedRecording> found_;
   Session found_for_;
   std::shared_ptr<const CheckedRecording> checked_,
-      detected_;  // the second: the last one with detections
+      detected_;  // the latest check, and the latest one with detections
   Session detected_for_;
 };
 

@@ -167,7 +167,7 @@ QWidget* ExportDialog::makeSelectionRow() {
       Selection::All);
   add("select_odometry", tr("For &VIO"),
       tr("Files for programs that estimate motion from cameras and an IMU"), Selection::Odometry);
-  add("select_none", tr("&None"), tr("Only what is always written"), Selection::None);
+  add("select_none", tr("&None"), tr("Only the files that are always written"), Selection::None);
   layout->addStretch();
   return row;
 }

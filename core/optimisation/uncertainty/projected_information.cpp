@@ -109,7 +109,8 @@ void Sums::add(Sums&& other) {
     for (std::size_t g = 0; g < groups.size(); ++g) ours.scores[g] += theirs.scores[g];
   }
   clusters.merge(other.clusters);
-  for (const auto& [cluster, theirs] : other.clusters) clusters.at(cluster) += theirs;  // those of both
+  for (const auto& [cluster, theirs] : other.clusters)
+    clusters.at(cluster) += theirs;  // clusters that both have
   for (std::size_t i = 0; i < other.pixel_errors.size(); ++i) addTo(pixel_errors, i, other.pixel_errors[i]);
   signed_rows.middleRows(other.first_row - first_row, other.signed_rows.rows()) += other.signed_rows;
 }

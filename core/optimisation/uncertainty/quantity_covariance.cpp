@@ -60,8 +60,8 @@ constexpr auto kBlock = static_cast<std::ptrdiff_t>(kScoreLags) + 1;  // stretch
 struct BlockErrors {
   Eigen::MatrixXd information;
   Eigen::MatrixXd white_left;  // what scoreScatter would be of errors that are white
-  // Covariance of the estimate, by how it would step without a block (jackknife): what is left in a block once the estimate
-  // has followed it shows only a part of its errors, the less the more the block weighs.
+  // Covariance of the estimate from its changes if one block is omitted (jackknife). Residuals of a block that was used show
+  // only a part of its errors, because the estimate has followed it: the larger its weight, the smaller this part.
   Eigen::MatrixXd whole;
 };
 

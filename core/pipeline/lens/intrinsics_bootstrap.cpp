@@ -148,7 +148,7 @@ class Pilot {
     context_.throwIfStopped();
     const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
     FrontEndOptions options = *session_.options.front_end;
-    options.detection.search_interval_s = options_.first_look_length_s;  // once
+    options.detection.search_interval_s = options_.first_look_length_s;  // one search per slice
     BoardTracker tracker(session_.board, resolution_px_, camera, options, recording_.start_ns());
     tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched * options_.first_look_length_s),
                       slice_begin_ns_ + length_ns_);

@@ -183,7 +183,7 @@ class TrajectoryCheck {
     if (of_inverse > kExplained)
       throw badInput(place(), "its poses are imu_from_world", "Give world_from_imu: the inverse of each");
     throw badInput(place(), fmt::format("its rotation does not match that of {}", name()),
-                   "Give the trajectory of this log, on its clock");
+                   "Give the trajectory of this log, with times on its clock");
   }
 
   const MaintainInput& input_;

@@ -94,7 +94,7 @@ std::string detectionsYaml(const Session& session, const DetectionResult& pass,
   return text + faultsYaml(session, pass);
 }
 
-// Given lens and lens used for the detection: that of the camera's sensor.
+// Lens that the session gives and lens of the detection. Cameras of one sensor share both.
 CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_t k) {
   const SessionCamera& sensor = session.sensor(k);
   CameraLens lens = givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty);

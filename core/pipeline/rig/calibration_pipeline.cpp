@@ -399,7 +399,8 @@ class Calibration {
     result.freed = freed_;
     noteCornersOfTags();
     for (const QualityWarning& freed : freed_)
-      result.notes.push_back(fmt::format("{}: therefore {} was set", freed.text, freed.repair->text()));
+      result.notes.push_back(
+          fmt::format("{}: therefore, the option {} was set", freed.text, freed.repair->text()));
     tellRejected();
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());

@@ -72,7 +72,7 @@ NumpyReader::NumpyReader(const std::filesystem::path& path) : path_(path) {
   addArrays(found.arrays);
   if (!found.unread.empty())
     addFault("", FaultKind::Unreadable,
-             fmt::format("Not read, in addition to the events: {}.", list(found.unread)));
+             fmt::format("The file also has data that are not read: {}.", list(found.unread)));
   for (Source& source : sources_) source.next_file = first_file;
 }
 

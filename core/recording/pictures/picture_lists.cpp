@@ -120,7 +120,7 @@ void numberPictures(PictureList& list) {
     list.pictures[i].time_ns = static_cast<std::int64_t>(i) * 1'000'000'000;
   addFault(list, FaultKind::Guess,
            "The pictures have no times, and are numbered 1 s apart: they determine intrinsics only. For "
-           "more, name them by their ns (of 12 digits or more), or give a data.csv as EuRoC's.");
+           "more, name the files by their times in ns (12 digits or more), or add a data.csv as in EuRoC.");
 }
 
 // Names that other programs than Kalibr use.

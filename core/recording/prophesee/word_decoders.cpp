@@ -144,7 +144,7 @@ bool looksExchanged(std::string_view data) {
   };
   for (std::size_t i = 0; i < data.size() / sizeof(std::uint64_t); ++i) {
     const auto word = packedWordAt<std::uint64_t>(data, i);
-    // Masks of single events are often 0 in the kind of a plain word: times decide.
+    // Words of events fit both orders if their mask is small, so only words of times are counted.
     plain += isKnown(word) && word >> 60 == kTimeHigh;
     exchanged += isKnown(std::rotl(word, 32)) && std::rotl(word, 32) >> 60 == kTimeHigh;
   }

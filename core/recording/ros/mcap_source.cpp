@@ -252,8 +252,7 @@ bool McapSource::nextRecord(SourceMessage& message) {
     if (position_ < file_.size()) {
       sink_(FaultKind::Truncated, fmt::format("The file ends within a record, at byte {}.", file_.size()));
     } else if (closed_) {
-      sink_(FaultKind::Corrupt,
-            "Records are damaged: they do not reach the file's end. Some may be left out.");
+      sink_(FaultKind::Corrupt, "Records are damaged: they end before the file does. Some may be missing.");
     }
     return false;
   }
@@ -377,7 +376,7 @@ std::uint64_t McapSource::scanForChunk(std::uint64_t from) {
   for (std::uint64_t begin = from + kName; begin < file_.size(); begin += kBlock_bytes) {
     std::string_view bytes;
     if (!file_.read(begin, std::min(kBlock_bytes + kLongestName_bytes, file_.size() - begin), bytes)) break;
-    block = bytes;  // checking records reads others
+    block = bytes;  // a copy: checking records replaces the bytes
     std::uint64_t first = file_.size();
     for (const std::string_view name : kNames) {
       for (std::size_t hit = block.find(name); hit != std::string::npos; hit = block.find(name, hit + 1)) {

@@ -334,9 +334,10 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
       offset->drift_ppm ? fmt::format(", drifting by {:.1f} ppm", *offset->drift_ppm) : "";
   addFault(
       info.name, FaultKind::HostClock,
-      fmt::format("Times are the sensor's; those of the host are later by {:.6f} s{}. With an IMU on the "
-                  "host's clock set the camera's clock_offset_s: {:.6f}.",
-                  offset->offset_s, drift, offset->offset_s));
+      fmt::format(
+          "Times are on the sensor's clock. The host's clock is ahead by {:.6f} s{}. If the IMU is on the "
+          "host's clock, set the camera's clock_offset_s: {:.6f}.",
+          offset->offset_s, drift, offset->offset_s));
 }
 
 void TopicStreams::addFault(const std::string& stream, FaultKind kind, const std::string& text) {

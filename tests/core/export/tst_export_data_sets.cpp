@@ -344,7 +344,7 @@ class TestExportDataSets : public QObject {
     QVERIFY(isSaid(exported, "TUM-VIE supports one time offset for all cameras: that of frame0"));
     RigKind one;
     one.cameras = 1;
-    QVERIFY(refusal(rig(one), "tum-vie").find("Use basalt") != std::string::npos);
+    QVERIFY(refusal(rig(one), "tum-vie").find("Use the target basalt") != std::string::npos);
   }
 
   void evimo2_reprojects_data() {

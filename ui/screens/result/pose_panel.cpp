@@ -223,7 +223,7 @@ void PosePanel::setResult(const NamedResult& named) {
 
 void PosePanel::showPose() {
   if (poses_.empty()) {
-    direction_->setText(tr("A single sensor is the reference and has no other pose."));
+    direction_->setText(tr("The only sensor is the reference: there is no pose to show."));
     for (QLabel* const label : {translation_, vector_, angles_, warning_, quaternion_, matrix_, time_})
       label->clear();
     warning_->hide();

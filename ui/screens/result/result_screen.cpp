@@ -303,7 +303,7 @@ void ResultScreen::showDetails() {
   observed_->setText(observability_->text());
   correlation_->setResult(*result_);
   const QStringList pairs = correlation_->strongestPairs(kPairs);
-  pairs_->setText(pairs.isEmpty() ? QString() : tr("Least separable: %1.").arg(pairs.join("; ")));
+  pairs_->setText(pairs.isEmpty() ? QString() : tr("Least separable quantities: %1.").arg(pairs.join("; ")));
   notes_->clear();
   for (const std::string& note : result_->result->notes)
     notes_->addItem(sentence(QString::fromStdString(note)));
