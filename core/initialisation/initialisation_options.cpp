@@ -107,7 +107,7 @@ constexpr std::tuple kInitialisationFields{
     Field{"agreement_window_s", &InitialisationOptions::agreement_window_s, 3.0, within(0.1, 60.0), "s",
           "Time before and after a view in which other views vote on its rotation."},
     Field{"least_agreement", &InitialisationOptions::least_agreement, 0.3, within(0.0, 1.0), "",
-          "Smallest share of these views that agree with a used view."},
+          "Smallest share of the views nearby in time that must agree with a used view on its rotation."},
     Field{"outlier_sigma", &InitialisationOptions::outlier_sigma, 5.0, within(0.5, 1000.0), "sigma",
           "Error at which positions and accelerations have half their weight."}};
 constexpr auto kInitialisationDefaults = defaultsOf<InitialisationOptions, kInitialisationFields>();

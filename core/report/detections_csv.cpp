@@ -62,7 +62,7 @@ CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
   c.covariance_px2(0, 1) = c.covariance_px2(1, 0) = line.real(8);
   c.covariance_px2(1, 1) = line.real(9);
   if (!(c.covariance_px2(0, 0) > 0.0 && c.covariance_px2.determinant() > 0.0))
-    throw line.error(7, "is not a valid covariance with the next two columns");
+    throw line.error(7, "and the next two columns are not a valid covariance");
   c.velocity_px_s = {line.real(10), line.real(11)};
   c.semi_axes_px = {line.real(12), line.real(13)};
   c.angle_rad = line.real(14);

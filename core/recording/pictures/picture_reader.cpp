@@ -87,7 +87,7 @@ bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, F
              fmt::format("{} {}; it is left out.", picture.name,
                          error       ? "cannot be accessed"
                          : size == 0 ? "is empty"
-                                     : fmt::format("has {} bytes, more than a picture", size)));
+                                     : fmt::format("has {} bytes, too many for a picture", size)));
     return false;
   }
   const std::string bytes = fileContent(path, size);

@@ -97,7 +97,7 @@ bool McapSource::listFromSummary() {
             readContent(record, bytes);
   if (!closed_) {
     sink_(FaultKind::NoIndex,
-          fmt::format("The file has no end: its recorder did not close it, or it is cut off at "
+          fmt::format("The end of the file is missing: its recorder did not close it, or it is cut off at "
                       "byte {}. It is read from the start.",
                       file_.size()));
     return false;
