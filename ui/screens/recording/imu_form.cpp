@@ -35,7 +35,7 @@ const NoisePreset kPresets[] = {
     {"Bosch BMI088, typical", {perDeg(0.014), microG(175)}},
     {"Bosch BMI160, typical", {perDeg(0.007), microG(180)}},
     {"Bosch BMI270, typical", {perDeg(0.007), microG(160)}},
-    {"InvenSense MPU-6050, MPU-6150, typical", {perDeg(0.005), microG(400)}},
+    {"InvenSense MPU-6050, MPU-6150 (DAVIS346), typical", {perDeg(0.005), microG(400)}},
     {"InvenSense MPU-6500, typical", {perDeg(0.010), microG(300)}},
     {"TDK ICM-20948, typical", {perDeg(0.015), microG(230)}},
 };
