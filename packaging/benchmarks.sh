@@ -5,7 +5,7 @@
 #   lenses         frame cameras and intrinsics; also real recordings, if EVICAL_DATA is set
 #   checks         single deviations from the session, several recordings of a rig, an old result against a new recording
 #   without-board  rooms, and logs of IMUs over time: three hours
-#   speed          the costs of the hot paths, of the window and of reading files
+#   speed          the costs of the hot paths, of the desktop program and of reading files
 # Fails if a wrong result is called ok, if the ratio of errors to sigmas over twenty seeds is outside 0.7 to 1.4, or if a
 # benchmark misses its targets.
 set -uo pipefail
@@ -83,7 +83,7 @@ run_speed() {
   run costs "$scenarios/davis346.yaml" --durations 10 30 60 120
   run speed --duration 3 "$scenarios/hd.yaml"
 
-  # A run in the window compared with one on the command line.
+  # A run in the desktop program compared with one on the command line.
   local window
   window=$(mktemp -d)
   printf 'base: %s/config/scenarios/davis346.yaml\n' "$PWD" > "$window/scenario.yaml"

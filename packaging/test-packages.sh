@@ -28,7 +28,7 @@ packages=$PWD/build/package/packages
 echo "Second build"
 second=$scratch/at/another/place
 mkdir -p "$second"
-# With .git: the window shows the commit of its build.
+# With .git: the desktop program shows the commit of its build.
 (git ls-files -z && printf '.git\0') | tar --null --files-from=- -c | tar -x -C "$second"
 (
   cd "$second"
