@@ -14,7 +14,7 @@ import sys
 LONGEST_LINE, LONGEST_HELP = 130, 160  # characters
 README_LINES, README_WORDS = 120, 900
 # Phrases, long lines and long helps that are still allowed, by file or folder. Everything else has none.
-MOST = {"core": 9, "ui": 0, "app": 0, "python": 0, "tests": 1}
+MOST = {"core": 0, "ui": 0, "app": 0, "python": 0, "tests": 0}
 NOT_WRITTEN_HERE = ("docs/options.md",)  # the output of evical options
 CODE = ("core", "ui", "app", "python", "tests", "examples")
 

@@ -1,5 +1,5 @@
 // Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout: R
-// -> R Exp(delta). Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation
+// -> R Exp(delta). Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation // style: lie
 // in robotics" (2018), section IV.
 #pragma once
 

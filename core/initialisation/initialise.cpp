@@ -218,7 +218,7 @@ std::map<std::size_t, AlignedCamera> takeFurther(const CalibrationInput& input,
   return further;
 }
 
-// Known at views of the world's board.
+// Trajectory of the body, known at the times of views of the world's board.
 CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const CalibrationState& state) {
   CameraTrajectory body{state.world_from_imu_rotation, state.imu_in_world_m, {}};
   for (const AlignedCamera& camera : cameras)

@@ -20,10 +20,10 @@
 namespace evical {
 namespace {
 
-// Beyond this a segment's polynomial, continued, says nothing of the trajectory any
-// more: assign them again at once.
+// If time offsets move by more, measurements are so far outside their segment that its
+// polynomial does not describe the trajectory there: they are assigned again at once.
 constexpr double kFurthestDrift_knots = 0.5;
-// Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
+// Bounds of the noise scales, so that a sensor with another fault neither dominates nor loses all weight.
 constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 
 class IterationReporter {
@@ -37,7 +37,7 @@ class IterationReporter {
         furthest_(furthest),
         records_(records) {}
 
-  // Goes with the next iteration.
+  // Reports these names together with the next iteration.
   void tellReleased(std::vector<std::string> words) { released_ = std::move(words); }
 
   // False if measurements must be assigned again.
@@ -177,7 +177,7 @@ bool Batch::updateWeights() {
   return changed;
 }
 
-// It changes circles little, so that the batch is not solved again.
+// Circles change little by it, so the batch is not solved again.
 void Batch::updateSmoothness() {
   constexpr double kLeast = 1e-4;
   const TrajectorySmoothness found = trajectorySmoothness(input_, problem_.state());

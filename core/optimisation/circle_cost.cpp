@@ -78,7 +78,7 @@ struct Mount {
         world_from_board(board.world_from_board.rotation.toRotationMatrix()) {}
 };
 
-// One circle at its time, and what moves it.
+// One circle at its time, and the motion on which its place depends.
 struct PlacedCircle {
   RotationSample rotation;
   RotationJacobians by_control_points;
@@ -102,7 +102,7 @@ bool movesInTime(double** jacobians) {
                        jacobians[kExposureShare]);
 }
 
-// `by_place`: derivative of the residual by where the circle is in the board's frame.
+// `by_place`: derivative of the residual by the circle's position in the board's frame.
 void writeSheetJacobians(const BoardState& board, const Vector2d& on_board_m, const Matrix23d& by_place,
                          Eigen::Index row, double** jacobians) {
   const double x = on_board_m.x(), y = on_board_m.y();
@@ -116,7 +116,7 @@ void writeSheetJacobians(const BoardState& board, const Vector2d& on_board_m, co
   write(kBoardTwist, {0.0, 0.0, x * y});
 }
 
-// By where the circle and the board's normal are in the world.
+// `by_place`, `by_normal`: derivatives of the residual by the circle's position and the board's normal in the world.
 void writeBoardJacobians(const Mount& mount, const PlacedCircle& placed, const Vector2d& on_board_m,
                          const Matrix23d& by_place, const Matrix23d& by_normal, Eigen::Index row,
                          double** jacobians) {

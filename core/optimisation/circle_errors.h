@@ -25,11 +25,11 @@ struct CircleError {
       0.0;  // squared, over sigmas, without the common displacement of the view; infinite behind the camera
 };
 
-// All circles whose times lie in both splines' range, in order of camera, view and list.
+// All circles whose times are in both splines' range, in order of camera, view and list.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options);
 
-// The same for people and programs, also of those that took no part.
+// The same for files and displays, with the circles that were not used.
 std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,
                                             const CircleSelection& used, const OptimisationOptions& options);
 
@@ -37,7 +37,7 @@ std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const
 // don't matter; 1 without circles.
 double robustScale(const std::vector<CircleError>& errors, std::size_t camera);
 
-// Drops gross outliers, and windows most of whose circles are. Circles outside
+// Drops gross outliers, and views in which most circles are outliers. Circles outside
 // the splines' range stay selected.
 CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,
                               const std::vector<double>& scales, const OptimisationOptions& options);

@@ -65,7 +65,7 @@ struct TimedCircle {
   std::uint32_t view = 0, circle = 0;
 };
 
-// Those that take part and lie within the splines, in order of time: not yet as measurements, which are ten times as
+// Used circles within the splines' range, in order of time. Not the measurements themselves, which are ten times as
 // large.
 std::vector<TimedCircle> circlesOf(const ProblemBuilder& builder, std::size_t camera) {
   const CalibrationState& state = builder.parameters.moved();

@@ -48,7 +48,7 @@ WindowError windowError(const CentreError* first, std::size_t count, const Error
 }  // namespace
 
 std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations) {
-  constexpr double kStep_s = 1e-3;  // of the difference that tells accelerations
+  constexpr double kStep_s = 1e-3;  // of the difference that gives accelerations
   const SinusoidMotion motion(scenario);
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
   std::vector<CentreError> errors;

@@ -6,7 +6,7 @@
 
 namespace evical {
 
-// Columns that came last are looked for first.
+// Searches first for the columns that were added last.
 Eigen::Index LocalSums::localOf(const Column& column) {
   const auto found = std::find(columns_.rbegin(), columns_.rend(), column);
   if (found != columns_.rend()) return static_cast<Eigen::Index>(columns_.rend() - found) - 1;

@@ -34,7 +34,7 @@ class SplineShift {
     }
   }
 
-  // Moves them from their original values, in tangent columns.
+  // Moves the splines' numbers from their original values by a step in tangent columns.
   void moveBy(const Eigen::VectorXd& shift) {
     const double* number = numbers_.data();
     for (const Unknown* each : splines_) {

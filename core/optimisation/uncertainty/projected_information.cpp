@@ -24,7 +24,7 @@ namespace {
 
 using RowMajorMatrix = SplineElimination::RowMajorMatrix;
 
-// Kinds of measurements without their sums, and of which kind each residual block is.
+// Kinds of measurements without their sums, and the kind of each residual block.
 struct Groups {
   std::vector<MeasurementGroup> all;
   std::vector<std::size_t> of_block;
@@ -274,7 +274,7 @@ void Projection::countAbsorbed(Sums& sums) const {
   }
 }
 
-// By how much squared residuals would be larger, had the unknowns not been fitted to them.
+// Factor by which squared residuals would be larger if the unknowns were not fitted to them.
 double unabsorbed(const MeasurementGroup& group) {
   return std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed));
 }
@@ -341,7 +341,7 @@ ProjectedInformation Projection::run() {
 
 double MeasurementGroup::variance() const {
   constexpr double kLeastFree =
-      0.05;  // a group that the splines follow almost wholly tells nothing of its own noise
+      0.05;  // below, splines follow the group almost completely, and its noise is not observable
   const double free = residuals - absorbed;
   return kind != SensorKind::Prior && free > kLeastFree * residuals ? squared_residuals / free : 1.0;
 }

@@ -23,8 +23,8 @@ constexpr double kLeastVariance = 1e-300;
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kLeastInformation = 1e-8;
 
-// Inverse of the information, safe against directions without any: they count as having
-// the least, which `open` holds.
+// Inverse of the information, also if it is singular: directions without information get the least that is allowed.
+// `open` is this addition.
 struct SafeInverse {
   Eigen::MatrixXd inverse, open;
 };
@@ -98,7 +98,7 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
   const Eigen::VectorXd white_left = congruence(inverse, errors.white_left).diagonal();
   const Eigen::VectorXd stated = congruence(inverse, errors.information).diagonal();
   const Eigen::VectorXd whole = congruence(report_from_tangent, errors.whole).diagonal() + known;
-  // White errors leave their own scatter to within this share: a mean over squares of blocks that overlap.
+  // Scatter of the estimated variance if errors are white: it is a mean of squares over overlapping blocks.
   constexpr double kCertain_sigmas = 3.0;
   const double doubtless =
       kCertain_sigmas * std::sqrt(4.0 / 3.0 * static_cast<double>(kBlock) /

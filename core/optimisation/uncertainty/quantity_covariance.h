@@ -32,9 +32,9 @@ Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const
 QuantityCovariance quantityCovariance(const ProjectedInformation& information,
                                       const Eigen::MatrixXd& report_from_tangent);
 
-// Events are late by their pixels' delay, and so are all of an event camera's: its time offset is uncertain by as much
-// as that delay, and nothing in the recording tells; more so where the two polarities' delays differ. Not where all is
-// measured by such pixels (holdsPixelDelay).
+// All events of a camera are late by the delay of its pixels, which the recording does not determine: this adds to the
+// uncertainty of its time offset, and more if the delays of the two polarities differ. Not added if such pixels measure
+// everything (holdsPixelDelay).
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance);
 

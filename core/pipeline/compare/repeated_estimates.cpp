@@ -26,7 +26,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // values follow from its normal equations (docs/maths.md, 14).
 struct FollowingEstimate {
   std::vector<QuantityAddress> columns;  // the recording's, then common ones that it does not estimate
-  Eigen::VectorXd by;                    // changes of its own numbers; 0 for common ones
+  Eigen::VectorXd by;                    // changes of the recording's own numbers; 0 for common ones
   Eigen::MatrixXd covariance;
 };
 

@@ -53,7 +53,7 @@ class MergedStreams {
     std::vector<Stream> streams = {};
     Packet raw = {};  // from the reader
     SensorPacket next = {};
-    bool read_out = false;    // true: only samples held in the filters remain
+    bool read_out = false;    // true: only samples inside the filters remain
     std::size_t flushed = 0;  // number of flushed streams
     bool finished = false;
 
