@@ -72,8 +72,8 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   }
 }
 
-// Knot spacing of both splines, for the most demanding sensor: with two spacings, the normal equations' band
-// would be wider by their ratio, which costs as much as fewer control points save.
+// Knot spacing of both splines: that of the sensor that needs the closest knots. Separate spacings would save control
+// points of one spline, but widen the band of the normal equations, so that nothing is gained.
 double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOptions& options,
                            const std::vector<AlignedCamera>& cameras, TimeRange range,
                            const GyroRotation& reference, Initialisation& result) {

@@ -83,7 +83,7 @@ std::vector<TimedCircle> circlesOf(const ProblemBuilder& builder, std::size_t ca
   return circles;
 }
 
-// Those that take part.
+// Used samples of the run, with their times and values.
 std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const SampleRun& run,
                                            Eigen::Vector3d ImuSample::*value,
                                            const std::vector<std::uint8_t>& used) {

@@ -34,7 +34,7 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
   return all;
 }
 
-// Derived from two time offsets.
+// Latency of the events of a sensor: the difference between its two time offsets.
 constexpr QuantityInfo kLatency{.id = QuantityId::Latency,
                                 .name = "latency",
                                 .title = "latency",

@@ -67,7 +67,7 @@ void wireLensRecording(RecordingScreen& screen, Workbench& workbench) {
   });
 }
 
-// Run of the current aim; events and windows are the same.
+// Shows the run of the current aim on Detection: of the rig, or of a camera alone.
 void wireLensDetection(DetectionScreen& screen, Workbench& workbench) {
   IntrinsicsJob& job = workbench.intrinsics;
   LensDocument& lens = workbench.lens;
