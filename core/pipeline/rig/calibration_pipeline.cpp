@@ -174,7 +174,7 @@ class Calibration {
     }
     dropViewsAcrossClockStep();
     for (const InitialisationStep& step : initial_.steps)
-      context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.text()));
+      context_.progress.log(LogLevel::Debug, fmt::format("{}: {}", step.name, step.text()));  // for log.txt
     for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
   }
 
