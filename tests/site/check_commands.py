@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Commands in documents must match the program: its help has each command, option and setting, files of the repository that
-they name exist, and boards can be drawn: check_commands.py SOURCE SCRATCH EVICAL [EVICAL-GUI]"""
+they name exist, boards can be drawn, and complete sessions are valid: check_commands.py SOURCE SCRATCH EVICAL [EVICAL-GUI]"""
 import os
 import re
 import shlex
@@ -10,7 +10,7 @@ import sys
 root, scratch, program = sys.argv[1:4]
 desktop_program = sys.argv[4] if len(sys.argv) > 4 else None
 os.makedirs(scratch, exist_ok=True)
-faults, seen, boards = [], 0, 0
+faults, seen, boards, sessions = [], 0, 0, 0
 
 
 def output(*command):
@@ -58,12 +58,26 @@ def check(line, where):
             faults.append(f"{where}: {line}: {ran.stderr.strip()}")
 
 
+def check_session(text, where):
+    """A session is valid if the program's only objection is the empty recording. Lines that name further files are omitted."""
+    global sessions
+    sessions += 1
+    with open(f"{scratch}/session.yaml", "w", encoding="utf-8") as session:
+        session.write("\n".join(line for line in text.split("\n") if ".yaml" not in line))
+    open(f"{scratch}/recording.bag", "w").close()
+    ran = subprocess.run([program, "detect", "session.yaml", "-o", "detected"], cwd=scratch, capture_output=True, text=True)
+    if "recording.bag: the file is empty" not in ran.stderr:
+        faults.append(f"{where}: session: {ran.stderr.strip()}")
+
+
 documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md")]
 documents += [f"{root}/docs/{name}" for name in sorted(os.listdir(f"{root}/docs")) if name.endswith(".md")]
 for document in documents:
     with open(document, encoding="utf-8") as file:
         text = file.read()
     where = os.path.relpath(document, root)
+    for session in re.findall(r"^```yaml\n(evical_session: 1\n.*?)^```", text, re.MULTILINE | re.DOTALL):
+        check_session(session, where)
     code = re.findall(r"^```[^\n]*\n(.*?)^```", text, re.MULTILINE | re.DOTALL) + re.findall(r"^ {4}(.*)$", text, re.MULTILINE)
     typed = re.findall(r"^((?:build/\w+/)?evical(?:-gui)? .*)$", "\n".join(code), re.MULTILINE)
     typed += re.findall(r"(?<!`)`((?:build/\w+/)?evical(?:-gui)? [^`\n]+)`(?!`)", text)
@@ -72,11 +86,12 @@ for document in documents:
             check(re.sub(r"\[.*?\]|\.\.\.", "", line), where)
         except ValueError as problem:
             faults.append(f"{where}: {line}: {problem}")
-    for line in re.findall(r"--set[ =]([a-z_]+\.[\w.]+)=", text) + re.findall(r"`([a-z_]+\.[a-z_]+(?:\.[a-z_]+)?)(?:[=:] ?[^`]*)?`", text):
+    in_yaml = re.findall(r"[{,\s]([a-z_]+(?:\.[a-z0-9_]+)+): ", "\n".join(re.findall(r"^```yaml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)))
+    for line in in_yaml + re.findall(r"--set[ =]([a-z_]+\.[\w.]+)=", text) + re.findall(r"`([a-z_]+\.[a-z_]+(?:\.[a-z_]+)?)(?:[=:] ?[^`]*)?`", text):
         is_setting = line.split(".")[0] in groups and not re.search(r"\.(yaml|csv|h|cpp|md|py|bag|html|txt)$", line)
         if is_setting and line not in settings | short_names and not any(known.startswith(line + ".") for known in settings):
             faults.append(f"{where}: there is no option {line}")
-if seen < 60 or boards < 5:
-    faults.append(f"only {seen} commands and {boards} boards were found")
-print("\n".join(faults) or f"{len(documents)} documents, {seen} commands, {boards} boards drawn")
+if seen < 60 or boards < 5 or sessions < 2:
+    faults.append(f"only {seen} commands, {boards} boards and {sessions} sessions were found")
+print("\n".join(faults) or f"{len(documents)} documents, {seen} commands, {boards} boards drawn, {sessions} sessions")
 sys.exit(bool(faults))

@@ -29,6 +29,8 @@ documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md", "CHAN
 for top in ("docs", "resources"):
     documents += [os.path.join(folder, name) for folder, _, names in os.walk(f"{root}/{top}") for name in names if name.endswith(".md")]
 for document in documents:
+    if "<!-- include -->" in read(document):
+        faults.append(f"{os.path.relpath(document, root)}: a page includes another one, so it cannot be read in the repository")
     for link in LINK.findall(CODE.sub("", read(document))):
         if re.match(r"[a-z]+:", link):
             continue
