@@ -175,7 +175,7 @@ class TestMainWindowWindows : public QObject {
                         [&](const BoardView& view) { return view.time_s == time_s; }));
     QVERIFY(std::abs(time_s - 2.0) < 0.1);
     for (QToolButton* const button : screen->findChildren<QToolButton*>())
-      if (button->text() == "Show event window") QTest::mouseClick(button, Qt::LeftButton);
+      if (button->text() == "Show window") QTest::mouseClick(button, Qt::LeftButton);
     QCOMPARE(test.screen(), QString("detection"));
     QCOMPARE(test.detection().time_s(), time_s);
     test.list().setFilter(WindowFilter::All);

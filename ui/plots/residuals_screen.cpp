@@ -137,7 +137,7 @@ QWidget* ResidualsScreen::makeBar() {
     layout->addWidget(widget);
   layout->addStretch(1);
   show_window_ = new QToolButton;
-  show_window_->setText(tr("Show event window"));
+  show_window_->setText(tr("Show window"));
   show_window_->setToolTip(
       tr("Shows the event window at the cursor on Detection; click a point or a bar to choose one"));
   show_window_->setEnabled(false);
