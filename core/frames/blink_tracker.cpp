@@ -77,6 +77,7 @@ void BlinkTracker::see(const FlashSlot& slot) {
   window.tracked = !found.empty();
   if (found.empty()) found = finder_.find(whole);
   if (found.empty() && slot.size() > 1) found = finder_.find(sumOfMiddle(slot, 1));
+  if (finder_.renumbered()) dropEarlier();
   if (!window.tracked) searched_points_ = found.size();
   most_points_ = std::max(most_points_, searched_points_);
   if (!found.empty() && slot.size() > 1) found = withoutMotion(slot, std::move(found), window);
@@ -122,6 +123,16 @@ FoundPoints BlinkTracker::withoutMotion(const FlashSlot& slot, FoundPoints found
   window.time_s = middle_s(sum, start_ns_);
   window.half_width_s = 0.5 * secondsSince(sum.begin_ns, sum.end_ns);
   return finder_.measure(sum, found, gate_px);
+}
+
+// Views whose points have wrong numbers.
+void BlinkTracker::dropEarlier() {
+  for (WindowReport& window : so_far_.windows) {
+    if (window.circles == 0) continue;
+    window.outcome = WindowOutcome::Ambiguous;
+    window.circles = 0;
+  }
+  seen_.clear();
 }
 
 void BlinkTracker::keep(FoundPoints points, WindowReport window) {

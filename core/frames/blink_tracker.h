@@ -36,12 +36,14 @@ class BlinkTracker {
 
   const std::optional<Blink>& blink() const { return notice_.blink(); }
   std::string doubt() const { return finder_.doubt(); }
+  std::string remark() const { return finder_.remark(); }
 
  private:
   void gather(EventSpan events);
   void see(const FlashSlot& slot);
   FoundPoints follow(const FlashCounts& whole, double time_s);
   FoundPoints withoutMotion(const FlashSlot& slot, FoundPoints found, WindowReport& window) const;
+  void dropEarlier();
   void keep(FoundPoints points, WindowReport window);
 
   std::string camera_;

@@ -50,8 +50,16 @@ FoundPoints BoardFinder::measure(const GrayImage& image, const PlaneMap& map, do
   return isLargeEnough(image) ? finder_->measure(image, map, gate_px) : FoundPoints{};
 }
 
+bool BoardFinder::renumbered() {
+  return finder_->renumbered();
+}
+
 std::string BoardFinder::doubt() const {
   return finder_->doubt();
+}
+
+std::string BoardFinder::remark() const {
+  return finder_->remark();
 }
 
 std::optional<PlaneMap> mapOf(const FoundPoints& points, const Board& board) {

@@ -39,11 +39,16 @@ class BoardFinder {
   // board: the tags' border, the markers' dictionary.
   FoundPoints find(const GrayImage& image);
 
+  // True, once, if the last picture has shown that the points of earlier ones have wrong numbers.
+  bool renumbered();
+
   // Points near their places according to the map: takes a hundredth of a search's time.
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const;
 
   // Contradiction between the pictures and the board's parameters, as a sentence; empty if there is none.
   std::string doubt() const;
+  // What is unusual about the printed board and was recognised, as a sentence; empty if nothing is.
+  std::string remark() const;
 
  private:
   std::unique_ptr<PatternFinder> finder_;

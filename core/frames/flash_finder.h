@@ -21,7 +21,9 @@ class FlashFinder {
   // last, since a part of it does not determine whether there are others.
   FoundPoints measure(const FlashCounts& sum, const FoundPoints& near, double gate_px) const;
 
+  bool renumbered() { return finder_.renumbered(); }
   std::string doubt() const { return finder_.doubt(); }
+  std::string remark() const { return finder_.remark(); }
 
  private:
   FoundPoints onSensor(const GrayImage& picture, const GrayImage& larger, FoundPoints found) const;

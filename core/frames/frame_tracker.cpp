@@ -78,11 +78,20 @@ FoundPoints FrameTracker::follow(const GrayImage& image, double time_s) const {
 FoundPoints FrameTracker::search(const GrayImage& image, double time_s) {
   followed_ = 0;
   FoundPoints found = finder_.find(image);
+  if (finder_.renumbered()) dropEarlier();
   const std::optional<PlaneMap> map = predicted(time_s);
   if (!board_.hasHalfTurnAmbiguity() || !map || found.empty()) return found;
   // A board with half-turn symmetry keeps the numbering of the last view.
   FoundPoints other = turned(found, board_.pointCount());
   return meanDistance_px(other, board_, *map) < meanDistance_px(found, board_, *map) ? other : found;
+}
+
+void FrameTracker::dropEarlier() {
+  for (const Seen& seen : seen_) {
+    windows_[seen.window].outcome = WindowOutcome::Ambiguous;
+    windows_[seen.window].circles = 0;
+  }
+  seen_.clear();
 }
 
 void FrameTracker::track(const GrayImage& image, const FrameTime& time) {

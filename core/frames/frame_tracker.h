@@ -38,8 +38,9 @@ class FrameTracker {
   // that outcome. The tracker is empty afterwards.
   BoardObservations finish();
 
-  // The finder's doubt about the board's parameters, as a sentence; may be empty.
+  // The finder's doubt about the board's parameters, and its remark on the print, as sentences; may be empty.
   std::string doubt() const { return finder_.doubt(); }
+  std::string remark() const { return finder_.remark(); }
 
  private:
   struct Seen {
@@ -51,6 +52,7 @@ class FrameTracker {
   std::optional<PlaneMap> predicted(double time_s) const;
   FoundPoints follow(const GrayImage& image, double time_s) const;
   FoundPoints search(const GrayImage& image, double time_s);
+  void dropEarlier();  // views whose points have wrong numbers
   void report(const FrameTime& time, FoundPoints points, bool tracked);
 
   std::string camera_;

@@ -22,7 +22,9 @@ class PatternFinder {
 
   virtual FoundPoints search(const GrayImage& image) = 0;
   virtual FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const = 0;
+  virtual bool renumbered() { return false; }
   virtual std::string doubt() const { return {}; }
+  virtual std::string remark() const { return {}; }
 };
 
 std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options,

@@ -2,6 +2,7 @@
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
+#include "core/frames/tag_layout.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
@@ -11,21 +12,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace evical {
 namespace {
 
-constexpr int kCorners = 4;
 constexpr std::array<int, 2> kBorders = {2, 1};  // bits; Kalibr's first
-
-struct SeenTag {
-  int id = 0;
-  std::array<Eigen::Vector2d, kCorners> corners_px;  // from the bottom left, against the clock
-
-  double side_px() const { return (corners_px[1] - corners_px[0]).norm(); }
-};
 
 double largestSide_px(const std::vector<SeenTag>& tags) {
   double side_px = 0.0;
@@ -70,7 +65,7 @@ class TagReader {
       zarray_get(detections.get(), k, static_cast<void*>(&seen));
       SeenTag tag;
       tag.id = seen->id;
-      for (std::size_t corner = 0; corner < kCorners; ++corner)
+      for (std::size_t corner = 0; corner < kTagCornerCount; ++corner)  // from the bottom left, CCW
         tag.corners_px.at(corner) =
             Eigen::Vector2d(seen->p[corner][0], seen->p[corner][1]).array() - shift_px;
       if (!tags.emplace(seen->id, tag).second) twice.insert(seen->id);
@@ -88,7 +83,8 @@ class TagReader {
 
 class TagGridFinder : public PatternFinder {
  public:
-  TagGridFinder(const Board& board, const FrameOptions& options) : board_(board), options_(options) {
+  TagGridFinder(const Board& board, const FrameOptions& options)
+      : board_(board), options_(options), possible_(distinctLayouts(board)) {
     for (const int border : kBorders) {
       readers_.emplace(border, border);
       patterns_.emplace(border, tagGridCorners(board, border));
@@ -98,14 +94,17 @@ class TagGridFinder : public PatternFinder {
   }
 
   FoundPoints search(const GrayImage& image) override {
-    const std::vector<SeenTag> tags = readTags(image);
+    const std::vector<SeenTag> tags = tagsOfBoard(image);
+    if (tags.empty() || !findLayout(tags)) return {};
     const std::vector<ReadPoint> corners = cornersOnBoard(tags);
-    if (corners.empty()) return {};
     const std::vector<ReadPoint> agreeing =
         agreeingPoints(corners, board_.spacing_m / board_.tag_size_m * largestSide_px(tags));
     countMisfit(corners, agreeing);
     const std::optional<PlaneMap> map = mapOf(agreeing, board_.spacing_m);
-    return map ? spread(image, *map) : FoundPoints{};
+    if (!map) return {};
+    FoundPoints found = spread(image, *map);
+    ++(found.empty() ? unmeasured_ : measured_);
+    return found;
   }
 
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const override {
@@ -113,20 +112,41 @@ class TagGridFinder : public PatternFinder {
                           options_);
   }
 
+  bool renumbered() override { return std::exchange(renumbered_, false); }
+
   std::string doubt() const override {
-    const int tags = board_.rows * board_.cols;
+    const int tags = tagCount();
+    constexpr int kEnoughPictures = 3;
+    if (mirrored_ >= kEnoughPictures && largest_id_ < 0)
+      return "the tags can only be read in the mirror image: the camera's pictures or the printed board are "
+             "mirrored";
+    const int span = largest_id_ - smallest_id_ + 1;
+    if (smallest_id_ > 0 && largest_id_ >= tags && (smallest_id_ >= tags || span == tags))
+      return fmt::format(
+          "tags {} to {} were detected, but a board of {} x {} tags has tags 0 to {}: this is another board, "
+          "or its numbers do not start at 0",
+          smallest_id_, largest_id_, board_.rows, board_.cols, tags - 1);
     if (largest_id_ >= tags)
       return fmt::format(
           "tag {} was detected, but a board of {} x {} tags has tags 0 to {}: check rows and columns",
           largest_id_, board_.rows, board_.cols, tags - 1);
-    constexpr int kEnoughPictures = 3;
     if (misfits_ >= kEnoughPictures && misfits_ > fits_)
       return fmt::format("the detected tags do not fit a board of {} x {} tags: check rows and columns",
                          board_.rows, board_.cols);
     if (looks_ >= kEnoughPictures && 2 * other_border_ > looks_)
       return fmt::format("a tag border of {} bit{} fits better than one of {}", border_ == 1 ? 2 : 1,
                          border_ == 1 ? "s" : "", border_);
+    if (unmeasured_ >= kEnoughPictures && measured_ == 0)
+      return "the tags were detected, but not the small squares between them that Kalibr's boards have and "
+             "that corners are measured with";
     return {};
+  }
+
+  std::string remark() const override {
+    const std::string layout = layoutText(layout_);
+    return layout.empty()
+               ? layout
+               : "compared with Kalibr's boards, the tags are " + layout + "; this is accounted for";
   }
 
  private:
@@ -156,14 +176,83 @@ class TagGridFinder : public PatternFinder {
     return most;
   }
 
-  std::vector<ReadPoint> cornersOnBoard(const std::vector<SeenTag>& tags) {
-    std::vector<ReadPoint> corners;
+  int tagCount() const { return board_.rows * board_.cols; }
+
+  std::vector<SeenTag> tagsOfBoard(const GrayImage& image) {
+    std::vector<SeenTag> tags = readTags(image);
+    if (tags.empty()) lookInMirror(image);
     for (const SeenTag& tag : tags) {
       largest_id_ = std::max(largest_id_, tag.id);
-      if (tag.id >= board_.rows * board_.cols) continue;
-      for (int k = 0; k < kCorners; ++k)
-        corners.push_back(
-            {board_.point_m(kCorners * tag.id + k), tag.corners_px.at(static_cast<std::size_t>(k))});
+      smallest_id_ = std::min(smallest_id_, tag.id);
+    }
+    std::erase_if(tags, [&](const SeenTag& tag) { return tag.id >= tagCount(); });
+    return tags;
+  }
+
+  // A mirrored tag is not a tag of the family.
+  void lookInMirror(const GrayImage& image) {
+    if (largest_id_ >= 0 || mirror_looks_++ >= kMostLooks) return;
+    GrayImage mirrored{image.size_px, std::vector<std::uint8_t>(image.pixels.size())};
+    cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1, mirrored.pixels.data());
+    cv::flip(viewOf(image), picture, 1);
+    for (const int border : kBorders)
+      if (readers_.at(border).read(mirrored).size() > 1) {
+        ++mirrored_;
+        return;
+      }
+  }
+
+  TagCorners placeOf(const TagLayout& layout, int tag) const {
+    const int first = kTagCornerCount * squareOf(board_, layout.order, tag);
+    TagCorners square;
+    for (int k = 0; k < kTagCornerCount; ++k)
+      square.at(static_cast<std::size_t>(k)) = board_.point_m(first + k);
+    return rotatedCorners(square, layout.quarter_turns);
+  }
+
+  // The layouts that agree best with the tags, in the order of the possible ones; none if no layout agrees.
+  std::vector<TagLayout> agreeingLayouts(const std::vector<SeenTag>& tags) const {
+    constexpr double kLeast = 0.65, kSame = 0.1;  // share of neighbours, and its difference
+    std::vector<double> agreements;
+    for (const TagLayout& layout : possible_) {
+      std::vector<TagCorners> places;
+      for (const SeenTag& tag : tags) places.push_back(placeOf(layout, tag.id));
+      agreements.push_back(agreementOfNeighbours(tags, places));
+    }
+    const double best = *std::max_element(agreements.begin(), agreements.end());
+    std::vector<TagLayout> agreeing;
+    for (std::size_t k = 0; k < possible_.size(); ++k)
+      if (best >= kLeast && agreements[k] >= best - kSame) agreeing.push_back(possible_[k]);
+    return agreeing;
+  }
+
+  // True if the tags can be placed on the board. The first picture that leaves only one layout decides.
+  // Others, of one row of tags for example, are placed in Kalibr's if it is possible.
+  bool findLayout(const std::vector<SeenTag>& tags) {
+    if (layout_found_) return true;
+    constexpr int kEnough = 3;
+    const std::vector<TagLayout> agreeing = agreeingLayouts(tags);
+    const bool enough = static_cast<int>(tags.size()) >= std::min(kEnough, tagCount());
+    if (agreeing.empty()) {
+      misfits_ += enough ? 1 : 0;
+      return false;
+    }
+    const bool usual = agreeing.front() == TagLayout{};
+    if (agreeing.size() > 1 || !enough) {
+      placed_undecided_ = placed_undecided_ || usual;
+      return usual;
+    }
+    layout_ = agreeing.front();
+    layout_found_ = true;
+    renumbered_ = placed_undecided_ && !usual;
+    return true;
+  }
+
+  std::vector<ReadPoint> cornersOnBoard(const std::vector<SeenTag>& tags) const {
+    std::vector<ReadPoint> corners;
+    for (const SeenTag& tag : tags) {
+      const TagCorners place = placeOf(layout_, tag.id);
+      for (std::size_t k = 0; k < place.size(); ++k) corners.push_back({place[k], tag.corners_px[k]});
     }
     return corners;
   }
@@ -171,7 +260,7 @@ class TagGridFinder : public PatternFinder {
   // With wrong rows and columns, tags of several rows hardly fit one plane.
   void countMisfit(const std::vector<ReadPoint>& corners, const std::vector<ReadPoint>& agreeing) {
     constexpr std::size_t kEnoughTags = 4;
-    if (corners.size() < kEnoughTags * kCorners) return;
+    if (corners.size() < kEnoughTags * kTagCornerCount) return;
     ++(5 * agreeing.size() < 4 * corners.size() ? misfits_ : fits_);
   }
 
@@ -197,8 +286,15 @@ class TagGridFinder : public PatternFinder {
   std::map<int, TagReader> readers_;  // by border
   std::map<int, CornerPattern> patterns_;
   int border_ = 0;  // 0: unknown
-  int largest_id_ = -1, fits_ = 0, misfits_ = 0;
-  int looks_ = 0, other_border_ = 0;  // number of tests of the other border, and of its better fits
+  std::vector<TagLayout> possible_;
+  TagLayout layout_;
+  bool layout_found_ = false;
+  bool placed_undecided_ = false;  // pictures were placed in Kalibr's layout before another one was found
+  bool renumbered_ = false;
+  int largest_id_ = -1, smallest_id_ = std::numeric_limits<int>::max(), fits_ = 0, misfits_ = 0;
+  int measured_ = 0, unmeasured_ = 0;    // pictures with and without corners of the detected tags
+  int mirror_looks_ = 0, mirrored_ = 0;  // pictures without tags, and those whose mirror image has tags
+  int looks_ = 0, other_border_ = 0;     // number of tests of the other border, and of its better fits
 };
 
 }  // namespace

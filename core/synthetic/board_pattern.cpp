@@ -9,9 +9,23 @@ namespace {
 constexpr int kBorderModules = 2;  // as in Kalibr's prints
 constexpr int kTagSide_modules = kTagSide_bits + 2 * kBorderModules;
 
+PatternBits clockwise(const PatternBits& bits) {
+  PatternBits turned = bits;
+  for (std::size_t y = 0; y < bits.size(); ++y)
+    for (std::size_t x = 0; x < bits.size(); ++x) turned[y][x] = bits[bits.size() - 1 - x][y];
+  return turned;
+}
+
+TagBits clockwise(const TagBits& bits) {
+  TagBits turned;
+  for (int y = 0; y < kTagSide_bits; ++y)
+    for (int x = 0; x < kTagSide_bits; ++x) turned.setBright(y, x, bits.isBright(kTagSide_bits - 1 - x, y));
+  return turned;
+}
+
 }  // namespace
 
-BoardPattern::BoardPattern(const Board& board)
+BoardPattern::BoardPattern(const Board& board, int tag_turns)
     : board_(board),
       spacing_m_(static_cast<float>(board.spacing_m)),
       radius_m_(static_cast<float>(board.radius_m)),
@@ -22,6 +36,10 @@ BoardPattern::BoardPattern(const Board& board)
   high_m_ = extent + Eigen::Vector2f::Constant(beyond_m);
   if (board.type == BoardType::AprilGrid) tags_ = firstTags(board.rows * board.cols);
   if (board.type == BoardType::Charuco) markers_ = firstMarkers(kUsualMarkers, board.rows * board.cols / 2);
+  for (int turn = 0; turn < tag_turns; ++turn) {
+    for (TagBits& tag : tags_) tag = clockwise(tag);
+    for (PatternBits& marker : markers_) marker = clockwise(marker);
+  }
 }
 
 bool BoardPattern::isInk(const Eigen::Vector2f& p) const {

@@ -14,7 +14,8 @@ namespace evical {
 
 class BoardPattern {
  public:
-  explicit BoardPattern(const Board& board);
+  // `tag_turns`: quarter turns of each tag or marker within its square, clockwise.
+  explicit BoardPattern(const Board& board, int tag_turns = 0);
 
   // True on ink, at metres on the board; paper beyond its edge.
   bool isInk(const Eigen::Vector2f& p) const;

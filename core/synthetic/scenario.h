@@ -243,6 +243,7 @@ struct Scenario {
   Board board;
   double board_stretch = 0.0;  // of the real board: 0.01 makes its columns 1 % longer than those of `board`
   SimulatedBow board_bow = {};
+  int tag_turns = 0;  // quarter turns of the board's tags within their squares, clockwise
   std::vector<SimulatedBoard> further_boards = {};
   SceneModel scene;
   RoomModel room = {};

@@ -34,8 +34,10 @@ void validateBoard(const Board& board, const std::string& place) {
 
 void readBoard(const YamlNode& map, Scenario& scenario) {
   map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
-                 "column_bow_m", "twist_m", "tag_size_m"});
+                 "column_bow_m", "twist_m", "tag_size_m", "tag_rotation_deg"});
   readMeasures(map, scenario.board);
+  if (const auto turned = map.find("tag_rotation_deg"))
+    scenario.tag_turns = static_cast<int>(turned->choice({"0", "90", "180", "270"}));
   get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
   get(map, "row_bow_m", scenario.board_bow.rows_m, -kLargestBow_m, kLargestBow_m, "m");
   get(map, "column_bow_m", scenario.board_bow.columns_m, -kLargestBow_m, kLargestBow_m, "m");
@@ -86,6 +88,7 @@ Scenario sceneOf(const Scenario& scenario, std::size_t camera) {
   const SimulatedBoard* const further = furtherBoardOf(scenario, camera);
   if (!further) return scene;
   scene.board = further->board;
+  scene.tag_turns = 0;
   scene.board_stretch = 0.0;
   scene.board_bow = {};
   scene.scene.hand = {};

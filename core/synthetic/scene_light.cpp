@@ -52,7 +52,7 @@ Eigen::Matrix<float, 3, 2> rayPerPixel(const CameraIntrinsics& lens, const Eigen
 
 SceneLight::SceneLight(const Scenario& scenario, std::size_t camera, double optics_blur_px)
     : scenario_(scenario),
-      pattern_(scenario.board),
+      pattern_(scenario.board, scenario.tag_turns),
       sheet_low_m_(pattern_.low_m().array() - marginOf(scenario)),
       sheet_high_m_(pattern_.high_m().array() + marginOf(scenario)),
       blur_px_(static_cast<float>(std::sqrt(optics_blur_px * optics_blur_px + 1.0 / 12.0))),

@@ -47,20 +47,40 @@ Pattern checkerboard(const Board& board) {
   };
 }
 
+void rotateClockwise(cv::Mat& picture, int quarter_turns) {
+  for (int turn = 0; turn < quarter_turns; ++turn) cv::rotate(picture, picture, cv::ROTATE_90_CLOCKWISE);
+}
+
+int tagAt(const Board& board, TagOrder order, int row, int col) {
+  const int from_below = board.rows - 1 - row;
+  switch (order) {
+    case TagOrder::RowsUp:
+      return from_below * board.cols + col;
+    case TagOrder::RowsDown:
+      return row * board.cols + col;
+    case TagOrder::ColumnsUp:
+      return col * board.rows + from_below;
+    case TagOrder::ColumnsDown:
+      break;
+  }
+  return col * board.rows + row;
+}
+
 Pattern tagGrid(const PrintedBoard& printed) {
   const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
                                                                                 tag36h11_destroy);
   const Board board = printed.board;
   std::vector<cv::Mat> tags;  // 6 x 6 bits
-  for (int id = 0; id < board.rows * board.cols; ++id) {
+  for (int id = printed.first_tag; id < printed.first_tag + board.rows * board.cols; ++id) {
     cv::Mat& tag = tags.emplace_back(6, 6, CV_8UC1);
     for (std::uint32_t bit = 0; bit < family->nbits; ++bit) {
       const bool bright = (family->codes[id] >> (family->nbits - 1 - bit) & 1) != 0;
       tag.at<std::uint8_t>(static_cast<int>(family->bit_y[bit]) - 1,
                            static_cast<int>(family->bit_x[bit]) - 1) = bright ? 255 : 0;
     }
+    rotateClockwise(tag, printed.clockwise_turns);
   }
-  return [board, tags, border = printed.border_bits](const Eigen::Vector2d& at) {
+  return [board, tags, border = printed.border_bits, order = printed.order](const Eigen::Vector2d& at) {
     const double gap = board.spacing_m - board.tag_size_m;
     const int col = floorOf(at.x() / board.spacing_m), row = floorOf(at.y() / board.spacing_m);
     const Eigen::Vector2d in_cell = at - board.spacing_m * Eigen::Vector2d(col, row);
@@ -73,8 +93,8 @@ Pattern tagGrid(const PrintedBoard& printed) {
     const int x = floorOf(in_cell.x() / board.tag_size_m * cells) - border;
     const int y = floorOf(in_cell.y() / board.tag_size_m * cells) - border;
     if (x < 0 || y < 0 || x >= 6 || y >= 6) return 0.0;
-    const int id = (board.rows - 1 - row) * board.cols + col;
-    return tags[static_cast<std::size_t>(id)].at<std::uint8_t>(y, x) > 127 ? 1.0 : 0.0;
+    return tags[static_cast<std::size_t>(tagAt(board, order, row, col))].at<std::uint8_t>(y, x) > 127 ? 1.0
+                                                                                                      : 0.0;
   };
 }
 
@@ -84,8 +104,11 @@ Pattern charuco(const PrintedBoard& printed) {
   const int cells = dictionary->markerSize + 2;
   std::map<std::pair<int, int>, cv::Mat> markers;
   int id = 0;
-  for (const BoardSquare& square : charucoMarkers(board, printed.first_is_bright))
-    test::aruco::drawMarker(*dictionary, id++, cells, markers[{square.row, square.col}]);
+  for (const BoardSquare& square : charucoMarkers(board, printed.first_is_bright)) {
+    cv::Mat& marker = markers[{square.row, square.col}];
+    test::aruco::drawMarker(*dictionary, id++, cells, marker);
+    rotateClockwise(marker, printed.clockwise_turns);
+  }
   return [board, markers, cells](const Eigen::Vector2d& at) {
     const int col = floorOf(at.x() / board.spacing_m) + 1, row = floorOf(at.y() / board.spacing_m) + 1;
     if (col < 0 || row < 0 || col >= board.cols || row >= board.rows) return 1.0;
@@ -131,6 +154,13 @@ CameraIntrinsics distortingCamera() {
 }
 
 Pattern patternOf(const PrintedBoard& printed) {
+  if (printed.mirrored) {
+    PrintedBoard upright = printed;
+    upright.mirrored = false;
+    return [width_m = printed.board.extent_m().x(), pattern = patternOf(upright)](const Eigen::Vector2d& at) {
+      return pattern({width_m - at.x(), at.y()});
+    };
+  }
   switch (printed.board.type) {
     case BoardType::Checkerboard:
       return checkerboard(printed.board);

@@ -3,6 +3,7 @@
 
 #include "core/frames/found_point.h"
 #include "core/frames/gray_image.h"
+#include "core/frames/tag_layout.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/rigid_transform.h"
@@ -19,6 +20,10 @@ struct PrintedBoard {
   int border_bits = 2;           // AprilGrid
   int dictionary = 0;            // ChArUco: OpenCV's index
   bool first_is_bright = false;  // ChArUco
+  int clockwise_turns = 0;       // quarter turns of tags and markers within their squares
+  TagOrder order = TagOrder::RowsUp;
+  int first_tag = 0;      // its number
+  bool mirrored = false;  // the whole print, in x
 };
 
 struct Exposure {

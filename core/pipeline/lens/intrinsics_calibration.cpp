@@ -117,7 +117,7 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
   run.pass = passOver(alone, context);
   if (alone.board_blinks && run.pass.cameras.front().kind == CameraKind::Events)
     checkBlinkingBoardSeen(run.pass.cameras.front(), alone.board);
-  checkBoardSeen(run.pass.cameras.front(), alone.board);
+  checkBoardSeen(run.pass.cameras.front(), alone.board, run.pass.faults);
   run.result = estimate(alone, run.pass, {}, context, run.story);
   run.result.passes = 1;
   tellPass(run, context);
@@ -136,7 +136,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
     if (run.pass.cameras.front().views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(alone, 0))
         throw CalibrationError(*blink);
-    checkBoardSeen(run.pass.cameras.front(), alone.board);
+    checkBoardSeen(run.pass.cameras.front(), alone.board, run.pass.faults);
     std::vector<TriedModel> tried = std::move(run.story.tried);
     run.result = estimate(alone, run.pass, start, context, run.story);
     if (start) run.story.tried = std::move(tried);

@@ -31,6 +31,8 @@ BoardObservations BlinkViews::finish(std::vector<RecordingFault>& faults) {
                                     observations.views.size(), observations.windows.size()));
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())
     faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
+  if (const std::string remark = tracker_.remark(); !remark.empty())
+    faults.push_back({camera_.stream, FaultKind::Guess, 0.0, fmt::format("{}: {}", camera_.name, remark)});
   return lens_ ? inIdealPixels(observations, *lens_) : observations;
 }
 

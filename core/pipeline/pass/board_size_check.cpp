@@ -85,17 +85,25 @@ std::string outcomes(const BoardObservations& observations) {
   return text.empty() ? "no windows" : text;
 }
 
-void checkBoardSeen(const BoardObservations& observations, const Board& board) {
+void checkBoardSeen(const BoardObservations& observations, const Board& board,
+                    std::span<const RecordingFault> faults) {
   if (!observations.views.empty()) return;
+  const std::string never =
+      fmt::format("the board was never found in {} {} ({})", observations.windows.size(),
+                  observations.kind == CameraKind::Events ? "windows" : "frames", outcomes(observations));
+  const std::string prefix = observations.camera + ": ";
+  for (const RecordingFault& fault : faults)
+    if (fault.kind == FaultKind::BoardSize && fault.text.starts_with(prefix))
+      throw calibrationFailed(observations.camera, never + ": " + fault.text.substr(prefix.size()),
+                              "Correct the board " + howTo(HowTo::EditBoard) +
+                                  ", the printed board or the driver of the camera accordingly");
   int lattices = 0;
   for (const WindowReport& window : observations.windows) {
     lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
                 window.outcome == WindowOutcome::RefinementFailed;
   }
   const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
-  throw calibrationFailed(observations.camera,
-                          fmt::format("the board was never found in {} windows ({})",
-                                      observations.windows.size(), outcomes(observations)),
+  throw calibrationFailed(observations.camera, never,
                           other_board ? fmt::format("Rows of circles are visible, but no {} x {} board: "
                                                     "check rows, columns and circles (dark or bright) {}",
                                                     board.rows, board.cols, howTo(HowTo::EditBoard))

@@ -8,6 +8,7 @@
 #include "core/geometry/board.h"
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace evical {
@@ -15,8 +16,10 @@ namespace evical {
 // Counts of windows by outcome, as text.
 std::string outcomes(const BoardObservations& observations);
 
-// Throws CalibrationFailed if the board was never found.
-void checkBoardSeen(const BoardObservations& observations, const Board& board);
+// Throws CalibrationFailed if the board was never found. The reason has the camera's faults of the board, such
+// as tags with other numbers.
+void checkBoardSeen(const BoardObservations& observations, const Board& board,
+                    std::span<const RecordingFault> faults);
 
 // Throws CalibrationFailed if the views contradict the number of rows or columns.
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options);

@@ -71,6 +71,8 @@ BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {
   observations.kind = CameraKind::Frames;
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())
     faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
+  if (const std::string remark = tracker_.remark(); !remark.empty())
+    faults.push_back({camera_.stream, FaultKind::Guess, 0.0, fmt::format("{}: {}", camera_.name, remark)});
   return throughLens(std::move(observations), resolution_px_.height_px, lens_);
 }
 

@@ -221,7 +221,7 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     if (camera.views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
         throw CalibrationError(*blink);
-    checkBoardSeen(camera, session.boardOf(k));
+    checkBoardSeen(camera, session.boardOf(k), pass.faults);
     checkBoardSize(camera, session.boardOf(k), session.options.front_end->extent);
   }
 }

@@ -152,6 +152,12 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias_data() {
     QTest::addRow("circles, %s", name) << circles << 0.55 << flashing;
     QTest::addRow("aprilgrid, %s", name) << grid << 0.5 << flashing;
     QTest::addRow("charuco, %s", name) << charuco << 0.6 << flashing;
+    PrintedBoard rotated = charuco;
+    rotated.clockwise_turns = 1;
+    QTest::addRow("charuco, rotated markers, %s", name) << rotated << 0.6 << flashing;
+    rotated = grid;
+    rotated.clockwise_turns = 2;
+    QTest::addRow("aprilgrid, rotated tags, %s", name) << rotated << 0.5 << flashing;
   }
 }
 

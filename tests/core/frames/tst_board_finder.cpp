@@ -121,6 +121,10 @@ class TestBoardFinder : public QObject {
   void wrongNumbers_areDoubted_data();
   void wrongNumbers_areDoubted();
   void drawingOfOpenCv_isFound();
+  void rotatedTags_areFoundAndNamed_data();
+  void rotatedTags_areFoundAndNamed();
+  void pictureOfOneRow_isRenumberedLater();
+  void tagsOfOpenCv_areFound();
   void coarsePicture_isFound();
 };
 
@@ -254,6 +258,22 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   QTest::newRow("border") << grid << grid.board << TagBorder::One
                           << "a tag border of 2 bits fits better than one of 1";
   QTest::newRow("right") << grid << grid.board << TagBorder::Two << "";
+  PrintedBoard later = grid;
+  later.first_tag = 10;
+  QTest::newRow("numbers from 10")
+      << later << grid.board << TagBorder::Automatic
+      << "tags 10 to 45 were detected, but a board of 6 x 6 tags has tags 0 to 35: this is another board, or "
+         "its numbers do not start at 0";
+  PrintedBoard mirrored = grid;
+  mirrored.mirrored = true;
+  QTest::newRow("mirrored") << mirrored << grid.board << TagBorder::Automatic
+                            << "the tags can only be read in the mirror image: the camera's pictures or the "
+                               "printed board are mirrored";
+  PrintedBoard markers = charuco();
+  markers.mirrored = true;
+  QTest::newRow("mirrored ChArUco") << markers << markers.board << TagBorder::Automatic
+                                    << "the markers can only be read in the mirror image: the camera's "
+                                       "pictures or the printed board are mirrored";
 }
 
 void TestBoardFinder::wrongNumbers_areDoubted() {
@@ -287,6 +307,124 @@ void TestBoardFinder::drawingOfOpenCv_isFound() {
       QVERIFY((point.at_px - expected).norm() < 0.1);
     }
   }
+}
+
+void TestBoardFinder::rotatedTags_areFoundAndNamed_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::addColumn<QString>("layout");
+  const QStringList turns = {"", "rotated by 90 deg clockwise within their squares",
+                             "rotated by 180 deg within their squares",
+                             "rotated by 90 deg counterclockwise within their squares"};
+  const QStringList orders = {"", "numbered row by row from the top left",
+                              "numbered column by column from the bottom left",
+                              "numbered column by column from the top left"};
+  for (int order = 0; order < 4; ++order) {
+    for (int turn = 0; turn < 4; ++turn) {
+      PrintedBoard grid = plainGrid();
+      grid.clockwise_turns = turn;
+      grid.order = static_cast<TagOrder>(order);
+      QString expected = turns[turn];
+      if (turn > 0 && order > 0) expected += " and ";
+      expected += orders[order];
+      QTest::addRow("grid, order %d, %d turns", order, turn) << grid << expected;
+    }
+  }
+  for (int turn = 1; turn < 4; ++turn) {
+    PrintedBoard kalibr = kalibrGrid();
+    kalibr.clockwise_turns = turn;
+    QTest::addRow("square grid, %d turns", turn) << kalibr << turns[turn];
+    for (PrintedBoard markers : {charuco(), legacyCharuco()}) {
+      markers.clockwise_turns = turn;
+      QTest::addRow("ChArUco of %d rows, %d turns", markers.board.rows, turn) << markers << turns[turn];
+    }
+  }
+}
+
+// In all rotations of the whole board, and for one that is partly outside of the picture.
+void TestBoardFinder::rotatedTags_areFoundAndNamed() {
+  QFETCH(const PrintedBoard, printed);
+  QFETCH(const QString, layout);
+  const Board& board = printed.board;
+  const CameraIntrinsics camera = distortingCamera();
+  BoardFinder finder(board, FrameOptions{});
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0.4, 0.1, 0.1), Eigen::Vector3d(-0.2, 0.4, 1.7), Eigen::Vector3d(0.1, -0.3, 3.1)}) {
+    const RigidTransform pose = wholeBoard(board, turn);
+    BoardFinderErrors errors;
+    compareForBoardFinder(finder.find(renderBoard(printed, camera, pose, {})), board, camera, pose, errors);
+    QCOMPARE(errors.wrong, 0);
+    QVERIFY(errors.found > 0.98 * pointsInView(board, camera, pose));
+  }
+  const RigidTransform part =
+      lookAt(board, 0.7 * distanceFor(board), {0.1, 0.2, 0.1}, {-0.4 * board.extent_m().x(), 0.0});
+  BoardFinderErrors errors;
+  compareForBoardFinder(finder.find(renderBoard(printed, camera, part, {})), board, camera, part, errors);
+  QCOMPARE(errors.wrong, 0);
+  QVERIFY(errors.found > 0.9 * pointsInView(board, camera, part));
+  const QString usual =
+      board.type == BoardType::Charuco ? "OpenCV's boards, the markers" : "Kalibr's boards, the tags";
+  const QString expected =
+      layout.isEmpty() ? "" : "compared with " + usual + " are " + layout + "; this is accounted for";
+  QCOMPARE(QString::fromStdString(finder.remark()), expected);
+  QCOMPARE(finder.doubt(), std::string());
+}
+
+// One row is at the top or at the bottom, depending on the order, which a later picture shows.
+void TestBoardFinder::pictureOfOneRow_isRenumberedLater() {
+  PrintedBoard printed = plainGrid();
+  printed.order = TagOrder::RowsDown;
+  const Board& board = printed.board;
+  const CameraIntrinsics camera = distortingCamera();
+  BoardFinder finder(board, FrameOptions{});
+  const double distance_m = 0.22;  // of which a picture has about one row
+  const RigidTransform top = lookAt(board, distance_m, {}, {0.0, 1.5 * board.spacing_m});
+  finder.find(renderBoard(printed, camera, top, {}));
+  QVERIFY(!finder.renumbered());
+  const RigidTransform whole = wholeBoard(board, {});
+  QCOMPARE(finder.find(renderBoard(printed, camera, whole, {})).size(),
+           static_cast<std::size_t>(board.pointCount()));
+  QVERIFY(finder.renumbered() && !finder.renumbered());
+  BoardFinderErrors errors;
+  compareForBoardFinder(finder.find(renderBoard(printed, camera, top, {})), board, camera, top, errors);
+  QCOMPARE(errors.wrong, 0);
+  QVERIFY(errors.found >= 4);
+}
+
+// OpenCV draws AprilTags rotated by 180 deg, and numbers a grid from the top left.
+void TestBoardFinder::tagsOfOpenCv_areFound() {
+  const int side = 80, gap = 24, margin = 60, rows = 3, cols = 5;
+  cv::Mat picture(2 * margin + rows * (side + gap) - gap, 2 * margin + cols * (side + gap) - gap, CV_8UC1,
+                  255);
+  const auto dictionary = test::aruco::dictionary(cv::aruco::DICT_APRILTAG_36h11);
+  for (int row = -1; row < rows; ++row)
+    for (int col = -1; col < cols; ++col)
+      picture(cv::Rect(margin + side + col * (side + gap), margin + side + row * (side + gap), gap, gap)) = 0;
+  cv::Mat without_squares(picture.size(), CV_8UC1, 255);
+  for (int id = 0; id < rows * cols; ++id) {
+    cv::Mat tag;
+    test::aruco::drawMarker(*dictionary, id, side, tag);
+    const cv::Rect place(margin + id % cols * (side + gap), margin + id / cols * (side + gap), side, side);
+    tag.copyTo(picture(place));
+    tag.copyTo(without_squares(place));
+  }
+  GrayImage image{{picture.cols, picture.rows}, {}}, bare = image;
+  image.pixels.assign(picture.datastart, picture.dataend);
+  bare.pixels.assign(without_squares.datastart, without_squares.dataend);
+  const Board board = boardOfBoardFinder(BoardType::AprilGrid, rows, cols, 0.104, 0.0, 0.08);
+  BoardFinder finder(board, FrameOptions{});
+  const FoundPoints points = finder.find(image);
+  QCOMPARE(points.size(), static_cast<std::size_t>(board.pointCount()));
+  for (const FoundPoint& point : points) {
+    const Eigen::Vector2d expected = 1000.0 * board.point_m(point.point).array() + (margin - 0.5);
+    QVERIFY((point.at_px - expected).norm() < 0.3);
+  }
+  QCOMPARE(finder.remark(),
+           std::string("compared with Kalibr's boards, the tags are rotated by 180 deg within "
+                       "their squares and numbered row by row from the top left; this is "
+                       "accounted for"));
+  BoardFinder of_bare(board, FrameOptions{});
+  for (int picture_number = 0; picture_number < 3; ++picture_number) QVERIFY(of_bare.find(bare).empty());
+  QVERIFY(of_bare.doubt().find("not the small squares between them") != std::string::npos);
 }
 
 // A sensor of few pixels: the checkerboard is searched in an enlarged picture.

@@ -45,26 +45,46 @@ class TestSimulatedFrames : public QObject {
   void initTestCase() {
     folder_ = std::make_unique<QTemporaryDir>();
     scenario_ = rollingShutter();
+    scenario_.tag_turns = 3;  // of the tags within their squares: the result does not depend on it
     simulate(scenario_, path(), RunContext{});
   }
 
-  // Corners are where the simulator's motion projects them.
-  void charucoInJpegs_isFound() {
+  void tagsInJpegs_areFound_data() {
+    QTest::addColumn<bool>("charuco");
+    QTest::addColumn<int>("turns");
+    for (const bool charuco : {true, false})
+      for (int turns = charuco ? 0 : 1; turns < 4; ++turns)
+        QTest::addRow("%s, tags rotated by %d deg", charuco ? "ChArUco" : "AprilGrid", 90 * turns)
+            << charuco << turns;
+  }
+
+  // Corners are where the simulator's motion projects them, for all rotations of tags within their squares.
+  void tagsInJpegs_areFound() {
+    QFETCH(bool, charuco);
+    QFETCH(int, turns);
     Scenario scenario = scenario_;
     scenario.duration_s = 2.0;
-    scenario.board = {};
-    scenario.board.type = BoardType::Charuco;
-    scenario.board.rows = 7;
-    scenario.board.cols = 10;
-    scenario.board.spacing_m = 0.07;
-    scenario.board.tag_size_m = 0.052;
-    scenario.board.radius_m = 0.0;
+    scenario.tag_turns = turns;
+    if (charuco) {
+      scenario.board = {};
+      scenario.board.type = BoardType::Charuco;
+      scenario.board.rows = 7;
+      scenario.board.cols = 10;
+      scenario.board.spacing_m = 0.07;
+      scenario.board.tag_size_m = 0.052;
+      scenario.board.radius_m = 0.0;
+    }
     scenario.cameras.front().frames->line_delay_us = 0.0;
     scenario.cameras.front().frames->jpeg_quality = 85;
     const QTemporaryDir folder;
     const SimulationSummary made = simulate(scenario, folder.path().toStdString(), RunContext{});
-    const Session charuco = readSession(made.session);
-    const DetectionResult pass = readAndDetect(charuco, givenLenses(charuco), RunContext{});
+    const Session session = readSession(made.session);
+    const DetectionResult pass = readAndDetect(session, givenLenses(session), RunContext{});
+    const auto named = [&](const RecordingFault& fault) {
+      return fault.text.find(turns == 2 ? "rotated by 180 deg within" : "rotated by 90 deg ") !=
+             std::string::npos;
+    };
+    QCOMPARE(std::any_of(pass.faults.begin(), pass.faults.end(), named), turns > 0);
     const BoardObservations& seen = pass.cameras.front();
     QVERIFY2(seen.views.size() >= 18, QByteArray::number(static_cast<double>(seen.views.size())));
     const SinusoidMotion motion(scenario);
