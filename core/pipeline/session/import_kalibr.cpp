@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -98,20 +99,100 @@ void readImus(const YamlNode& root, const ImportRequest& request, ImportedSessio
   for (const std::string& key : root.keys()) readImu(root[key], key, request, imported);
 }
 
-void readCameras(const YamlNode& root, ImportedSession& imported) {
+void readCameras(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
   for (const std::string& key : camchainCameras(root)) {
     const YamlNode map = root[key];
     SessionCamera camera;
     camera.name = key;
-    camera.stream = map["rostopic"].text();
+    if (const auto topic = map.find("rostopic"); topic || request.recording.empty())
+      camera.stream = map["rostopic"].text();
     camera.intrinsics = readIntrinsics(map);
     camera.resolution_px = camera.intrinsics->resolution_px;
-    if (camera.stream.find("image") != std::string::npos)
-      imported.notes.push_back(
-          fmt::format("{}: {} seems to be an image topic: give the topic of the events {}", key,
-                      camera.stream, howTo(HowTo::EditSession)));
     imported.session.cameras.push_back(std::move(camera));
   }
+}
+
+// A camera that moves detects circles in its events, other boards only in frames.
+bool needsFrames(const Session& session) {
+  return !session.board.hasCircles();
+}
+
+std::string framesNeeded(const Session& session) {
+  return fmt::format("a moving event camera cannot detect a board of type {}",
+                     boardTypeName(session.board.type));
+}
+
+constexpr const char* kOtherWays =
+    "Use a circle grid, record the frames of this sensor, or show the board on a flashing screen (for "
+    "intrinsics only)";
+
+// Names of the streams of a type that no camera has yet; none if the recording cannot be opened.
+std::vector<std::string> freeStreams(const ImportRequest& request, const Session& session, StreamType type) {
+  std::vector<std::string> names;
+  try {
+    for (const StreamInfo& stream : openRecording(request.recording)->streams()) {
+      const auto is_own = [&](const SessionCamera& camera) { return camera.stream == stream.name; };
+      if (stream.type == type && stream.readable &&
+          std::none_of(session.cameras.begin(), session.cameras.end(), is_own))
+        names.push_back(stream.name);
+    }
+  } catch (const CalibrationError&) {
+  }
+  return names;
+}
+
+// For a camera without a topic: the only free stream, or the only one that has the camera's name in its own.
+void findStream(const ImportRequest& request, SessionCamera& camera, ImportedSession& imported) {
+  const Session& session = imported.session;
+  std::vector<std::string> all =
+      freeStreams(request, session, needsFrames(session) ? StreamType::Frames : StreamType::Events);
+  if (all.empty() && !needsFrames(session)) all = freeStreams(request, session, StreamType::Frames);
+  std::vector<std::string> named;
+  for (const std::string& stream : all)
+    if (stream.find(camera.name) != std::string::npos) named.push_back(stream);
+  const auto unnamed = std::count_if(session.cameras.begin(), session.cameras.end(),
+                                     [](const SessionCamera& other) { return other.stream.empty(); });
+  if (named.size() != 1 && (all.size() != 1 || unnamed != 1))
+    throw badInput(camera.name, "has no rostopic",
+                   all.empty() ? fmt::format("Add rostopic: with the camera's topic; {} has no stream of {}",
+                                             request.recording.string(),
+                                             needsFrames(session) ? "frames" : "events or frames")
+                               : "Add rostopic: with one of " + joined(all));
+  camera.stream = named.size() == 1 ? named.front() : all.front();
+  imported.notes.push_back(
+      fmt::format("{}: its camchain has no rostopic; the stream {} is used", camera.name, camera.stream));
+}
+
+// Whether the chosen streams suit the board.
+void checkStreams(const ImportRequest& request, ImportedSession& imported) {
+  Session& session = imported.session;
+  const std::vector<std::string> frames = freeStreams(request, {}, StreamType::Frames),
+                                 events = freeStreams(request, {}, StreamType::Events);
+  const auto isAmong = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const SessionCamera& camera : session.cameras) {
+    const bool opened = !frames.empty() || !events.empty();
+    const bool has_events =
+        opened ? isAmong(events, camera.stream) : camera.stream.find("events") != std::string::npos;
+    if (needsFrames(session) && has_events)
+      imported.notes.push_back(fmt::format(
+          "warning: {}: {}, but {} has events. {}", camera.name, framesNeeded(session), camera.stream,
+          frames.empty() ? kOtherWays
+                         : fmt::format("Replace its stream {} by the frames of this sensor: {}",
+                                       howTo(HowTo::EditSession), joined(frames))));
+    if (!needsFrames(session) && camera.stream.find("image") != std::string::npos &&
+        (!opened || !events.empty()))
+      imported.notes.push_back(
+          fmt::format("{}: {} seems to be an image topic: give the topic of the events {}", camera.name,
+                      camera.stream, howTo(HowTo::EditSession)));
+  }
+}
+
+void findStreams(const ImportRequest& request, ImportedSession& imported) {
+  for (SessionCamera& camera : imported.session.cameras)
+    if (camera.stream.empty()) findStream(request, camera, imported);
+  checkStreams(request, imported);
 }
 
 const char* nameOf(ImportKind kind) {
@@ -119,7 +200,22 @@ const char* nameOf(ImportKind kind) {
   return kind == ImportKind::KalibrImu ? "imu" : "camchain";
 }
 
-// Without a camchain (before Kalibr was run) every stream of events becomes a camera, as in `evical init`.
+bool isCameraOf(const StreamSummary& stream, StreamType type) {
+  return stream.info.readable && stream.count > 0 && stream.info.type == type;
+}
+
+void addCamerasOf(StreamType type, const Inspection& inspection, ImportedSession& imported) {
+  Session& session = imported.session;
+  for (const StreamSummary& stream : inspection.streams) {
+    if (!isCameraOf(stream, type)) continue;
+    session.cameras.push_back(withSeenResolution(guessedCamera(stream, session), stream));
+    imported.notes.push_back(
+        fmt::format("{}: camera of the stream {}; its lens is calibrated first, from the same recording",
+                    session.cameras.back().name, stream.info.name));
+  }
+}
+
+// Without a camchain (before Kalibr was run) every stream that can detect the board becomes a camera.
 void addRecordedCameras(const ImportRequest& request, ImportedSession& imported) {
   if (request.recording.empty())
     throw badInput("cameras", "none of the files describes a camera",
@@ -127,14 +223,19 @@ void addRecordedCameras(const ImportRequest& request, ImportedSession& imported)
                        ", whose event streams become the cameras");
   const Inspection inspection = inspectRecording(*openRecording(request.recording));
   Session& session = imported.session;
-  for (const StreamSummary& stream : inspection.streams) {
-    const bool camera = stream.info.readable && stream.count > 0 &&
-                        (stream.info.type == StreamType::Events || stream.info.type == StreamType::Frames);
-    if (!camera) continue;
-    session.cameras.push_back(withSeenResolution(guessedCamera(stream, session), stream));
-    imported.notes.push_back(
-        fmt::format("{}: camera of the stream {}; its lens is calibrated first, from the same recording",
-                    session.cameras.back().name, stream.info.name));
+  if (!needsFrames(session)) addCamerasOf(StreamType::Events, inspection, imported);
+  addCamerasOf(StreamType::Frames, inspection, imported);
+  if (session.cameras.empty()) {
+    addCamerasOf(StreamType::Events, inspection, imported);
+    for (const SessionCamera& camera : session.cameras)
+      imported.notes.push_back(
+          fmt::format("warning: {}: {}. {}", camera.name, framesNeeded(session), kOtherWays));
+  } else if (needsFrames(session)) {
+    for (const StreamSummary& stream : inspection.streams)
+      if (isCameraOf(stream, StreamType::Events))
+        imported.notes.push_back(
+            fmt::format("the events of {} are not used: {}. Frames of the same sensor give its lens and pose",
+                        stream.info.name, framesNeeded(session)));
   }
   if (session.cameras.empty())
     throw badInput(request.recording.string(), "has no stream of events or frames",
@@ -154,14 +255,17 @@ void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest&
     before = true;
     if (source.kind == ImportKind::KalibrTarget) readTarget(source.root, request, imported);
     if (source.kind == ImportKind::KalibrImu) readImus(source.root, request, imported);
-    if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, imported);
+    if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, request, imported);
     if (source.kind == ImportKind::Intrinsics || source.kind == ImportKind::LensFile)
       throw badInput(source.path.string(), "has only intrinsics, without the name of a stream",
                      "Give Kalibr's camchain, or import this file alone");
   }
   if (!seen[static_cast<std::size_t>(ImportKind::KalibrTarget)])
     throw badInput("board", "none of the files describes the board", "Give Kalibr's target file, too");
-  if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)]) addRecordedCameras(request, imported);
+  if (seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)])
+    findStreams(request, imported);
+  else
+    addRecordedCameras(request, imported);
 }
 
 }  // namespace evical

@@ -157,8 +157,12 @@ void keepReference(Session& session) {
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection) {
   Session found = session;
-  // If there are events, frames are not added automatically.
-  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
+  // If there are events, frames are not added automatically, unless only they can show the board.
+  const bool frames_first =
+      !session.board.hasCircles() && session.board.hasPattern() && !session.board_blinks;
+  std::array types = {StreamType::Events, StreamType::Frames, StreamType::Points};
+  if (frames_first) std::swap(types[0], types[1]);
+  for (const StreamType type : types)
     if (found.cameras.empty()) addSensors(recording, inspection, type, found);
   if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
   keepReference(found);
@@ -197,6 +201,36 @@ const StreamSummary* streamOf(const std::string& name, const std::filesystem::pa
   return nullptr;
 }
 
+bool isFrameCamera(const StreamSummary& stream) {
+  return isSensor(stream, StreamType::Frames) && stream.info.readable && stream.info.timed;
+}
+
+// Streams of frames that no camera of the session has, each with the advice on its use.
+std::vector<std::string> unusedFrames(const Session& session,
+                                      const std::vector<InspectedRecording>& recordings) {
+  std::vector<std::string> notes;
+  for (const InspectedRecording& recording : recordings) {
+    const bool is_own = &recording == &recordings.front();
+    for (const StreamSummary& stream : recording.inspection.streams) {
+      const auto uses = [&](const SessionCamera& camera) {
+        return camera.stream == stream.info.name &&
+               (camera.recording.empty() ? is_own : camera.recording == recording.file);
+      };
+      if (!isSensor(stream, StreamType::Frames) ||
+          std::any_of(session.cameras.begin(), session.cameras.end(), uses))
+        continue;
+      notes.push_back(
+          fmt::format("the frames of {} in {} are not used{}", stream.info.name, recording.file.string(),
+                      !stream.info.readable ? ": they cannot be read"
+                      : !stream.info.timed
+                          ? ": they have no times, and are suitable for intrinsics only"
+                          : fmt::format("; to use them, add a camera with stream: {}{}", stream.info.name,
+                                        is_own ? "" : " and recording: " + recording.file.string())));
+    }
+  }
+  return notes;
+}
+
 // Remarks on frame streams in the event cameras' recordings: possible additional cameras.
 std::vector<std::string> framesBeside(const SessionCamera& camera,
                                       const std::vector<InspectedRecording>& recordings) {
@@ -206,7 +240,7 @@ std::vector<std::string> framesBeside(const SessionCamera& camera,
   for (const InspectedRecording& recording : recordings) {
     if (recording.file != (camera.recording.empty() ? recordings.front().file : camera.recording)) continue;
     for (const StreamSummary& stream : recording.inspection.streams) {
-      if (!isSensor(stream, StreamType::Frames) || !stream.info.readable || !stream.info.timed) continue;
+      if (!isFrameCamera(stream)) continue;
       const bool same = stream.info.resolution_px == camera.resolution_px;
       lines.push_back(
           fmt::format("The recording also has frames, {} as a separate camera: frames: {{stream: {}{}}}",
@@ -217,10 +251,25 @@ std::vector<std::string> framesBeside(const SessionCamera& camera,
   return lines;
 }
 
+// The event camera whose sensor may also have taken these frames; empty if there is none.
+std::string possibleSensor(const SessionCamera& frames, const Session& session,
+                           const std::vector<InspectedRecording>& recordings) {
+  const StreamSummary* const own = streamOf(frames.stream, frames.recording, recordings);
+  if (own == nullptr || own->info.type != StreamType::Frames || !frames.resolution_px.known()) return {};
+  for (const SessionCamera& camera : session.cameras) {
+    const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);
+    if (stream != nullptr && stream->info.type == StreamType::Events &&
+        camera.resolution_px == frames.resolution_px)
+      return camera.name;
+  }
+  return {};
+}
+
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
-      "The board: give type and dimensions, and remove the '#'. With an IMU it needs an odd number of rows. "
+      "The board: remove the '#', and give type and dimensions. With an IMU, asymmetric circles need an odd "
+      "number of rows. "
       "Measure over as many circles as possible: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005} "
       "replaces spacing_m and has the length over ten spacings and the ruler's sigma.";
   for (const SessionCamera& camera : session.cameras) {
@@ -232,6 +281,8 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
           stream->seen_px.width_px, stream->seen_px.height_px));
     own.emplace_back("intrinsics: camera.yaml  # if absent: calibrated first, from the same recording");
     for (std::string& line : framesBeside(camera, recordings)) own.push_back(std::move(line));
+    if (const std::string sensor = possibleSensor(camera, session, recordings); !sensor.empty())
+      own.push_back(fmt::format("same_sensor_as: {}  # if both streams are of the same sensor", sensor));
     if (!camera.recording.empty())
       own.emplace_back("clock_offset_s: 0.0  # seconds, added to the times of this file");
   }
@@ -245,7 +296,8 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
 }
 
 std::vector<std::string> notesOn(const Session& session) {
-  std::vector<std::string> notes = {"board: complete its entry"};
+  std::vector<std::string> notes = {
+      "board: complete its entry: remove the '#' of its lines, and give type and dimensions"};
   for (const SessionCamera& camera : session.cameras)
     if (!camera.resolution_px.known())
       notes.push_back(
@@ -265,16 +317,24 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
   session.recording = recordings.at(0).file;
   for (const InspectedRecording& each : recordings)
     if (const auto useless = whyUseless(each.file, each.inspection)) throw CalibrationError(*useless);
-  const auto addAll = [&](StreamType type) {
-    for (const InspectedRecording& each : recordings) {
-      const bool is_own = &each == &recordings.front();
-      addSensors(is_own ? std::filesystem::path() : each.file, each.inspection, type, session);
-    }
+  const auto addFrom = [&](const InspectedRecording& each, StreamType type) {
+    const bool is_own = &each == &recordings.front();
+    addSensors(is_own ? std::filesystem::path() : each.file, each.inspection, type, session);
   };
-  // If there are events, frames are only mentioned in remarks.
-  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
-    if (session.cameras.empty()) addAll(type);
-  addAll(StreamType::Imu);
+  // If a recording has events or IMU samples besides frames, the frames are only mentioned. A recording that
+  // has only frames was given for them.
+  const auto hasFramesOnly = [](const InspectedRecording& each) {
+    return std::none_of(each.inspection.streams.begin(), each.inspection.streams.end(),
+                        [](const StreamSummary& stream) {
+                          return isSensor(stream, StreamType::Events) || isSensor(stream, StreamType::Imu);
+                        });
+  };
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points}) {
+    const bool first = session.cameras.empty();
+    for (const InspectedRecording& each : recordings)
+      if (first || (type == StreamType::Frames && hasFramesOnly(each))) addFrom(each, type);
+  }
+  for (const InspectedRecording& each : recordings) addFrom(each, StreamType::Imu);
   if (session.cameras.empty())
     throw badInput(session.recording.string(),
                    "there are no events, frames or points to calibrate a camera from",
@@ -283,6 +343,7 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
   validate(session, session.recording.string());
   draft.yaml = sessionYaml(session, folder, remarksOn(session, recordings));
   draft.notes = notesOn(session);
+  for (std::string& note : unusedFrames(session, recordings)) draft.notes.push_back(std::move(note));
   return draft;
 }
 

@@ -2,6 +2,7 @@
 #include "core/format/intrinsics_yaml.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/pipeline/session/import_session.h"
+#include "core/recording/recording_writer.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -69,6 +70,38 @@ const char* const kCamchain = R"(cam0:
   rostopic: /davis/image_raw
   timeshift_cam_imu: 0.002
 )";
+
+const char* const kAprilGrid =
+    "target_type: aprilgrid\ntagRows: 6\ntagCols: 6\ntagSize: 0.088\ntagSpacing: 0.3\n";
+
+// A bag with these streams of events, and of frames of the same size.
+std::filesystem::path writeBag(const std::filesystem::path& path, const std::vector<std::string>& events,
+                               const std::vector<std::string>& frames) {
+  std::vector<StreamInfo> streams;
+  for (const auto& [names, type] : {std::pair(&events, StreamType::Events), {&frames, StreamType::Frames}})
+    for (const std::string& name : *names) {
+      StreamInfo& stream = streams.emplace_back();
+      stream.name = name;
+      stream.type = type;
+      stream.resolution_px = {16, 12};
+    }
+  const auto bag = createBag(path, streams, false);
+  for (int k = 0; k < 20; ++k) {
+    const std::int64_t time_ns = 1'000'000'000 + 50'000'000 * k;
+    for (std::size_t s = 0; s < streams.size(); ++s) {
+      const std::vector<Event> one(1, Event{time_ns, static_cast<std::uint16_t>(k % 16), 3, true});
+      if (s < events.size()) bag->write(s, one);
+      Frame frame;
+      frame.time_ns = time_ns;
+      frame.size_px = {16, 12};
+      frame.row_bytes = 16;
+      frame.bytes.assign(16 * 12, 90);
+      if (s >= events.size()) bag->writeFrame(s, frame);
+    }
+  }
+  bag->finish();
+  return path;
+}
 
 bool has(const std::vector<std::string>& notes, const char* text) {
   return std::any_of(notes.begin(), notes.end(),
@@ -149,6 +182,102 @@ class TestImportSession : public QObject {
       QFAIL("imported");
     } catch (const CalibrationError& error) {
       QVERIFY2(std::string(error.what()).find("or --recording FILE") != std::string::npos, error.what());
+    }
+  }
+
+  // A moving event camera detects circles only.
+  void boardForFrames_takesFramesOrWarns_data() {
+    QTest::addColumn<bool>("circles");
+    QTest::addColumn<QStringList>("events");
+    QTest::addColumn<QStringList>("frames");
+    QTest::addColumn<QStringList>("cameras");
+    QTest::addColumn<QString>("note");
+    const QStringList e = {"/left/events"}, f = {"/left/image_raw"},
+                      both = {"/left/image_raw", "/right/image_raw"};
+    QTest::newRow("both") << false << e << f << f
+                          << "the events of /left/events are not used: a moving event camera";
+    QTest::newRow("two streams of frames")
+        << false << e << both << both << "events of /left/events are not used";
+    QTest::newRow("frames only") << false << QStringList() << f << f
+                                 << "camera of the stream /left/image_raw";
+    QTest::newRow("events only")
+        << false << e << QStringList() << e
+        << "warning: left: a moving event camera cannot detect a board of type aprilgrid";
+    QTest::newRow("circles") << true << e << f << (e + f) << "camera of the stream /left/events";
+  }
+  void boardForFrames_takesFramesOrWarns() {
+    QFETCH(bool, circles);
+    QFETCH(QStringList, events);
+    QFETCH(QStringList, frames);
+    QFETCH(QStringList, cameras);
+    QFETCH(QString, note);
+    const auto names = [](const QStringList& list) {
+      std::vector<std::string> texts;
+      for (const QString& each : list) texts.push_back(each.toStdString());
+      return texts;
+    };
+    ImportRequest request = kalibr();
+    request.files = {write("imu.yaml", kImu), write("target.yaml", circles ? kTarget : kAprilGrid)};
+    request.recording = writeBag(std::filesystem::path(scratch_.path().toStdString()) / "both.bag",
+                                 names(events), names(frames));
+    std::vector<std::string> notes;
+    const Session session = written(request, notes);
+    QStringList streams;
+    for (const SessionCamera& camera : session.cameras) streams += QString::fromStdString(camera.stream);
+    QCOMPARE(streams, cameras);
+    QVERIFY2(has(notes, note.toUtf8()), notes.empty() ? "" : notes.back().c_str());
+    QCOMPARE(has(notes, "moving event camera"), !circles && !events.empty());
+  }
+
+  void camchainThatNamesEvents_isWarnedOf() {
+    ImportRequest request = kalibr();
+    std::string chain = kCamchain;
+    chain.replace(chain.find("/davis/image_raw"), 16, "/left/events");
+    request.files = {write("imu.yaml", kImu), write("camchain.yaml", chain),
+                     write("target.yaml", kAprilGrid)};
+    request.recording = writeBag(std::filesystem::path(scratch_.path().toStdString()) / "both.bag",
+                                 {"/left/events"}, {"/left/image_raw"});
+    std::vector<std::string> notes;
+    QCOMPARE(written(request, notes).cameras[0].stream, std::string("/left/events"));
+    QVERIFY(has(notes, "warning: cam0: a moving event camera cannot detect a board of type aprilgrid"));
+    QVERIFY(has(notes, "by the frames of this sensor: /left/image_raw"));
+    chain.replace(chain.find("/left/events"), 12, "/left/image_raw");
+    request.files[1] = write("camchain.yaml", chain);
+    written(request, notes);
+    QVERIFY(!has(notes, "moving event camera") && !has(notes, "give the topic of the events"));
+  }
+
+  void camchainWithoutTopics_takesTheStreamsThatFit_data() {
+    QTest::addColumn<bool>("circles");
+    QTest::addColumn<QStringList>("frames");
+    QTest::addColumn<QString>("stream");  // empty: refused
+    QTest::newRow("tags") << false << QStringList{"/left/image_raw"} << "/left/image_raw";
+    QTest::newRow("circles") << true << QStringList{"/left/image_raw"} << "/left/events";
+    QTest::newRow("by name") << false << QStringList{"/cam0/image_raw", "/cam1/image_raw"}
+                             << "/cam0/image_raw";
+    QTest::newRow("several") << false << QStringList{"/a/image_raw", "/b/image_raw"} << "";
+  }
+  void camchainWithoutTopics_takesTheStreamsThatFit() {
+    QFETCH(bool, circles);
+    QFETCH(QStringList, frames);
+    QFETCH(QString, stream);
+    ImportRequest request = kalibr();
+    std::string chain = kCamchain;
+    chain.erase(chain.find("  rostopic"), std::string("  rostopic: /davis/image_raw\n").size());
+    request.files = {write("imu.yaml", kImu), write("camchain.yaml", chain),
+                     write("target.yaml", circles ? kTarget : kAprilGrid)};
+    std::vector<std::string> names, notes;
+    for (const QString& each : frames) names.push_back(each.toStdString());
+    request.recording =
+        writeBag(std::filesystem::path(scratch_.path().toStdString()) / "both.bag", {"/left/events"}, names);
+    try {
+      const Session session = written(request, notes);
+      QCOMPARE(QString::fromStdString(session.cameras.at(0).stream), stream);
+      QVERIFY(has(notes, "its camchain has no rostopic; the stream"));
+    } catch (const CalibrationError& error) {
+      QVERIFY2(stream.isEmpty(), error.what());
+      QVERIFY2(QString(error.what()).contains("Add rostopic: with one of /a/image_raw, /b/image_raw"),
+               error.what());
     }
   }
 

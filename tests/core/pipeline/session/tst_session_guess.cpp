@@ -6,6 +6,8 @@
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <algorithm>
+
 using namespace evical;
 
 namespace {
@@ -45,6 +47,11 @@ std::string withoutCommentMarks(std::string yaml) {
   for (std::size_t at = board.find("# "); at != std::string::npos; at = board.find("# ", at))
     board.erase(at, 2);
   return yaml.replace(begin, end - begin, board);
+}
+
+bool noted(const SessionDraft& draft, const std::string& text) {
+  return std::any_of(draft.notes.begin(), draft.notes.end(),
+                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
 }
 
 #define VERIFY_REFUSED(call, part)                                                     \
@@ -263,6 +270,40 @@ class TestSessionGuess : public QObject {
     QCOMPARE(draft.session.cameras.size(), std::size_t{1});
     QVERIFY(draft.yaml.find("frames: {stream: /left/image, same_sensor_as: left}") != std::string::npos);
     QVERIFY(draft.yaml.find("frames: {stream: /cam0/image}") != std::string::npos);
+    QVERIFY(noted(draft, "the frames of /left/image in r.bag are not used; to use them, add a camera with"));
+    QVERIFY(noted(draft, "the frames of /cam0/image in r.bag are not used"));
+  }
+
+  // A folder of pictures that is given in addition to the events.
+  void draft_takesRecordingsOfFramesOnly() {
+    StreamSummary untimed = frameStream("pictures");
+    untimed.info.timed = false;
+    const Inspection events = holding({eventStream("/left/events")});
+    const SessionDraft draft = draftSession(
+        {{"r.bag", events}, {"frames", holding({frameStream("cam0")})}, {"untimed", holding({untimed})}},
+        ".");
+    QCOMPARE(draft.session.cameras.size(), std::size_t{2});
+    QCOMPARE(draft.session.cameras[1].recording.string(), std::string("frames"));
+    QVERIFY(draft.yaml.find("# same_sensor_as: left  # if both streams are of the same sensor") !=
+            std::string::npos);
+    QVERIFY(!noted(draft, "cam0"));
+    QVERIFY(noted(draft, "the frames of pictures in untimed are not used: they have no times"));
+    const SessionDraft with_imu = draftSession(
+        {{"r.bag", events}, {"imu.bag", holding({imuStream("/imu"), frameStream("/web")})}}, ".");
+    QCOMPARE(with_imu.session.cameras.size(), std::size_t{1});
+    QVERIFY(noted(with_imu,
+                  "the frames of /web in imu.bag are not used; to use them, add a camera with "
+                  "stream: /web and recording: imu.bag"));
+  }
+
+  void boardWithoutCircles_takesFrames() {
+    Session session;
+    session.board.type = BoardType::AprilGrid;
+    const Inspection both = holding({eventStream("/left/events"), frameStream("/left/image")});
+    QCOMPARE(withMissingSensors(session, {}, both).cameras.at(0).stream, std::string("/left/image"));
+    session.board_blinks = true;
+    QCOMPARE(withMissingSensors(session, {}, both).cameras.at(0).stream, std::string("/left/events"));
+    QCOMPARE(withMissingSensors({}, {}, both).cameras.at(0).stream, std::string("/left/events"));
   }
 
   void draft_thatMakesNoSessionIsRefused() {
