@@ -43,6 +43,8 @@ class TestCheckCommand : public QObject {
     QVERIFY2(outcome.output.contains(
                  QRegularExpression("left.translation.x \\[mm\\] +[0-9.]+ \\+- [0-9.]+ +[0-9.]+ \\+-")),
              qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains("duplicates the recording of the old result"),
+             qPrintable(outcome.output));
     QVERIFY(!outcome.output.contains('<'));
     QCOMPARE(filesIn(path("good")), (QStringList{"check.yaml", "log.txt", "plots", "report.html"}));
     QVERIFY(readFile(path("good") + "/check.yaml").startsWith("evical_check: 1\nverdict: unchanged\n"));

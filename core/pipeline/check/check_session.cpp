@@ -97,12 +97,11 @@ Session sessionFor(const CheckPaths& paths) {
   return session;
 }
 
-bool isSameBoard(const std::filesystem::path& result, const Session& session) {
+std::optional<Session> storedSession(const std::filesystem::path& result) {
   try {
-    const std::optional<Session> kept = sessionOfOldResult(result);
-    return kept && kept->board == session.board;
+    return sessionOfOldResult(result);
   } catch (const CalibrationError&) {
-    return false;  // the session is optional
+    return std::nullopt;  // it is optional
   }
 }
 
@@ -142,7 +141,7 @@ void weighLens(const UncertaintyReport& before, std::size_t camera, double stabi
 }  // namespace
 
 CheckInput checkInputOf(NamedResult before, Session session) {
-  CheckInput input{std::move(before), std::move(session), true, {}, {}};
+  CheckInput input{std::move(before), std::move(session), true, false, {}, {}};
   if (input.session.reference != input.before.reference)
     throw badInput(
         input.session.source.string() + ": reference",
@@ -167,7 +166,9 @@ namespace {
 
 CheckInput checkInputIn(const std::filesystem::path& result, NamedResult before, Session session) {
   CheckInput input = checkInputOf(std::move(before), std::move(session));
-  input.same_board = isSameBoard(result, input.session);
+  const std::optional<Session> stored = storedSession(result);
+  input.same_board = stored && stored->board == input.session.board;
+  input.same_recording = stored && sharedRecording(*stored, input.session);
   input.before_name = result.string();
   return input;
 }

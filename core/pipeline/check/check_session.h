@@ -20,6 +20,7 @@ struct CheckInput {
   NamedResult before;
   Session session;
   bool same_board = true;
+  bool same_recording = false;  // as the old result's
   std::vector<std::string> notes;
   std::string before_name;  // displayed name
 };

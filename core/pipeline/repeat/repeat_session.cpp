@@ -13,7 +13,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 
 namespace evical {
@@ -133,32 +132,11 @@ void makeLike(const Session& first, Session& session) {
   checkOptions(first, session);
 }
 
-std::set<std::filesystem::path> filesOf(const Session& session) {
-  std::set<std::filesystem::path> files;
-  const auto add = [&](const std::filesystem::path& path) {
-    std::error_code error;
-    const std::filesystem::path whole = std::filesystem::weakly_canonical(path, error);
-    if (!path.empty()) files.insert(error ? path : whole);
-  };
-  add(session.recording);
-  for (const SessionCamera& camera : session.cameras) add(camera.recording);
-  for (const SessionImu& imu : session.imus) add(imu.recording);
-  return files;
-}
-
-// Parts of one recording count as separate recordings if they do not overlap.
-bool overlap(const Session& a, const Session& b) {
-  if (!a.time_range_s || !b.time_range_s) return true;
-  return (*a.time_range_s)[0] < (*b.time_range_s)[1] && (*b.time_range_s)[0] < (*a.time_range_s)[1];
-}
-
 void checkApart(const std::vector<Session>& sessions) {
   for (std::size_t k = 1; k < sessions.size(); ++k)
     for (std::size_t j = 0; j < k; ++j) {
-      const std::set<std::filesystem::path> own = filesOf(sessions[k]), other = filesOf(sessions[j]);
-      const auto twice =
-          std::find_if(own.begin(), own.end(), [&](const auto& file) { return other.contains(file); });
-      if (twice == own.end() || !overlap(sessions[k], sessions[j])) continue;
+      const std::optional<std::filesystem::path> twice = sharedRecording(sessions[k], sessions[j]);
+      if (!twice) continue;
       throw badInput(twice->string(),
                      fmt::format("is listed twice ({} and {}): a duplicate adds no information",
                                  sessions[j].source.string(), sessions[k].source.string()),
