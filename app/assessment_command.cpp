@@ -6,7 +6,9 @@ namespace evical {
 
 Argument addAssessmentArguments(Command& command, AssessmentArguments& arguments, const std::string& folder,
                                 const std::string& groups) {
-  command.option("--set", arguments.settings, "Option as group.option=value, see 'evical options'; " + groups)
+  command
+      .option("--set", arguments.settings,
+              "Option as group.option=value, see 'evical options'; " + groups + ". Can be repeated")
       .repeated();
   command.flag("--json", arguments.json, "Print JSON instead of tables, and nothing else");
   command.flag("--quiet", arguments.quiet, "Print only the tables and errors");

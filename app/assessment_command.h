@@ -33,7 +33,10 @@ template <class Assess>
 int runAssessment(const AssessmentArguments& arguments, const Assess& assess) {
   Console console(arguments.quiet || arguments.json);
   std::optional<NewFolder> folder;
-  if (!arguments.output.empty()) folder.emplace(arguments.output);
+  if (!arguments.output.empty()) {
+    console.announceReplacement(arguments.output, {"check.yaml", "maintenance.yaml", "repeat.yaml"});
+    folder.emplace(arguments.output);
+  }
   const auto assessment = assess(console, RunContext{console, stopOnSignals()});
   console.stageStarted("done");
   print("{}", arguments.json ? assessmentJson(assessment) : assessmentTable(assessment));

@@ -124,6 +124,7 @@ void addBatchCommand(Command& app, int& exit_code) {
       "A second run continues an interrupted batch. Exit codes: 0 all jobs have a result; 1 some have none, "
       "the table "
       "gives the reason, or cancelled; 2 bad usage or an invalid file of jobs.");
+  command.example("evical batch jobs.yaml -o results");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -156,6 +156,8 @@ void addBoardCommand(Command& app, int& exit_code) {
                "Write an .html page that flashes the board on a screen, for the intrinsics of event cameras");
   command.option("-o,--output", arguments->output, "Output file: .pdf, .svg or .png, or .html with --blink")
       .required();
+  command.example(
+      "evical board --rows 11 --cols 4 --spacing-m 0.03 --radius-m 0.012 --paper A3 -o board.pdf");
   command.action([arguments, &exit_code] {
     drawBoard(*arguments);
     exit_code = kDone;

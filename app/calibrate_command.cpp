@@ -38,7 +38,8 @@ void tellResult(const SessionArguments& arguments, const Session& session,
   console.stageStarted("done");
   print("{}", resultTable(named));
   if (const std::optional<Repair>& repair = run->result.repair) print("{}", tryText(arguments, *repair));
-  if (!arguments.quiet)
+  // Without requested targets, notes on Kalibr's files are only in log.txt.
+  if (!arguments.quiet && !session.exports.empty())
     for (const std::string& note : remarks.notes) print("{}\n", note);
   for (const std::string& refusal : remarks.refused) printError(refusal + "\n");
   if (!arguments.quiet) print("Files are in {}\n", arguments.output);
@@ -65,6 +66,7 @@ CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& 
 int run(const SessionArguments& arguments) {
   const Session session = sessionFrom(arguments);
   Console console(arguments.quiet);
+  console.announceReplacement(arguments.output, {"result.yaml"});
   const NewFolder folder(arguments.output);
   CalibrationOutcome outcome = calibrated(arguments, session, console);
   if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
@@ -86,6 +88,7 @@ void addCalibrateCommand(Command& app, int& exit_code) {
   command.option("--profile", arguments->profile,
                  "File for a profile of the run (stages, threads, processors, memory), readable by "
                  "ui.perfetto.dev and chrome://tracing");
+  command.example("evical calibrate session.yaml -o result");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -73,6 +73,7 @@ void addCheckCommand(Command& app, int& exit_code) {
   command.flag(
       "--no-board", arguments->no_board,
       "Check a recording without a board: rotation and time offset from the rotation of camera and IMU");
+  command.example("evical check result new_recording.bag -o check");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

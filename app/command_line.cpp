@@ -1,11 +1,51 @@
 #include "app/command_line.h"
 
+#include "core/base/nearest_name.h"
+
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
 namespace evical {
+namespace {
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    if (!option->get_group().empty())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> commandNames(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command :
+       program.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// The first word that was not understood, with the nearest known one. The library reports a missing option
+// or command instead; empty if that is the cause.
+std::string unknownWord(const CLI::App& program) {
+  const std::vector<std::string> left = program.remaining(true);
+  if (left.empty()) return {};
+  const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
+  const auto option = std::find_if(left.begin(), left.end(), is_option);
+  const std::vector<CLI::App*> parsed = program.get_subcommands();
+  if (parsed.empty() && option != left.begin())
+    return fmt::format("unknown command '{}'. {}", left.front(),
+                       nameAdvice(left.front(), commandNames(program)));
+  const CLI::App& command = parsed.empty() ? program : *parsed.front();
+  if (option == left.end()) return {};
+  const std::string name = option->substr(0, option->find('='));
+  return fmt::format("unknown option {}. {}", name, nameAdvice(name, optionNames(command)));
+}
+
+}  // namespace
 
 UsageError missingOption(const std::string& name) {
   return UsageError(name + " is required");
@@ -111,7 +151,11 @@ Argument Command::flag(const std::string& names, bool& value, const std::string&
 }
 
 void Command::footer(const std::string& text) {
-  app_->footer(text);
+  app_->footer(app_->get_footer() + (app_->get_footer().empty() ? "" : "\n") + text);
+}
+
+void Command::example(const std::string& command_line) {
+  footer("Example:\n  " + command_line);
 }
 
 void Command::hide() {
@@ -142,7 +186,13 @@ bool CommandLine::parse(int argc, char** argv) {
     app_->parse(argc, argv);
     return true;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw UsageError(error.what());
+    if (error.get_exit_code() != 0) {
+      const std::string unknown = unknownWord(*app_);
+      if (!unknown.empty()) throw UsageError(unknown);
+      throw UsageError(app_->get_subcommands().empty() && error.get_name() == "RequiredError"
+                           ? "no command is given. Known names: " + joined(commandNames(*app_))
+                           : error.what());
+    }
     app_->exit(error);  // prints help or the version
     return false;
   }

@@ -14,7 +14,7 @@ class Option;
 
 namespace evical {
 
-// The command line is invalid. what() is one sentence without a full stop.
+// The command line is invalid. what() is one sentence without a full stop, or ends with a question.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -60,7 +60,8 @@ class Command {
                   const std::string& help);
   Argument flag(const std::string& names, bool& value, const std::string& help);
   void footer(const std::string& text);
-  void hide();  // from help
+  void example(const std::string& command_line);  // at the end of help
+  void hide();                                    // from help
   void action(const std::function<void()>& action);
   const CLI::App& app() const { return *app_; }
 

@@ -19,6 +19,7 @@ void addCompareCommand(Command& app, int& exit_code) {
   Command command = app.command("compare", "Compare a result with the truth of a simulated recording");
   command.option("RESULT", arguments->result, "result.yaml, or the folder of a run").required();
   command.option("TRUTH", arguments->truth, "truth.yaml, or the folder that contains it").required();
+  command.example("evical compare result truth.yaml");
   command.action([arguments, &exit_code] {
     print("{}",
           comparisonTable(compareWithTruth(readResultYaml(resultFileOf(arguments->result)),

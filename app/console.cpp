@@ -1,6 +1,7 @@
 #include "app/console.h"
 
 #include "app/output.h"
+#include "core/base/file_places.h"
 
 #include <fmt/format.h>
 
@@ -61,6 +62,16 @@ void Console::log(LogLevel level, std::string_view text) {
   if (quiet_ || level == LogLevel::Debug) return;
   clearLine();
   printError(fmt::format("{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text));
+}
+
+void Console::announceReplacement(const std::filesystem::path& folder,
+                                  std::initializer_list<const char*> names) {
+  for (const char* const name : names)
+    if (isThere(folder / name))
+      log(LogLevel::Warning,
+          fmt::format(
+              "{} exists: this run replaces it when it has a new one. To keep it, give another folder",
+              (folder / name).string()));
 }
 
 std::stop_token stopOnSignals() {

@@ -5,6 +5,8 @@
 
 #include "core/base/stopwatch.h"
 
+#include <filesystem>
+#include <initializer_list>
 #include <mutex>
 #include <stop_token>
 #include <string>
@@ -20,6 +22,10 @@ class Console final : public ProgressSink {
   void stageStarted(const ProgressStage& stage) override;
   void stageProgress(double fraction_of_stage) override;
   void log(LogLevel level, std::string_view text) override;
+
+  // Warns that an earlier result of these names in the folder will be replaced. Files are replaced together,
+  // when the new ones are complete.
+  void announceReplacement(const std::filesystem::path& folder, std::initializer_list<const char*> names);
 
   const std::string& logText() const { return log_text_; }
 

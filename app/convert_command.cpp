@@ -47,17 +47,18 @@ void addConvertCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   ConversionRequest& request = arguments->request;
   Command command = app.command("convert", "Convert a recording to another format");
-  command.option("recording", request.input, "Recording in any format that `evical inspect` reads")
+  command.option("RECORDING", request.input, "Recording in any format that `evical inspect` reads")
       .required();
   command.option("-o,--output", request.output, "File or folder to write").required();
   std::string formats;
   for (const RecordingFormat& format : recordingFormats())
     formats += fmt::format("{}{} ({})", formats.empty() ? "" : ", ", format.name, format.description);
   command.option("--to", request.format, "Output format; by default from the extension: " + formats);
-  command.option("--stream", request.streams, "Name of a stream to write; may be repeated; by default all");
+  command.option("--stream", request.streams, "Name of a stream to write; by default all. Can be repeated");
   command.option("--resolution", arguments->resolution,
                  "Resolution of the sensor, e.g. 346x260, if the recording does not contain it");
   command.flag("--quiet", arguments->quiet, "Print no progress");
+  command.example("evical convert recording.aedat4 -o recording.bag");
   command.action([arguments, &exit_code] {
     if (!arguments->resolution.empty())
       arguments->request.resolution_px = resolutionIn(arguments->resolution);

@@ -53,7 +53,8 @@ class ImageWriters final : public CalibrationObserver {
   std::vector<std::unique_ptr<StageImageWriter>> writers_;
 };
 
-void printOutcome(const BoardObservations& camera) {
+// `has_lens`: the camera's intrinsics were used.
+void printOutcome(const BoardObservations& camera, bool has_lens) {
   print("{}: {} {}, board in {} of {} {}\n", camera.camera, camera.events, measurementsOf(camera.kind),
         camera.views.size(), camera.windows.size(), camera.kind == CameraKind::Events ? "windows" : "frames");
   std::vector<int> counts(kWindowOutcomeCount, 0);
@@ -61,12 +62,20 @@ void printOutcome(const BoardObservations& camera) {
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (counts[k] > 0) print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
   }
+  const auto countOf = [&](WindowOutcome outcome) { return counts[static_cast<std::size_t>(outcome)]; };
+  if (camera.kind == CameraKind::Events && !has_lens &&
+      countOf(WindowOutcome::Partial) > countOf(WindowOutcome::Complete))
+    print(
+        "  Without intrinsics, lens distortion hides circles near the border of the image. `evical "
+        "calibrate` "
+        "calibrates the lens first, and then finds more of them.\n");
 }
 
 void detectIn(const Session& session, const std::filesystem::path& output, const DetectArguments& arguments,
               const std::stop_token& stop) {
-  makeOutputFolder(output);
   Console console(arguments.quiet);
+  console.announceReplacement(output, {"detections.yaml"});
+  makeOutputFolder(output);
   ImageWriters images(arguments, session, output);
   const RunContext context{console, stop, arguments.images ? &images : nullptr};
   console.stageStarted(nameOf(CalibrationStage::Detect));
@@ -74,7 +83,8 @@ void detectIn(const Session& session, const std::filesystem::path& output, const
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
   writeDetectionFiles(output, session, pass, console.logText());
   console.stageStarted("done");
-  for (const BoardObservations& camera : pass.cameras) printOutcome(camera);
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k)
+    printOutcome(pass.cameras[k], pass.lenses[k].detection_intrinsics.has_value());
 }
 
 // Several recordings get one folder each, by name, numbered if names repeat.
@@ -108,6 +118,7 @@ void addDetectCommand(Command& app, int& exit_code) {
   addSessionArguments(command, *arguments);
   command.flag("--images", arguments->images, "Draw the detection stages of windows as PNG");
   command.option("--every", arguments->every_nth, "Draw every N-th window").between(1, 1000000);
+  command.example("evical detect session.yaml -o detections --images");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -46,7 +46,13 @@ void addCommands(Command& app, int& exit_code) {
 }
 
 int run(int argc, char** argv) {
-  CommandLine app("Calibrates event cameras and IMUs from one recording of a printed circle grid.", "evical");
+  CommandLine app(
+      "Calibrates event cameras, frame cameras and IMUs from one recording of a board: a circle grid for "
+      "event "
+      "cameras, for frames also an AprilGrid, checkerboard or ChArUco board. Start with `evical init "
+      "RECORDING "
+      "-o session.yaml`, complete the session, then run `evical calibrate session.yaml -o result`.",
+      "evical");
   app.version(std::string("evical ") + kVersion);
   app.requireCommand();
   int exit_code = kDone;
@@ -54,13 +60,13 @@ int run(int argc, char** argv) {
   // After the commands, which would inherit it.
   app.footer(
       "Exit codes: 0 done; 1 failed or cancelled, the last line gives the reason; 2 bad usage, session or "
-      "recording, "
-      "nothing "
-      "was written. The help of a command lists its other codes: evical COMMAND --help");
+      "recording, nothing was written. The help of a command lists its other codes: evical COMMAND --help");
   try {
     return app.parse(argc, argv) ? exit_code : kDone;
   } catch (const UsageError& error) {
-    return fail(kBadInput, fmt::format("{}. See `evical --help` and `evical COMMAND --help`", error.what()));
+    const std::string_view reason = error.what();
+    return fail(kBadInput, fmt::format("{}{} See `evical --help` and `evical COMMAND --help`", reason,
+                                       reason.ends_with('?') ? "" : "."));
   }
 }
 

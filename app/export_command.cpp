@@ -130,6 +130,7 @@ void addExportCommand(Command& app, int& exit_code) {
                      "with RESULT; with a FOLDER instead of -o, check the files written there before");
   check.valueOptional("[FOLDER]");
   command.footer(targetList());
+  command.example("evical export result --to kalibr,openvins -o exported --check");
   command.action([arguments, check, &exit_code] {
     arguments->check = check.isGiven();
     checkTogether(*arguments);

@@ -5,6 +5,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_places.h"
+#include "core/base/shell_word.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/recording/recording_reader.h"
 
@@ -47,8 +48,11 @@ int run(const InitArguments& arguments) {
   writeFileWhole(arguments.output, draft.yaml);
   console.stageStarted("done");
   print("{}\n", arguments.output.string());
-  if (!arguments.quiet)
-    for (const std::string& note : draft.notes) print("{}\n", note);
+  if (arguments.quiet) return kDone;
+  for (const std::string& note : draft.notes) print("{}\n", note);
+  const bool one_camera = draft.session.imus.empty() && draft.session.cameras.size() == 1;
+  print("Then run: evical {} {} -o result\n", one_camera ? "intrinsics" : "calibrate",
+        shellWord(arguments.output.string()));
   return kDone;
 }
 
@@ -63,6 +67,7 @@ void addInitCommand(Command& app, int& exit_code) {
       .required();
   command.option("-o,--output", arguments->output, "Session file; it must not exist yet").required();
   command.flag("--quiet", arguments->quiet, "Print only the file's name and errors");
+  command.example("evical init recording.bag -o session.yaml");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -48,13 +48,13 @@ void printImu(const StreamSummary& stream) {
   if (kind == ImuStreamKind::Alternating)
     print("    {:<22} {} of the gyroscope and {} of the accelerometer, alternating\n", "",
           stream.without_force, stream.without_rate);
-  if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Accelerometer)
+  if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Accelerometer) {
     printVector("mean specific force", stream.mean_acceleration, stream.acceleration_unit);
-  if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Gyroscope)
-    printVector("mean angular rate", stream.mean_angular_rate, stream.angular_rate_unit);
-  if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Accelerometer)
     print("    {:<22} {:.4f} {}\n", "median of its norm", stream.median_acceleration,
           stream.acceleration_unit);
+  }
+  if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Gyroscope)
+    printVector("mean angular rate", stream.mean_angular_rate, stream.angular_rate_unit);
 }
 
 void printFrames(const StreamSummary& stream) {
@@ -90,12 +90,14 @@ void printStream(const StreamSummary& stream, bool checksum) {
   if (stream.count == 0) return;
   print("    {:<22} {} .. {} ns ({:.3f} s)\n", "time", stream.first_ns, stream.last_ns,
         secondsSince(stream.first_ns, stream.last_ns));
-  print("    {:<22} {:.3f} ms; time runs backwards {} times\n", "largest gap",
-        1e-6 * static_cast<double>(stream.largest_gap_ns), stream.backward_steps);
+  print("    {:<22} {:.3f} ms; time runs backwards {} time{}\n", "largest gap",
+        1e-6 * static_cast<double>(stream.largest_gap_ns), stream.backward_steps,
+        stream.backward_steps == 1 ? "" : "s");
 }
 
 void printForPeople(const std::string& recording, const Inspection& inspection, bool checksum) {
-  print("{} ({}, {} streams)\n", recording, inspection.format, inspection.streams.size());
+  print("{} ({}, {} stream{})\n", recording, inspection.format, inspection.streams.size(),
+        inspection.streams.size() == 1 ? "" : "s");
   for (const StreamSummary& stream : inspection.streams) printStream(stream, checksum);
   print("\n{}\n", inspection.faults.empty() ? "No faults found." : "Faults:");
   for (const RecordingFault& fault : inspection.faults) {
@@ -121,11 +123,12 @@ void addInspectCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<InspectArguments>();
   Command command = app.command("inspect", "List the streams and faults of a recording");
   command
-      .option("recording", arguments->recording,
+      .option("RECORDING", arguments->recording,
               "File or folder in any supported format: bag, AEDAT, RAW, HDF5, NumPy, text, pictures")
       .required();
   command.flag("--json", arguments->json, "Print JSON instead of text");
   command.flag("--checksum", arguments->checksum, "Add sums over all events, for comparisons of readers");
+  command.example("evical inspect recording.bag");
   command.action([arguments, &exit_code] {
     inspect(*arguments);
     exit_code = 0;

@@ -53,7 +53,8 @@ struct Found {
 void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera, bool alone,
                const IntrinsicsRun& run, const RunContext& context, Found& found) {
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  const NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result, run.story};
+  NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result, run.story};
+  for (const RecordingFault& fault : run.pass.faults) named.notes.push_back(fault.text);
   std::filesystem::path folder = arguments.output;
   if (!alone) makeOutputFolder(folder /= camera.name);
   for (FileContent& file : intrinsicsFiles(folder, named, run.pass.cameras))
@@ -67,6 +68,10 @@ int run(const IntrinsicsArguments& arguments) {
   const std::vector<std::size_t> cameras = chosenCameras(session, arguments.camera);
   if (cameras.size() > 1) checkStreams(session);
   Console console(arguments.quiet);
+  for (const std::size_t camera : cameras)
+    console.announceReplacement(
+        std::filesystem::path(arguments.output) / (cameras.size() > 1 ? session.cameras[camera].name : ""),
+        {"intrinsics.yaml"});
   const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
   Found found;
@@ -98,6 +103,7 @@ void addIntrinsicsCommand(Command& app, int& exit_code) {
   Command command = app.command("intrinsics", "Calibrate the intrinsics of a session's cameras");
   addSessionArguments(command, *arguments);
   command.option("--camera", arguments->camera, "Name of the only camera to calibrate; by default all");
+  command.example("evical intrinsics session.yaml -o lens");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

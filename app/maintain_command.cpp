@@ -96,13 +96,14 @@ void addMaintainCommand(Command& app, int& exit_code) {
       .required();
   command
       .option("--imu", arguments->imus,
-              "Stream or log of an IMU of the old result as NAME=STREAM, if the names differ; "
-              "for separate streams NAME='GYROSCOPE + ACCELEROMETER'")
+              "NAME=STREAM: log or stream of an IMU of the old result. With two streams: NAME='GYROSCOPE + "
+              "ACCELEROMETER'. Can be repeated")
       .repeated();
   command.option(
       "--trajectory", arguments->trajectory,
       "Poses of the reference IMU from another system: trajectory.csv of a calibration, or TUM's format");
   addUnits(command, *arguments);
+  command.example("evical maintain log1.bag log2.bag --result result -o maintenance");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -22,6 +22,7 @@ void addOptionsCommand(Command& app, int& exit_code) {
       command.flag("--markdown", arguments->markdown, "Print Markdown, the content of docs/options.md");
   command.flag("--yaml", arguments->yaml, "Print YAML, the content of config/default.yaml")
       .excludes(markdown);
+  command.example("evical options --all");
   command.action([arguments, &exit_code] {
     print("{}", arguments->markdown ? optionMarkdown()
                 : arguments->yaml   ? optionYaml()

@@ -50,6 +50,7 @@ void addRepeatCommand(Command& app, int& exit_code) {
                          "groups of calibrate, and check, for all sessions")
       .required();
   addThreads(command, *arguments);
+  command.example("evical repeat first.yaml second.yaml third.yaml -o repeat");
   command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -15,7 +15,7 @@ void addSessionArguments(Command& command, SessionArguments& arguments) {
   command
       .option("--set", arguments.settings,
               "group.option=value, see 'evical options'; imus.NAME.KEY=value for units and axes; or "
-              "time_range_s=[begin,end]")
+              "time_range_s=[begin,end]. Can be repeated")
       .repeated();
   command.option("--threads", arguments.threads, "Threads of the optimisation").between(1, 256);
   command.flag("--quiet", arguments.quiet, "Print only the result and errors");

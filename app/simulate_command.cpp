@@ -26,7 +26,7 @@ void addSimulateCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   Command command =
       app.command("simulate", "Simulate a recording with known truth, and write a session for it");
-  command.option("scenario", arguments->scenario, "Scenario file, e.g. config/scenarios/davis346.yaml")
+  command.option("SCENARIO", arguments->scenario, "Scenario file, e.g. config/scenarios/davis346.yaml")
       .required();
   command.option("-o,--output", arguments->folder, "Folder to write").required();
   std::string formats;
@@ -35,6 +35,7 @@ void addSimulateCommand(Command& app, int& exit_code) {
   command.option("--format", arguments->format,
                  "Output format, by default the scenario's; one of " + formats);
   command.flag("--quiet", arguments->quiet, "Print no progress");
+  command.example("evical simulate config/scenarios/davis346_10s.yaml -o simulated");
   command.action([arguments, &exit_code] {
     const bool drive = isDriveScenario(arguments->scenario);
     const Scenario scenario = drive ? Scenario{} : readScenario(arguments->scenario);

@@ -184,7 +184,7 @@ std::size_t findStream(const RecordingReader& reader, const std::string& name,
   std::vector<std::string> names;
   std::string kind;
   for (const StreamType type : types) {
-    kind += (kind.empty() ? "" : " or ") + std::string(streamTypeName(type));
+    kind += (kind.empty() ? "" : type == types.back() ? " or " : ", ") + std::string(streamTypeName(type));
     for (std::size_t i = 0; i < reader.streams().size(); ++i) {
       const StreamInfo& stream = reader.streams()[i];
       if (stream.type != type) continue;
@@ -192,9 +192,12 @@ std::size_t findStream(const RecordingReader& reader, const std::string& name,
       names.push_back(stream.name);
     }
   }
+  const std::string nearest = nearestName(name, names);
   throw badInput(name, fmt::format("the recording has no stream of type {} with this name", kind),
-                 names.empty() ? fmt::format("It has no stream of type {} at all", kind)
-                               : fmt::format("Its streams of this type: {}", joined(names)));
+                 names.empty()
+                     ? fmt::format("It has no stream of type {} at all", kind)
+                     : fmt::format("{}Its streams of this type: {}",
+                                   nearest.empty() ? "" : "Did you mean '" + nearest + "'? ", joined(names)));
 }
 
 const char* streamTypeName(StreamType type) {

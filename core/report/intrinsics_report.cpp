@@ -142,9 +142,11 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
                           tried.circles_used, tried.circles);
   text += "Circles by part of the image (. none, - few, + some, # many):\n" + coveragePicture(r.image);
   for (const std::string& advice : r.advice) text += fmt::format("Advice: {}\n", advice);
-  text +=
-      fmt::format("Time: {:.1f} s in {} passes\nVerdict: {}", r.elapsed_s, r.passes, statusName(r.status));
-  return text + (r.reason.empty() ? "\n" : fmt::format(" - {}\n", r.reason));
+  text += fmt::format("Time: {:.1f} s in {} pass{}\nVerdict: {}", r.elapsed_s, r.passes,
+                      r.passes == 1 ? "" : "es", statusName(r.status));
+  text += r.reason.empty() ? "\n" : fmt::format(" - {}\n", r.reason);
+  for (const std::string& note : named.notes) text += fmt::format("Note: {}\n", note);
+  return text;
 }
 
 std::string imageMapCsv(const ImageMap& map) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -14,6 +15,7 @@ struct NamedIntrinsics {
   std::string version;
   IntrinsicsResult result;
   IntrinsicsStory story = {};
+  std::vector<std::string> notes = {};  // on the recording and the board
 };
 
 // Readable as intrinsics of a session (core/format/intrinsics_yaml.h).

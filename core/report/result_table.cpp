@@ -18,8 +18,13 @@ namespace {
 std::string anglesRow(const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d angles = rollPitchYaw_deg(rotation);
   const std::string warning = anglesWarning(angles);
-  return fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg{}\n", "(roll, pitch, yaw)", angles.x(),
-                     angles.y(), angles.z(), warning.empty() ? "" : " (" + warning + ")");
+  std::string text =
+      fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg{}\n", "(roll, pitch, yaw)", angles.x(), angles.y(),
+                  angles.z(), warning.empty() ? "" : " (" + warning + ")");
+  if (!warning.empty())
+    text += fmt::format("    {:<26}{:>12.6f}, {:.6f}, {:.6f}, {:.6f}\n", "(quaternion x, y, z, w)",
+                        rotation.x(), rotation.y(), rotation.z(), rotation.w());
+  return text;
 }
 
 // For a matrix only the scales: misalignments are in result.yaml.

@@ -47,6 +47,8 @@ class TestCommandLine : public QObject {
   void version_startsFast();
   void usage_thatIsWrongEndsWith2_data();
   void usage_thatIsWrongEndsWith2();
+  void unknownWords_areNamed_data();
+  void unknownWords_areNamed();
   void options_asMarkdownAreTheManual();
   void options_asYamlAreTheDefaultFile();
   void board_isWrittenAsPdfSvgAndPng();
@@ -88,7 +90,12 @@ void TestCommandLine::help_isThereForEveryCommand() {
     const Outcome outcome = runProgram({command, "--help"});
     VERIFY_EXIT(outcome, 0);
     QVERIFY(outcome.output.contains("-h,--help"));
+    QVERIFY2(outcome.output.contains("Example:\n  evical " + command), qPrintable(outcome.output));
   }
+  QVERIFY2(all.output.contains("Start with `evical init"), qPrintable(all.output));
+  for (const QString command : {"inspect", "convert", "simulate"})  // arguments are in capitals
+    QVERIFY(
+        !runProgram({command, "--help"}).output.contains(QRegularExpression("\\n  (recording|scenario) ")));
 }
 
 void TestCommandLine::version_startsFast() {
@@ -119,6 +126,36 @@ void TestCommandLine::usage_thatIsWrongEndsWith2() {
   const Outcome outcome = runProgram(arguments);
   VERIFY_EXIT(outcome, 2);
   QVERIFY(!outcome.reason().isEmpty());
+}
+
+void TestCommandLine::unknownWords_areNamed_data() {
+  QTest::addColumn<QStringList>("arguments");
+  QTest::addColumn<QString>("said");
+  QTest::newRow("command") << QStringList{"calibrat"}
+                           << "unknown command 'calibrat'. Did you mean 'calibrate'?";
+  QTest::newRow("command with its arguments")
+      << QStringList{"inti", "r.bag", "-o", "s.yaml"} << "unknown command 'inti'. Did you mean 'init'?";
+  QTest::newRow("command that is like no other")
+      << QStringList{"xyzzyxyzzy"} << "Known names: init, calibrate";
+  QTest::newRow("required option") << QStringList{"calibrate", "s.yaml", "--ouput", "x"}
+                                   << "unknown option --ouput. Did you mean '--output'?";
+  QTest::newRow("with a value") << QStringList{"calibrate", "s.yaml", "-o", "x", "--treads=2"}
+                                << "unknown option --treads. Did you mean '--threads'?";
+  QTest::newRow("flag") << QStringList{"inspect", "--jsno", "r.bag"}
+                        << "unknown option --jsno. Did you mean '--json'?";
+  QTest::newRow("of the program") << QStringList{"--verson"}
+                                  << "unknown option --verson. Did you mean '--version'?";
+  QTest::newRow("short") << QStringList{"calibrate", "s.yaml", "-o", "x", "-z"} << "unknown option -z";
+  QTest::newRow("missing") << QStringList{"calibrate", "s.yaml"} << "--output is required";
+  QTest::newRow("no command") << QStringList{} << "no command is given";
+}
+
+void TestCommandLine::unknownWords_areNamed() {
+  QFETCH(QStringList, arguments);
+  QFETCH(QString, said);
+  const Outcome outcome = runProgram(arguments);
+  VERIFY_EXIT(outcome, 2);
+  QVERIFY2(outcome.reason().contains(said), qPrintable(outcome.errors));
 }
 
 void TestCommandLine::options_asMarkdownAreTheManual() {
@@ -188,6 +225,11 @@ void TestCommandLine::calibrate_writesAResultNearTheTruth() {
   VERIFY_EXIT(outcome, 0);
   QCOMPARE(filesIn(result), kResultFiles);
   QCOMPARE(filesIn(result + "/kalibr"), kalibrFiles("left_imu"));
+  QVERIFY2(!outcome.errors.contains("planar poses") && !outcome.output.contains("random walks"),
+           qPrintable(outcome.errors + outcome.output));
+  const QByteArray log = readFile(result + "/log.txt");
+  QVERIFY(log.contains("planar poses") && log.contains("random walks are not measured"));
+  QVERIFY(!outcome.errors.contains("exists: "));
   const QByteArray yaml = readFile(result + "/result.yaml");
   for (const char* key :
        {"evical_result: 1", "status: ", "reference: left_imu", "rotation_std_deg:", "time_offset_std_s:",
@@ -371,6 +413,9 @@ void TestCommandLine::import_writesASession() {
   QVERIFY(!QFileInfo::exists(folder.filePath("session.yaml")));
   VERIFY_EXIT(runProgram(command + QStringList{"--recording", folder.filePath("recording.bag")}), 0);
   QVERIFY(readFile(folder.filePath("session.yaml")).contains("recording: recording.bag"));
+  const Outcome again = runProgram(command + QStringList{"--recording", folder.filePath("recording.bag")});
+  VERIFY_EXIT(again, 2);
+  QVERIFY2(again.reason().contains("exists already"), qPrintable(again.errors));
 }
 
 void TestCommandLine::init_writesTheSessionThatTheRecordingSuggests_data() {
@@ -392,6 +437,8 @@ void TestCommandLine::init_writesTheSessionThatTheRecordingSuggests() {
   QVERIFY2(outcome.output.startsWith(file + "\nboard: complete its entry"), qPrintable(outcome.output));
   const QString written = QString::fromUtf8(readFile(file));
   QVERIFY2(written.contains("stream: " + stream) && written.contains("# board:"), qPrintable(written));
+  QVERIFY2(outcome.output.endsWith("\nThen run: evical calibrate " + file + " -o result\n"),
+           qPrintable(outcome.output));
 
   // Not before the board is filled in; and entries that were filled in are not overwritten.
   const Outcome unfilled = runProgram({"calibrate", file, "-o", folder.filePath("result")});
@@ -526,6 +573,7 @@ void TestCommandLine::diskFull_leavesTheOldResult() {
   const Outcome outcome = runProgramWithFileLimit({"calibrate", session(), "-o", result}, 16);
   VERIFY_EXIT(outcome, 1);
   QVERIFY2(outcome.reason().contains("cannot be written"), qPrintable(outcome.reason()));
+  QVERIFY2(outcome.errors.contains("result.yaml exists: this run replaces it"), qPrintable(outcome.errors));
   QCOMPARE(readFile(result + "/result.yaml"), QByteArray("evical_result: 1\nstatus: ok\n"));
   const QStringList untouched = {"result.yaml", "trajectory.csv"};
   QCOMPARE(filesIn(result), untouched);

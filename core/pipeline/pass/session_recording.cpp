@@ -21,8 +21,9 @@ constexpr std::array kImuStreams = {StreamType::Imu};
 
 SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
     : session_(session), streams_(std::move(stop)) {
-  for (const SessionCamera& camera : session.cameras) addSensor(camera, camera.stream, kCameraStreams);
-  for (const SessionImu& imu : session.imus) addSensor(imu, imu.joinedStream(), kImuStreams);
+  for (const SessionCamera& camera : session.cameras)
+    addSensor("cameras", camera, camera.stream, kCameraStreams);
+  for (const SessionImu& imu : session.imus) addSensor("imus", imu, imu.joinedStream(), kImuStreams);
   start_ns_ = streams_.begin().value_or(0);
   checkTimed();
   streams_.checkClocks([](double first_later_s) {
@@ -72,7 +73,7 @@ std::vector<SeparateImu> SessionRecording::separateImus(const std::filesystem::p
 }
 
 template <class Sensor>
-void SessionRecording::addSensor(const Sensor& sensor, const std::string& stream,
+void SessionRecording::addSensor(const char* section, const Sensor& sensor, const std::string& stream,
                                  std::span<const StreamType> types) {
   const std::filesystem::path& path = sensor.recording.empty() ? session_.recording : sensor.recording;
   const std::size_t place = fileOf(path);
@@ -84,7 +85,8 @@ void SessionRecording::addSensor(const Sensor& sensor, const std::string& stream
     for (const RecordingFault& fault : file.reader->faults())  // the stream may have been in the lost part
       problem += (problem.ends_with('.') ? " " : ". ") + fault.text;
     if (problem.ends_with('.')) problem.pop_back();
-    throw badInput(fmt::format("{}: {}", path.string(), error.place()), problem, error.advice());
+    throw badInput(fmt::format("{}: {}.{}.stream", path.string(), section, sensor.name),
+                   fmt::format("'{}': {}", error.place(), problem), error.advice());
   }
   places_.emplace_back(place, file.streams.size() - 1);
 }

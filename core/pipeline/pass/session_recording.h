@@ -44,7 +44,8 @@ class SessionRecording {
   ColumnNames columnNames(const std::filesystem::path& path) const;
   std::vector<SeparateImu> separateImus(const std::filesystem::path& path) const;
   template <class Sensor>
-  void addSensor(const Sensor& sensor, const std::string& stream, std::span<const StreamType> types);
+  void addSensor(const char* section, const Sensor& sensor, const std::string& stream,
+                 std::span<const StreamType> types);
   const MergedStreams::Stream& stream(std::size_t sensor) const;
   const StreamInfo& info(std::size_t sensor) const;
   void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;

@@ -202,6 +202,7 @@ class TestPoseText : public QObject {
     const std::string text = form("text").write(sensorPoses(turned)[0]);
     QCOMPARE(text.find(words) != std::string::npos, warned);
     QCOMPARE(resultTable(turned).find(words) != std::string::npos, warned);
+    QCOMPARE(resultTable(turned).find("(quaternion x, y, z, w)") != std::string::npos, warned);
   }
 
   void quantities_areNamed_andSaidInWords() {
