@@ -100,22 +100,17 @@ class Check {
     for (const std::string& one : compared.not_told)
       out_.check.notes.push_back(one +
                                  " is not checked: it is given, or the recording does not determine it");
-    noteDuplicate();
+    if (isCopy()) noteDuplicate(out_.check.notes);
     solveTogether(session);
   }
 
   // A copy of the old recording has its start, and the same noise.
-  void noteDuplicate() {
+  bool isCopy() const {
     constexpr double kSame = 0.05;  // sigmas
     const std::vector<Finding>& findings = out_.check.findings;
-    const bool copy = out_.run->result.start_ns == input_.before.result->start_ns && !findings.empty() &&
-                      std::all_of(findings.begin(), findings.end(),
-                                  [](const Finding& finding) { return finding.sigmas < kSame; });
-    if (!copy && !input_.same_recording) return;
-    out_.check.notes.push_back(
-        "duplicates the recording of the old result: it adds no information and cannot show a change. Check "
-        "with a new recording");
-    context_.progress.log(LogLevel::Warning, out_.check.notes.back());
+    return out_.run->result.start_ns == input_.before.result->start_ns && !findings.empty() &&
+           std::all_of(findings.begin(), findings.end(),
+                       [](const Finding& finding) { return finding.sigmas < kSame; });
   }
 
   // Joint solution of the old result and the recording. It is not a separate test that both agree.
