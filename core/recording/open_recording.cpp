@@ -20,6 +20,7 @@
 #include "core/recording/separate_reader.h"
 #include "core/recording/text/text_bytes.h"
 #include "core/recording/text/text_table_reader.h"
+#include "core/recording/unwrapped_reader.h"
 
 #include <fmt/format.h>
 
@@ -172,7 +173,7 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
 
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path, const ColumnNames& names) {
   try {
-    return openPath(path, names);
+    return std::make_unique<UnwrappedReader>(openPath(path, names));
   } catch (const std::filesystem::filesystem_error& error) {
     throw badInput(path.string(), "cannot be accessed: " + error.code().message(),
                    "Check the path and its permissions");
