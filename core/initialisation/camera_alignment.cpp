@@ -1,6 +1,7 @@
 #include "core/initialisation/camera_alignment.h"
 
 #include "core/base/error.h"
+#include "core/base/how_to.h"
 #include "core/base/stopwatch.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/camera_imu_rotation.h"
@@ -11,17 +12,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace evical {
 namespace {
 
-std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board, const GyroRotation& gyro,
+std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board,
                                     const InitialisationOptions& options, const RunContext& context,
                                     Initialisation& result) {
   CameraPoses found = estimateCameraPoses(camera, board, options, context);
-  checkPoses(camera, found, gyro, options);
+  checkViews(camera, found, options);
   result.steps.push_back({"camera poses", camera.name,
                           fmt::format("{} of {} views, circles fit to {:.3f} px (median)", found.poses.size(),
                                       camera.observations.views.size(), found.median_reprojection_px),
@@ -124,6 +128,65 @@ bool isClear(const std::vector<TimeOffsetPeak>& peaks, const InitialisationOptio
   return !peaks.empty() && peaks.front().correlation >= options.clear_peak_correlation;
 }
 
+InitialisationOptions widest(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                             const InitialisationOptions& options) {
+  constexpr double kLeastShare = 0.5;  // chosen: short overlaps can agree by chance
+  InitialisationOptions wide = options;
+  wide.time_offset_search_s = options.widest_time_offset_search_s;
+  wide.least_overlap_s = std::max(
+      options.least_overlap_s,
+      kLeastShare * std::min(poses.back().time_s - poses.front().time_s, gyro.end_s() - gyro.begin_s()));
+  return wide;
+}
+
+// The offset at which rates agree, however far apart the clocks are: searched around that of the recordings' middles.
+std::optional<double> offsetOfClocks(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                                     const InitialisationOptions& options) {
+  SensorPrior middles;
+  middles.time_offset =
+      KnownNumber{0.5 * (gyro.begin_s() + gyro.end_s() - poses.front().time_s - poses.back().time_s),
+                  options.widest_time_offset_search_s};
+  const std::vector<TimeOffsetPeak> peaks =
+      correlateTimeOffset(poses, gyro, widest(poses, gyro, options), middles);
+  const bool alone =
+      peaks.size() < 2 || peaks[0].correlation - peaks[1].correlation >= options.clear_peak_lead;
+  return isClear(peaks, options) && alone ? std::optional(peaks.front().time_offset_s) : std::nullopt;
+}
+
+// Throws if camera and IMU do not overlap, as their clocks are.
+void checkClocks(const CameraData& camera, const std::string& imu, const std::vector<CameraPose>& poses,
+                 const GyroRotation& gyro, const InitialisationOptions& options) {
+  const std::optional<KnownNumber>& known = camera.prior.time_offset;
+  const double offset_s = known ? known->value : 0.0;
+  const double first_s = poses.front().time_s, last_s = poses.back().time_s;
+  const double overlap_s =
+      std::min(last_s, gyro.end_s() - offset_s) - std::max(first_s, gyro.begin_s() - offset_s);
+  if (overlap_s >= options.least_overlap_s) return;
+  const bool apart = overlap_s <= 0.0;
+  std::string problem = fmt::format(
+      "camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU has samples from {:.3f} s to "
+      "{:.3f} s",
+      apart ? "do not overlap in time"
+            : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
+      first_s, last_s, gyro.begin_s(), gyro.end_s());
+  std::string advice = apart ? "Check the clocks" : "Record for 30 s";
+  if (isGiven(known)) {
+    advice = "Check the clocks, and the time offset " + howTo(HowTo::EditSession);
+  } else if (const std::optional<double> found_s = offsetOfClocks(poses, gyro, options)) {
+    problem += fmt::format("; their rotations agree if the IMU's clock is {:.3f} s {}", std::abs(*found_s),
+                           *found_s > 0.0 ? "ahead" : "behind");
+    advice =
+        fmt::format("Add {:.3f} to clock_offset_s of {} (0 if it is not given), which is added to its times",
+                    -*found_s, imu);
+  } else if (apart) {
+    advice += fmt::format(
+        ": if both recordings began at the same moment, add {:.1f} to clock_offset_s of {} (0 if it is not "
+        "given)",
+        std::min(first_s, 0.0) - gyro.begin_s(), imu);
+  }
+  throw calibrationFailed(camera.name, problem, advice);
+}
+
 // Peaks within the options' range; if rates do not agree in it, within the widest range. For large offsets,
 // short overlaps agree by chance, so that at least half of the data must overlap there.
 std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std::vector<CameraPose>& poses,
@@ -133,13 +196,8 @@ std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std:
   if (isClear(peaks, options) || camera.prior.time_offset ||
       options.widest_time_offset_search_s <= options.time_offset_search_s)
     return peaks;
-  constexpr double kLeastShare = 0.5;  // chosen: short overlaps can agree by chance
-  InitialisationOptions wide = options;
-  wide.time_offset_search_s = options.widest_time_offset_search_s;
-  wide.least_overlap_s = std::max(
-      options.least_overlap_s,
-      kLeastShare * std::min(poses.back().time_s - poses.front().time_s, gyro.end_s() - gyro.begin_s()));
-  std::vector<TimeOffsetPeak> further = correlateTimeOffset(poses, gyro, wide, camera.prior);
+  std::vector<TimeOffsetPeak> further =
+      correlateTimeOffset(poses, gyro, widest(poses, gyro, options), camera.prior);
   if (!isClear(further, options)) return peaks;
   if (!peaks.empty() && further.front().significance <= peaks.front().significance) return peaks;
   result.warnings.push_back(
@@ -156,10 +214,11 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   const ImuData& imu = input.imus[input.reference_imu];
   Stopwatch stopwatch;
   const std::vector<CameraPose> poses =
-      cameraPoses(camera, input.boardAt(camera.board), gyro, options, context, result);
+      cameraPoses(camera, input.boardAt(camera.board), options, context, result);
   result.steps.back().duration_s = stopwatch.restart_s();
   context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = timeOffsetPeaks(camera, poses, gyro, options, result);
+  if (!isClear(peaks, options)) checkClocks(camera, imu.name, poses, gyro, options);
   if (peaks.empty()) {
     throw calibrationFailed(camera.name,
                             "too few pairs of views overlap with the gyroscope to estimate the time offset",

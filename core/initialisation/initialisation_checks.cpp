@@ -84,34 +84,6 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
   }
 }
 
-void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
-                const InitialisationOptions& options) {
-  checkViews(camera, found, options);
-  const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
-  const std::optional<KnownNumber>& known = camera.prior.time_offset;
-  const double offset_s = known ? known->value : 0.0;
-  const double search_s = isGiven(known) ? 0.0
-                          : known
-                              ? options.time_offset_search_s
-                              : std::max(options.time_offset_search_s, options.widest_time_offset_search_s);
-  const double overlap_s = std::min(last_s, gyro.end_s() - offset_s + search_s) -
-                           std::max(first_s, gyro.begin_s() - offset_s - search_s);
-  if (overlap_s < options.least_overlap_s) {
-    const bool apart = overlap_s <= 0.0;
-    throw calibrationFailed(
-        camera.name,
-        fmt::format(
-            "camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU has samples from "
-            "{:.3f} s to {:.3f} s",
-            apart ? "do not overlap in time"
-                  : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
-            first_s, last_s, gyro.begin_s(), gyro.end_s()),
-        !apart            ? "Record for 30 s"
-        : search_s == 0.0 ? "Check the clocks, and the time offset " + howTo(HowTo::EditSession)
-                          : "Check the clocks, or increase initialisation.widest_time_offset_search_s");
-  }
-}
-
 void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
                   const InitialisationOptions& options) {
   const double overlap_s = std::min(views_end_s, end_s) - std::max(views_begin_s, begin_s);

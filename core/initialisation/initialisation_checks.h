@@ -19,10 +19,7 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
                     std::vector<std::string>& warnings);
 // There are enough poses.
 void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options);
-// There are enough poses, and they overlap with the IMU for some offset within the search range.
-void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
-                const InitialisationOptions& options);
-// They overlap with the IMU. Call it once the offset is known.
+// Poses overlap with the IMU. Call it once the offset is known.
 void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
                   const InitialisationOptions& options);
 

@@ -292,6 +292,27 @@ class TestInitialise : public QObject {
         },
         "do not overlap in time: the board is seen from 0.010 s to 7.990 s");
     row(
+        "IMU 62 s later",
+        [](auto& input) {
+          for (ImuSample& sample : input.imus[0].samples) sample.time_ns += 62'000'000'000;
+        },
+        "their rotations agree if the IMU's clock is 62.0");
+    row(
+        "IMU since 1970",
+        [](auto& input) {
+          for (ImuSample& sample : input.imus[0].samples) sample.time_ns += 1'700'000'000'000'000'000;
+        },
+        "Add -1700000000.0");
+    row(
+        "IMU of another recording, 70 s earlier",
+        [](auto& input) {
+          SimulationOptions other = shortRecording();
+          other.seed = 5;
+          input.imus[0] = simulateInput(other).input.imus[0];
+          for (ImuSample& sample : input.imus[0].samples) sample.time_ns -= 70'000'000'000;
+        },
+        "if both recordings began at the same moment, add 70.");
+    row(
         "too short", [](auto& input) { input.cameras[0].observations.views.resize(100); }, "overlap");
   }
   void initialise_isRefused() {
