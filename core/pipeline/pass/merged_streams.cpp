@@ -47,29 +47,27 @@ void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vecto
   }
 }
 
-// Applies the session's clock scale and offset of the sensor.
+// Applies the session's clock scale and offset of the sensor, after stray stamps are removed: one of them would be the fixed
+// point of the scale.
 void setClock(Stream& stream, SensorPacket& packet) {
-  const double scale = stream.clock_scale;
-  if (stream.clock_offset_s == 0.0 && scale == 1.0) return;
-  const std::int64_t offset_ns = nanosecondsFrom(stream.clock_offset_s);
-  std::optional<std::int64_t>& first_ns = stream.first_ns;
+  if (stream.clock_offset_s == 0.0 && stream.clock_scale == 1.0) return;
   forEachKind(packet, [&](auto& items) {
     for (auto& item : items) {
-      if (!first_ns) first_ns = item.time_ns;
-      const double since_ns = scale * static_cast<double>(item.time_ns - *first_ns);
-      if (scale != 1.0 && std::abs(since_ns) < static_cast<double>(kLatestTime_ns))
-        item.time_ns = *first_ns + std::llround(since_ns);
-      if (!__builtin_add_overflow(item.time_ns, offset_ns, &item.time_ns) && isTime(item.time_ns)) continue;
-      throw badInput(stream.name,
-                     "with clock_offset_s and clock_scale its times are implausible, centuries from those of "
-                     "any recording",
-                     "Correct these two " + howTo(HowTo::EditSession));
+      if (!stream.first_ns) stream.first_ns = item.time_ns;
+      const std::optional<std::int64_t> time_ns = stream.sessionTime_ns(item.time_ns);
+      if (!time_ns)
+        throw badInput(
+            stream.name,
+            "with clock_offset_s and clock_scale its times are implausible, centuries from those of "
+            "any recording",
+            "Correct these two " + howTo(HowTo::EditSession));
+      item.time_ns = *time_ns;
     }
   });
 }
 
-// Converts units and clock; moves the storage.
-void toSessionUnitsAndClock(File& file, Stream& stream) {
+// Converts units; moves the storage.
+void toSessionUnits(File& file, Stream& stream) {
   SensorPacket& packet = file.next;
   packet.sensor = stream.sensor;
   std::swap(packet.events, file.raw.events);
@@ -77,7 +75,6 @@ void toSessionUnitsAndClock(File& file, Stream& stream) {
   std::swap(packet.points, file.raw.points);
   packet.imu_samples.clear();
   if (stream.imu) takeSamples(file.info(stream), *stream.imu, file.raw.imu_samples, packet.imu_samples);
-  setClock(stream, packet);
 }
 
 void filterImplausible(Stream& stream, SensorPacket& packet) {
@@ -100,12 +97,23 @@ bool flushNext(File& file) {
     stream.samples.finish(file.next.imu_samples);
     stream.frames.finish(file.next.frames);
     stream.points.finish(file.next.points);
+    setClock(stream, file.next);
     if (!file.next.empty()) return true;
   }
   return false;
 }
 
 }  // namespace
+
+std::optional<std::int64_t> Stream::sessionTime_ns(std::int64_t own_ns) const {
+  const std::int64_t from_ns = first_ns.value_or(own_ns);
+  const double since_ns = clock_scale * static_cast<double>(own_ns - from_ns);
+  if (clock_scale != 1.0 && std::abs(since_ns) < static_cast<double>(kLatestTime_ns))
+    own_ns = from_ns + std::llround(since_ns);
+  std::int64_t time_ns = 0;
+  const bool over = __builtin_add_overflow(own_ns, nanosecondsFrom(clock_offset_s), &time_ns);
+  return over || !isTime(time_ns) ? std::nullopt : std::optional(time_ns);
+}
 
 void File::add(std::size_t in_file, std::size_t sensor, const SessionCamera& camera) {
   streams.push_back({in_file, sensor, camera.name, camera.clock_offset_s, camera.clock_scale});
@@ -167,8 +175,9 @@ void MergedStreams::advance(File& file) {
     if (file.read_out) break;
     if (file.raw.empty()) continue;
     Stream& stream = *std::ranges::find(file.streams, file.raw.stream, &Stream::in_file);
-    toSessionUnitsAndClock(file, stream);
+    toSessionUnits(file, stream);
     filterImplausible(stream, file.next);
+    setClock(stream, file.next);
     if (!file.next.empty()) return;
   }
   file.finished = !flushNext(file);

@@ -38,14 +38,17 @@ class MergedStreams {
     double clock_offset_s = 0.0, clock_scale = 1.0;
     std::optional<SessionImu> imu = {};  // interpretation of its samples; absent for a camera
 
-    // Filters and counts of removed data.
+    // Filters and counts of removed data; their times are in the sensor's own clock.
     StampFilter<Event> events{kEventStamps};
     StampFilter<ImuSample> samples{kSampleStamps};
     StampFilter<Frame> frames{kSampleStamps};
     StampFilter<MeasuredPoint> points{kPointStamps};
-    std::optional<std::int64_t> first_ns = {};  // in its own clock
+    std::optional<std::int64_t> first_ns = {};  // in its own clock; fixed point of clock_scale
     std::uint64_t immeasurable = 0;
     std::int64_t immeasurable_ns = 0;  // the first
+
+    // By clock_scale and clock_offset_s; nullopt for a time that no recording has.
+    std::optional<std::int64_t> sessionTime_ns(std::int64_t own_ns) const;
   };
   struct File {
     std::filesystem::path path;

@@ -147,22 +147,25 @@ std::vector<RecordingFault> SessionRecording::faults() const {
 void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const {
   const std::string& stream = info(sensor).name;
   const MergedStreams::Stream& gate = this->stream(sensor);
+  const auto at = [&](std::int64_t own_ns) {
+    return secondsSince(start_ns_, gate.sessionTime_ns(own_ns).value_or(own_ns));
+  };
   const auto sayStrays = [&](const auto& filter, const char* items) {
     if (filter.strays() == 0) return;
     const double away_s = secondsSince(filter.strayFrom_ns(), filter.strayTime_ns());
     faults.push_back(
-        {stream, FaultKind::Corrupt, secondsSince(start_ns_, filter.strayFrom_ns()),
+        {stream, FaultKind::Corrupt, at(filter.strayFrom_ns()),
          fmt::format("{}: {} {} excluded, whose timestamps are far from neighbouring ones (the first is "
                      "{:.3f} s {}, at {:.3f} s)",
                      stream, filter.strays(), items, std::abs(away_s), away_s < 0.0 ? "behind" : "ahead",
-                     secondsSince(start_ns_, filter.strayFrom_ns()))});
+                     at(filter.strayFrom_ns()))});
   };
   sayStrays(gate.events, "events");
   sayStrays(gate.samples, "IMU samples");
   sayStrays(gate.frames, "frames");
   sayStrays(gate.points, "points");
   if (gate.immeasurable == 0) return;
-  const double at_s = secondsSince(start_ns_, gate.immeasurable_ns);
+  const double at_s = at(gate.immeasurable_ns);
   faults.push_back({stream, FaultKind::NotFinite, at_s,
                     fmt::format("{}: {} IMU samples excluded, whose values are not finite or not plausible "
                                 "(the first at {:.3f} s)",

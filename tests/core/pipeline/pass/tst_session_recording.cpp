@@ -42,6 +42,7 @@ class TestSessionRecording : public QObject {
   void twoFiles_areReadTogether();
   void clockOffset_isAdded();
   void clockScale_isApplied();
+  void clockScale_startsBehindStrays();
   void absurdClocks_areRefused();
   void columns_areThoseOfTheSession();
   void units_areThoseOfTheSession();
@@ -145,6 +146,27 @@ void TestSessionRecording::clockScale_isApplied() {
   QVERIFY(std::abs(read.imu_samples[30].time_ns -
                    (first_ns + (written_.imu_samples[30].time_ns - first_ns) / 2 + 250'000'000)) <= 1);
   QVERIFY(same(read.events, written_.events));
+}
+
+// If a first sample that is stamped 0 were the fixed point, all others would move by days.
+void TestSessionRecording::clockScale_startsBehindStrays() {
+  Recording spoilt = written_;
+  spoilt.imu_samples.front().time_ns = 0;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
+  session_.imus[0].clock_scale = 1.001;
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(read.imu_samples.size(), written_.imu_samples.size() - 1);
+  const std::int64_t first_ns = written_.imu_samples[1].time_ns;
+  QCOMPARE(qint64(read.imu_samples[0].time_ns), qint64(first_ns));
+  const double whole_ns = 1.001 * static_cast<double>(written_.imu_samples.back().time_ns - first_ns);
+  QVERIFY(std::abs(static_cast<double>(read.imu_samples.back().time_ns - first_ns) - whole_ns) <= 1.0);
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  while (recording.read(packet)) {
+  }
+  QVERIFY(recording.faults().front().text.find("1 IMU samples excluded") != std::string::npos);
+  QVERIFY(std::abs(recording.faults().front().at_s) < 1.0);
 }
 
 void TestSessionRecording::absurdClocks_areRefused() {
