@@ -69,6 +69,7 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
       intakes[packet.sensor].consume(packet.events);
     }
     context.throwIfStopped();
+    range.checkBegin();
     for (MotionIntake& intake : intakes) {
       pass.kinds.push_back(intake.kind);
       pass.cameras.emplace_back();

@@ -123,6 +123,8 @@ class ReadingPass {
       if (!is_camera) addSamples(packet);
       if (is_camera && !addMeasured(packet, queue)) return;
     }
+    context.throwIfStopped();
+    range_.checkBegin();
     for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
       if (!intakes_[camera].events) continue;
       flush(camera, queue);

@@ -132,6 +132,14 @@ class TestTimeRange : public QObject {
     const DetectionResult pass = readImus(session, start_ns, {});
     QCOMPARE(qint64(pass.imus[0].samples.front().time_ns), qint64(103'000'000'000));
     QCOMPARE(qint64(pass.imus[0].samples.back().time_ns), qint64(108'000'000'000));
+    session.time_range_s = {20.0, 30.0};
+    try {
+      readAndDetect(session, {});
+      QFAIL("data in a range behind the end");
+    } catch (const CalibrationError& error) {
+      QCOMPARE(QString::fromStdString(error.problem()),
+               QString("lasts 10.0 s, but time_range_s begins at 20 s"));
+    }
   }
 };
 
