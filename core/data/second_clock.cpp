@@ -46,9 +46,9 @@ std::vector<SecondClock> findSecondClocks(std::span<const ImuSample> samples) {
   return found;
 }
 
-RecordingFault faultOf(const std::string& stream, std::span<const ImuSample> samples,
+RecordingFault faultOf(const std::string& stream, std::int64_t first_ns, std::span<const ImuSample> samples,
                        const SecondClock& clock) {
-  const double at_s = secondsSince(samples.front().time_ns, samples[clock.begin - 1].time_ns);
+  const double at_s = secondsSince(first_ns, samples[clock.begin - 1].time_ns);
   return {stream, FaultKind::SecondClock, at_s,
           fmt::format(
               "{} samples from {:.3f} s on are stamped by a second clock, which runs {:.2f} times as fast: "

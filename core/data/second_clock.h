@@ -7,6 +7,7 @@
 #include "core/data/recording_fault.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +22,8 @@ struct SecondClock {
 // In the order of recording, ascending; none if the samples before and after a stretch are not consistent.
 std::vector<SecondClock> findSecondClocks(std::span<const ImuSample> samples);
 
-RecordingFault faultOf(const std::string& stream, std::span<const ImuSample> samples,
+// `first_ns`: first time of the stream.
+RecordingFault faultOf(const std::string& stream, std::int64_t first_ns, std::span<const ImuSample> samples,
                        const SecondClock& clock);
 
 }  // namespace evical

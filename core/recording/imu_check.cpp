@@ -1,4 +1,5 @@
 #include "core/base/time.h"
+#include "core/data/imu_stamps.h"
 #include "core/data/second_clock.h"
 #include "core/data/unfit_samples.h"
 #include "core/recording/imu_statistics.h"
@@ -30,10 +31,14 @@ void appendFaults(Faults& faults, Faults alike, const char* many) {
   faults.insert(faults.end(), alike.begin(), alike.end());
 }
 
-void checkTimes(const std::string& name, const Samples& samples, const InspectionOptions& options,
-                Faults& faults) {
+void checkTimes(const std::string& name, Samples samples, const InspectionOptions& options, Faults& faults) {
+  const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
+  if (std::is_sorted(samples.begin(), samples.end(), earlier))
+    if (const CoarseStamps stamps = reconstructStamps(samples); stamps.step_s > 0.0)
+      faults.push_back(faultOf(name, stamps));
   const std::vector<SecondClock> clocks = findSecondClocks(samples);
-  for (const SecondClock& clock : clocks) faults.push_back(faultOf(name, samples, clock));
+  for (const SecondClock& clock : clocks)
+    faults.push_back(faultOf(name, samples.front().time_ns, samples, clock));
   const auto isOfSecondClock = [&](std::size_t i) {
     return std::any_of(clocks.begin(), clocks.end(),
                        [i](const SecondClock& clock) { return i >= clock.begin && i <= clock.end; });

@@ -1,6 +1,7 @@
 #include "core/recording/inspection.h"
 
 #include "core/base/time.h"
+#include "core/data/imu_stamps.h"
 #include "core/recording/event_statistics.h"
 #include "core/recording/imu_statistics.h"
 
@@ -27,7 +28,7 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
     summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
   }
-  const double period_s = medianInterval_s(samples);
+  const double period_s = medianInterval_s(si);
   if (period_s > 0.0) summary.rate_hz = 1.0 / period_s;
   summary.median_acceleration = medianForceNorm(samples);
   const double steady = steadyForceNorm(si).value_or(summary.median_acceleration);
@@ -173,7 +174,9 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     if (summary.info.type != StreamType::Imu) continue;
     std::vector<ImuSample> samples;
     toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
-    summarise(imu_samples[i], samples, options, summary);
+    std::vector<ImuSample> timed = samples;
+    reconstructStamps(timed);
+    summarise(imu_samples[i], timed, options, summary);
     setMeasuredBy(imu_samples[i], imuStreamKind(summary), samples);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());

@@ -86,7 +86,9 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
     const std::vector<RecordingFault> faults = recording.faults();
     pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());
   }
-  pass.imus = readImus(session, pass.start_ns, context).imus;
+  DetectionResult samples = readImus(session, pass.start_ns, context);
+  pass.imus = std::move(samples.imus);
+  pass.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
   return pass;
 }
 

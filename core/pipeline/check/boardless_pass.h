@@ -16,7 +16,8 @@ struct BoardlessPass {
   std::int64_t start_ns = 0;          // first event or sample of the session's streams
   std::vector<CameraRecord> cameras;  // by camera of the session; empty for frames and points
   std::vector<CameraKind> kinds;
-  std::vector<ImuData> imus;  // SI units, in time order
+  std::vector<ImuData> imus;                   // SI units, in time order
+  std::vector<double> imu_stamp_steps_s = {};  // as in DetectionResult
   std::vector<RecordingFault> faults;
 };
 

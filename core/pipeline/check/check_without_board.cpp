@@ -171,7 +171,10 @@ class BoardlessCheck {
     CameraState& state = result_->state.cameras[camera];
     state.reference_from_camera.rotation = alignment.imu_from_camera;
     state.time_offset_s = alignment.time_offset_s;
-    const Eigen::Vector4d sigmas = alignment.covariance.diagonal().cwiseSqrt();
+    Eigen::Matrix4d covariance = alignment.covariance;
+    if (!pass_.imu_stamp_steps_s.empty())
+      covariance(3, 3) += 0.25 * std::pow(pass_.imu_stamp_steps_s[input_.session.referenceImu()], 2);
+    const Eigen::Vector4d sigmas = covariance.diagonal().cwiseSqrt();
     CameraUncertainty& uncertainty = result_->uncertainty.cameras[camera];
     uncertainty.rotation_std_rad = sigmas.head<3>();
     uncertainty.time_offset_std_s = sigmas[3];
@@ -185,7 +188,7 @@ class BoardlessCheck {
     Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size + 4, size + 4);
     if (size > 0) correlation.topLeftCorner(size, size) = report.correlation;
     correlation.bottomRightCorner<4, 4>() =
-        sigmas.cwiseInverse().asDiagonal() * alignment.covariance * sigmas.cwiseInverse().asDiagonal();
+        sigmas.cwiseInverse().asDiagonal() * covariance * sigmas.cwiseInverse().asDiagonal();
     report.correlation = correlation;
   }
 

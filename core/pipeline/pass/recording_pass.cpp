@@ -5,7 +5,7 @@
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
-#include "core/data/second_clock.h"
+#include "core/data/imu_stamps.h"
 #include "core/frontend/front_end_options.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/bounded_queue.h"
@@ -133,7 +133,11 @@ class ReadingPass {
   }
 
   void finish() {
-    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
+    std::vector<double> steps_s;
+    for (std::size_t k = 0; k < session_.imus.size(); ++k)
+      steps_s.push_back(finishImu(session_.imus[k], result_.imus[k]));
+    if (std::ranges::any_of(steps_s, [](double step_s) { return step_s > 0.0; }))
+      result_.imu_stamp_steps_s = std::move(steps_s);
     for (const Intake& intake : intakes_)
       if (intake.events) intake.events->report(result_.faults);
     const std::vector<RecordingFault> faults = recording_.faults();
@@ -200,27 +204,15 @@ class ReadingPass {
     return queue.push(std::move(*batch));
   }
 
-  void finishImu(const SessionImu& session, ImuData& imu) {
+  // Returns the step of coarse stamps.
+  double finishImu(const SessionImu& session, ImuData& imu) {
     imu.name = session.name;
     imu.noise = session.noise;
-    leaveOutSecondClocks(session.joinedStream(), imu.samples);
-    const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
-    if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
-      result_.faults.push_back({session.joinedStream(), FaultKind::BackwardTime, 0.0,
-                                session.joinedStream() + ": samples out of order were sorted"});
-      std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
-    }
-    const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
-    imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
+    if (imu.samples.empty()) return 0.0;
+    const double step_s =
+        putInOrder(session.joinedStream(), imu.samples.front().time_ns, imu.samples, result_.faults);
     imu.samples.shrink_to_fit();
-  }
-
-  void leaveOutSecondClocks(const std::string& stream, std::vector<ImuSample>& samples) {
-    const std::vector<SecondClock> clocks = findSecondClocks(samples);
-    for (const SecondClock& clock : clocks) result_.faults.push_back(faultOf(stream, samples, clock));
-    for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
-      samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(clock->begin),
-                    samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
+    return step_s;
   }
 
   const Session& session_;

@@ -167,6 +167,7 @@ void restoreViews(const std::filesystem::path& folder, const Session& session, D
 void readSamples(const Session& session, const RunContext& context, DetectionResult& pass) {
   DetectionResult samples = readImus(session, pass.start_ns, context);
   pass.imus = std::move(samples.imus);
+  pass.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
   pass.read_s = samples.read_s;
   for (RecordingFault& fault : samples.faults) {
     const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };

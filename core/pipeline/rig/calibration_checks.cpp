@@ -207,7 +207,8 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     checkStampsApart(imu);
     checkAxesAlive(imu);
     checkUnits(imu, *session.options.initialisation);
-    for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
+    for (const RecordingFault& fault : checkImu(imu.name, imu.samples))
+      if (fault.kind != FaultKind::Encoding) addFault(fault, pass.faults);  // of stamps: named while reading
   }
   for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
     const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));

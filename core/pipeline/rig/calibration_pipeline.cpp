@@ -313,6 +313,7 @@ class Calibration {
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
+    addStampErrors(input_, run_.pass.imu_stamp_steps_s, options, result);
     run_.as_weighed = std::move(uncertainty.as_weighed);
     result.latencies = sensorLatencies(input_, result.state, result.uncertainty);
     result.cameras = std::move(solution.cameras);

@@ -1,5 +1,6 @@
 #include "core/pipeline/rig/residual_consistency.h"
 
+#include "core/data/quality_warning.h"
 #include "core/data/unfit_samples.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,14 @@
 
 namespace evical {
 namespace {
+
+constexpr double kLeastSigma = 1e-150;
+
+// True if gyroscope and accelerometer have separate stamps.
+bool areApart(const ImuData& imu) {
+  return std::any_of(imu.samples.begin(), imu.samples.end(),
+                     [](const ImuSample& sample) { return sample.measured_by != MeasuredBy::Both; });
+}
 
 // A ratio with its bounds and the text that reports it.
 struct Measure {
@@ -82,6 +91,45 @@ std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolutio
     }
   }
   return found;
+}
+
+void addStampErrors(const CalibrationInput& input, const std::vector<double>& steps_s,
+                    const VerdictOptions& options, CalibrationResult& result) {
+  if (steps_s.empty()) return;
+  UncertaintyReport& report = result.uncertainty;
+  const auto variance_s2 = [&](std::size_t imu) { return 0.25 * steps_s[imu] * steps_s[imu]; };
+  const double common_s2 = variance_s2(input.reference_imu);
+  Eigen::MatrixXd covariance = report.covariance();
+  const auto add = [&](Eigen::Index column, const QuantityAddress& number) {
+    const bool own = number.owner == QuantityOwner::Imu && number.id == QuantityId::TimeOffset;
+    const bool delay = number.id == QuantityId::AccelerometerDelay && areApart(input.imus[number.sensor]);
+    if (own || delay) covariance(column, column) += variance_s2(number.sensor);
+    if (number.id != QuantityId::TimeOffset) return;
+    for (Eigen::Index k = 0; k < covariance.cols(); ++k)
+      if (report.columns[static_cast<std::size_t>(k)].id == QuantityId::TimeOffset)
+        covariance(column, k) += common_s2;
+  };
+  for (Eigen::Index k = 0; k < covariance.cols(); ++k) add(k, report.columns[static_cast<std::size_t>(k)]);
+  report.standard_deviations = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = report.standard_deviations.cwiseMax(kLeastSigma).cwiseInverse();
+  report.correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  report.correlation.diagonal().setOnes();
+  for (std::size_t k = 0; k < report.columns.size(); ++k) {
+    const QuantityAddress& number = report.columns[k];
+    const double sigma = report.standard_deviations[static_cast<Eigen::Index>(k)];
+    if (number.id == QuantityId::AccelerometerDelay)
+      report.imus[number.sensor].accelerometer_delay_std_s = sigma;
+    if (number.id != QuantityId::TimeOffset) continue;
+    (number.owner == QuantityOwner::Camera ? report.cameras[number.sensor].time_offset_std_s
+                                           : report.imus[number.sensor].time_offset_std_s) = sigma;
+  }
+  for (std::size_t k = 0; k < steps_s.size() && options.judge_sigmas; ++k)
+    if (const double uncertain_ms = 0.5e3 * steps_s[k]; uncertain_ms > options.needed_time_offset_ms)
+      flagDoubtful(
+          fmt::format("the time stamps of {} have steps of {:.3g} ms, which leave an error of {:.2g} ms in "
+                      "the time offset (needed: {:.2g}): record the sensor's own stamps in us",
+                      input.imus[k].name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
+          result, "coarse_stamps");
 }
 
 std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions& options) {

@@ -86,7 +86,7 @@ EVICAL_FIELDS(ImuSample, time_ns, angular_rate_rad_s, specific_force_m_s2, measu
 EVICAL_FIELDS(ImuData, name, noise, samples, prior);
 EVICAL_FIELDS(RecordingFault, stream, kind, at_s, text);
 EVICAL_FIELDS(DetectionResult, start_ns, cameras, lenses, imus, resolutions_px, faults, read_s, detect_s,
-              rejected_views);
+              rejected_views, imu_stamp_steps_s);
 
 template <>
 inline constexpr auto kLast<CalibrationStatus> = CalibrationStatus::Failed;

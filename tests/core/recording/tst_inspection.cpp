@@ -87,6 +87,11 @@ void TestInspection::imuFaults_areFound_data() {
         for (ImuSample& sample : s) sample.time_ns += random() % 700'000;
       },
       {"jitter"});
+  row("stamps in steps of 10 ms",
+      [](Samples& s) {
+        for (ImuSample& sample : s) sample.time_ns -= sample.time_ns % 10'000'000;
+      },
+      {"encoding"});
   row("stuck",
       [](Samples& s) {
         for (std::size_t i = 1000; i < 2500; ++i) s[i].angular_rate_rad_s.y() = 0.02;

@@ -1,4 +1,5 @@
 // Implausible IMU samples do not reduce the accuracy, and are reported.
+#include "core/data/imu_stamps.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/report_options.h"
@@ -50,6 +51,8 @@ class TestSpoiltImu : public QObject {
   void spoiltSamples_areLeftOutAndNamed_data();
   void spoiltSamples_areLeftOutAndNamed();
   void scatteringStamps_areTheFirstReason();
+  void coarseStamps_widenTheTimeOffset_data();
+  void coarseStamps_widenTheTimeOffset();
 };
 
 }  // namespace
@@ -124,6 +127,53 @@ void TestSpoiltImu::scatteringStamps_areTheFirstReason() {
   const QString reason = QString::fromStdString(run.result.reason);
   QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   QVERIFY2(reason.contains(QRegularExpression("^[^;]*: Sample intervals scatter by ")), qPrintable(reason));
+}
+
+void TestSpoiltImu::coarseStamps_widenTheTimeOffset_data() {
+  QTest::addColumn<double>("rate_hz");
+  QTest::addColumn<double>("step_ms");
+  QTest::addColumn<double>("part");  // of a step that is added before stamps are rounded down
+  for (const auto& [name, part] : {std::pair("down", 0.0), std::pair("nearest", 0.5), std::pair("up", 1.0)}) {
+    QTest::addRow("10 ms at 200 Hz, %s", name) << 200.0 << 10.0 << part;
+    QTest::addRow("1 ms at 1 kHz, %s", name) << 1000.7 << 1.0 << part;
+  }
+  QTest::newRow("4 ms at 200 Hz, down") << 200.0 << 4.0 << 0.0;
+}
+
+void TestSpoiltImu::coarseStamps_widenTheTimeOffset() {
+  QFETCH(double, rate_hz);
+  QFETCH(double, step_ms);
+  QFETCH(double, part);
+  test::Recorded recorded;
+  recorded.scenario = readScenario(test::scenarioPath("davis346_10s"));
+  recorded.scenario.imus.front().rate_hz = rate_hz;
+  recorded.session = test::sessionFor(recorded.scenario);
+  recorded.session.options.report.edit().split_half_check = false;
+  recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.015);
+  const std::int64_t step_ns = std::llround(1e6 * step_ms);
+  ImuData& imu = recorded.pass.imus.front();
+  for (ImuSample& sample : imu.samples) {
+    const std::int64_t shifted_ns = sample.time_ns + std::llround(part * static_cast<double>(step_ns));
+    sample.time_ns = shifted_ns - shifted_ns % step_ns;
+  }
+  recorded.pass.imu_stamp_steps_s = {
+      putInOrder("/imu", imu.samples.front().time_ns, imu.samples, recorded.pass.faults)};
+  const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+  QString notes;
+  for (const std::string& each : run.result.notes) notes += QString::fromStdString(each) + "\n";
+  QVERIFY2(notes.contains(QString("steps of %1 ms").arg(step_ms)), qPrintable(notes));
+  const bool doubtful = run.result.status == CalibrationStatus::Doubtful;
+  QVERIFY(doubtful);  // half a step is more than the offset may be uncertain by
+  QVERIFY2(run.result.reason.find("time stamps of imu have steps of") == std::size_t{4},
+           run.result.reason.c_str());
+  const TruthComparison comparison =
+      compareWithTruth(namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),
+                       test::truthOf(recorded.scenario));
+  for (const QuantityDifference& quantity : comparison.quantities)
+    QVERIFY2(std::abs(quantity.normalised()) < 3.0, qPrintable(QString("%1: error %2, sigma %3")
+                                                                   .arg(QString::fromStdString(quantity.name))
+                                                                   .arg(quantity.difference)
+                                                                   .arg(quantity.sigma)));
 }
 
 }  // namespace
