@@ -3,6 +3,8 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
+#include "core/base/time.h"
+#include "core/data/imu_stamps.h"
 #include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
@@ -23,6 +25,21 @@ std::vector<std::string> namesOf(const NamedResult& before) {
 std::string joinedStreamOf(const SensorDescription& imu) {
   return imu.accelerometer_stream.empty() ? imu.stream
                                           : nameOf(SeparateImu{imu.stream, imu.accelerometer_stream});
+}
+
+// Number of the first samples that are earlier than all others, without the last seconds.
+std::size_t cutOf(const std::vector<ImuSample>& samples) {
+  constexpr std::int64_t kWait_ns =
+      5 * kSecond_ns;  // longer than most disorder and stretches of second clocks
+  std::vector<std::int64_t> latest_ns;
+  for (const ImuSample& sample : samples)
+    latest_ns.push_back(latest_ns.empty() ? sample.time_ns : std::max(latest_ns.back(), sample.time_ns));
+  std::int64_t rest_ns = latest_ns.back();
+  for (std::size_t k = samples.size(); k-- > 1;) {
+    rest_ns = std::min(rest_ns, samples[k].time_ns);
+    if (latest_ns[k - 1] < std::min(rest_ns, latest_ns.back() - kWait_ns)) return k;
+  }
+  return 0;
 }
 
 std::optional<std::size_t> onlyOne(const std::vector<std::size_t>& found) {
@@ -199,8 +216,71 @@ SessionImu ImuLogs::readingOf(std::size_t imu) const {
 }
 
 bool ImuLogs::read(SensorPacket& packet) {
+  while (packets_.empty() && !ended_) readBlock();
+  if (packets_.empty()) return false;
+  packet = std::move(packets_.front());
+  packets_.pop_front();
+  return true;
+}
+
+void ImuLogs::readBlock() {
+  constexpr std::int64_t kBlock_ns = 60 * kSecond_ns;
   if (const Log* const log = streams_.behind()) checkOrder(*log);
-  return streams_.read(packet);
+  SensorPacket packet;
+  ended_ = !streams_.read(packet);
+  if (ended_) return release(true);
+  if (packet.imu_samples.empty()) return;
+  Block& block = blocks_.try_emplace(packet.sensor, Block{packet.imu_samples.front().time_ns}).first->second;
+  block.waiting.insert(block.waiting.end(), packet.imu_samples.begin(), packet.imu_samples.end());
+  const std::int64_t span_ns = block.waiting.back().time_ns - block.waiting.front().time_ns;
+  if (block.waiting.size() >= block.next_size && (span_ns > kBlock_ns || span_ns < 0)) release(false);
+}
+
+// Hands out samples of all IMUs in order of time. Without `all`, the last seconds wait.
+void ImuLogs::release(bool all) {
+  for (auto& [imu, block] : blocks_) putInOrder(imu, block, all);
+  constexpr std::int64_t kPacket_ns = kSecond_ns / 10;
+  for (;;) {
+    Block* first = nullptr;
+    std::size_t imu = 0;
+    for (auto& [index, block] : blocks_) {
+      if (block.taken == block.ready.size()) continue;
+      if (first != nullptr && block.ready[block.taken].time_ns >= first->ready[first->taken].time_ns)
+        continue;
+      first = &block;
+      imu = index;
+    }
+    if (first == nullptr) return;
+    SensorPacket& packet = packets_.emplace_back();
+    packet.sensor = imu;
+    const std::int64_t end_ns = first->ready[first->taken].time_ns + kPacket_ns;
+    while (first->taken < first->ready.size() && first->ready[first->taken].time_ns < end_ns)
+      packet.imu_samples.push_back(first->ready[first->taken++]);
+  }
+}
+
+void ImuLogs::putInOrder(std::size_t imu, Block& block, bool all) {
+  constexpr std::size_t kMost = 500'000;
+  if (block.waiting.empty()) return;
+  const std::size_t count = all || block.waiting.size() > kMost ? block.waiting.size() : cutOf(block.waiting);
+  const auto end = block.waiting.begin() + static_cast<std::ptrdiff_t>(count);
+  block.ready.assign(block.waiting.begin(), end);
+  block.taken = 0;
+  block.waiting.erase(block.waiting.begin(), end);
+  block.next_size = block.waiting.size() + block.waiting.size() / 2;
+  std::vector<RecordingFault> found;
+  if (count > 0)
+    block.stamp_step_s = std::max(block.stamp_step_s,
+                                  evical::putInOrder(stream(imu).name, block.first_ns, block.ready, found));
+  for (RecordingFault& fault : found) {
+    const auto alike = [&](const RecordingFault& other) {
+      return other.stream == fault.stream && other.kind == fault.kind;
+    };
+    const auto same = [&](const RecordingFault& other) { return alike(other) && other.text == fault.text; };
+    if (std::ranges::count_if(stamp_faults_, alike) < kMostAlikeFaults &&
+        std::ranges::none_of(stamp_faults_, same))
+      stamp_faults_.push_back(std::move(fault));
+  }
 }
 
 // Two simultaneous logs of one IMU are of two IMUs, or duplicates.
@@ -216,9 +296,15 @@ void ImuLogs::checkOrder(const Log& log) {
   latest = {samples.back().time_ns, &log};
 }
 
+double ImuLogs::stampStep_s(std::size_t imu) const {
+  const auto found = blocks_.find(imu);
+  return found == blocks_.end() ? 0.0 : found->second.stamp_step_s;
+}
+
 std::vector<RecordingFault> ImuLogs::faults() const {
   std::vector<RecordingFault> all;
   streams_.addFaults(all);
+  all.insert(all.end(), stamp_faults_.begin(), stamp_faults_.end());
   std::uint64_t immeasurable = 0;
   for (const Log& log : streams_.files())
     for (const MergedStreams::Stream& stream : log.streams) immeasurable += stream.immeasurable;

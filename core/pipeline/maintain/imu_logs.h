@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -43,10 +44,21 @@ class ImuLogs {
 
   bool read(SensorPacket& packet);  // of an IMU of the result
   double fractionRead() const { return streams_.fractionRead(); }
-  std::vector<RecordingFault> faults() const;  // complete after read() has returned false
+  // Complete after read() has returned false: faults, and the step of an IMU's coarse stamps, 0 for others.
+  std::vector<RecordingFault> faults() const;
+  double stampStep_s(std::size_t imu) const;
 
  private:
   using Log = MergedStreams::File;
+
+  // Samples wait until the stamps around them are known.
+  struct Block {
+    std::int64_t first_ns = 0;  // of the log
+    std::vector<ImuSample> waiting = {}, ready = {};
+    std::size_t taken = 0;      // of `ready`
+    std::size_t next_size = 0;  // of `waiting`, at which it is sorted again
+    double stamp_step_s = 0.0;
+  };
 
   std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
   std::optional<std::size_t> imuOf(const Log& log, const StreamInfo& stream, bool only_one) const;
@@ -56,6 +68,9 @@ class ImuLogs {
   void match(bool only_one);
   SessionImu readingOf(std::size_t imu) const;
   void checkOrder(const Log& log);
+  void readBlock();
+  void release(bool all);
+  void putInOrder(std::size_t imu, Block& block, bool all);
   [[noreturn]] void refuseUnknown() const;
 
   const NamedResult& before_;
@@ -68,6 +83,11 @@ class ImuLogs {
     const Log* log = nullptr;
   };
   std::map<std::size_t, Latest> latest_;  // by IMU
+
+  std::map<std::size_t, Block> blocks_;  // by IMU
+  std::deque<SensorPacket> packets_;
+  std::vector<RecordingFault> stamp_faults_;
+  bool ended_ = false;
   std::int64_t start_ns_ = 0;
   std::vector<std::string> notes_;
 };

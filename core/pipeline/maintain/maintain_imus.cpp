@@ -165,6 +165,7 @@ class Maintainer {
   std::vector<std::string> disagreeing_;
   std::string shaken_;  // a pair with correlated noise between its IMUs
   std::vector<std::string> streams_;
+  std::vector<double> stamp_steps_s_;
 };
 
 // An IMU relative to the reference, independent of the result's reference.
@@ -266,6 +267,8 @@ void Maintainer::readAll() {
   pairs.finish();
   for (ImuPass& pass : passes_) pass.means.finish();
   windows_ = pairs.windows();
+  stamp_steps_s_.clear();
+  for (const std::size_t imu : imus_) stamp_steps_s_.push_back(logs.stampStep_s(imu));
   if (!maintenance_.imus.empty()) return;  // second reading: already reported
   for (const RecordingFault& fault : logs.faults()) {
     context_.progress.log(LogLevel::Warning, fault.text);
@@ -392,8 +395,9 @@ void Maintainer::addPairs(double false_alarms) {
       maintenance_.notes.push_back(pair + ": the two do not overlap in time");
       continue;
     }
-    addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
-                      *input_.options, false_alarms, maintenance_);
+    addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k],
+                       0.5 * std::hypot(stamp_steps_s_[k], stamp_steps_s_.front())},
+                      before(), *input_.options, false_alarms, maintenance_);
     double wider = 1.0;
     for (const NoiseAutocorrelation& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
     if (wider > kWorthAdvice) shaken_ = pair;

@@ -342,7 +342,10 @@ void addTrajectoryQuantities(const std::vector<LagEstimate>& lags, const LagSum&
 void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const MaintenanceOptions& options,
                        double false_alarms, Maintenance& maintenance) {
   const PairVector old_state = beforeFrom(pair), sigma_before = sigmasBefore(pair, before);
-  const Eigen::MatrixXd covariance = (sigma_before.cwiseAbs2() + pairStability(options)).asDiagonal();
+  PairVector variance = sigma_before.cwiseAbs2() + pairStability(options), of_stamps = PairVector::Zero();
+  of_stamps[6] = pair.stamp_error_s * pair.stamp_error_s;  // constant, and in no residual
+  variance += of_stamps;
+  const Eigen::MatrixXd covariance = variance.asDiagonal();
   const Eigen::MatrixXd information = pair.track.start_information;
   const Eigen::VectorXd score = pair.track.start_score - pair.track.start_information * old_state;
   const ChangeDetector test(information, score, covariance);
@@ -363,7 +366,8 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
            kPairWords[b].unit,
            {kPairWords[b].factor * numbers_before[n], kPairWords[b].factor * sigma_before[n]},
            {kPairWords[b].factor * numbers_now[n],
-            kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))}});
+            kPairWords[b].factor *
+                std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0) + of_stamps[n])}});
     }
     setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.colours[b].ofMany(), finding);
     maintenance.findings.push_back(finding);

@@ -31,6 +31,7 @@ struct TrackedPair {
   std::size_t imu = 0, reference = 0;
   PairNominal nominal, before;
   PairTrack track;
+  double stamp_error_s = 0.0;  // sigma that coarse stamps of the two leave in the time offset
 };
 void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const MaintenanceOptions& options,
                        double false_alarms, Maintenance& maintenance);
