@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/time.h"
+#include "core/frames/gray_image.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,27 @@ namespace {
 
 constexpr std::array kCameraStreams = {StreamType::Events, StreamType::Frames, StreamType::Points};
 constexpr std::array kImuStreams = {StreamType::Imu};
+
+// Replaces the frame by raw pixels. A frame that cannot be decoded stays, since its user reports it.
+void unmirrorFrame(Mirroring mirroring, Frame& frame) {
+  GrayImage image;
+  try {
+    image = decodeFrame(frame, "frame");
+  } catch (const CalibrationError&) {
+    return;
+  }
+  frame.format = FrameFormat::Gray8;
+  frame.size_px = mirroredSize(mirroring, image.size_px);
+  frame.row_bytes = static_cast<std::size_t>(frame.size_px.width_px);
+  frame.bytes.resize(image.pixels.size());
+  for (int row = 0; row < frame.size_px.height_px; ++row)
+    for (int col = 0; col < frame.size_px.width_px; ++col) {
+      int x = col, y = row;
+      mirrorPoint(mirroring, image.size_px, x, y);
+      frame.bytes[static_cast<std::size_t>(row) * frame.row_bytes + static_cast<std::size_t>(col)] =
+          image.pixels[static_cast<std::size_t>(y * image.size_px.width_px + x)];
+    }
+}
 
 }  // namespace
 
@@ -121,7 +143,7 @@ CameraKind SessionRecording::kind(std::size_t camera) const {
 Resolution SessionRecording::resolution_px(std::size_t camera) const {
   const SessionCamera& own = session_.cameras[camera];
   const std::optional<CameraIntrinsics>& lens = session_.sensor(camera).intrinsics;
-  const Resolution stated = info(camera).resolution_px;
+  const Resolution stated = mirroredSize(own.mirrored.value_or(Mirroring::None), info(camera).resolution_px);
   if (lens && stated.known() && lens->resolution_px.known() && lens->resolution_px != stated) {
     throw badInput(own.name,
                    fmt::format("its intrinsics are for {} x {} px, but the recording has {} x {}",
@@ -135,6 +157,22 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
   if (info(camera).type == StreamType::Frames) return {};  // known after the first one is decoded
   throw badInput(own.name, "the recording does not contain the sensor's resolution",
                  howTo(HowTo::GiveResolution));
+}
+
+bool SessionRecording::read(SensorPacket& packet) {
+  if (!streams_.read(packet)) return false;
+  if (packet.sensor < session_.cameras.size()) unmirror(packet);
+  return true;
+}
+
+void SessionRecording::unmirror(SensorPacket& packet) const {
+  const Mirroring mirroring = session_.cameras[packet.sensor].mirrored.value_or(Mirroring::None);
+  if (mirroring == Mirroring::None) return;
+  for (Frame& frame : packet.frames) unmirrorFrame(mirroring, frame);
+  if (packet.events.empty() && packet.points.empty()) return;
+  const Resolution size_px = resolution_px(packet.sensor);
+  for (Event& event : packet.events) mirrorPoint(mirroring, size_px, event.x_px, event.y_px);
+  for (MeasuredPoint& point : packet.points) mirrorPoint(mirroring, size_px, point.x_px, point.y_px);
 }
 
 std::vector<RecordingFault> SessionRecording::faults() const {

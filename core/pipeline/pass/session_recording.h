@@ -32,7 +32,7 @@ class SessionRecording {
   // Time of the first event or sample in any file; 0 if there is none.
   std::int64_t start_ns() const { return start_ns_; }
 
-  bool read(SensorPacket& packet) { return streams_.read(packet); }
+  bool read(SensorPacket& packet);
   double fractionRead() const { return streams_.fractionRead(); }
   // Faults of the files, and removed data; complete after read() has returned false.
   std::vector<RecordingFault> faults() const;
@@ -50,6 +50,7 @@ class SessionRecording {
   const StreamInfo& info(std::size_t sensor) const;
   void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;
   void checkTimed() const;
+  void unmirror(SensorPacket& packet) const;
 
   const Session& session_;
   MergedStreams streams_;

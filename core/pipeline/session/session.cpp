@@ -153,6 +153,8 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
   if (!camera.same_sensor_as.empty())
     text += fmt::format("    same_sensor_as: {}\n", yamlText(camera.same_sensor_as));
   if (!camera.board.empty()) text += fmt::format("    board: {}\n", yamlText(camera.board));
+  if (camera.mirrored)
+    text += fmt::format("    mirrored: {}\n", kMirroringNames.at(static_cast<std::size_t>(*camera.mirrored)));
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
   if (camera.intrinsics && camera.intrinsics_uncertainty)
     text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);

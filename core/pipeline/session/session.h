@@ -4,6 +4,7 @@
 #include "core/data/calibration_priors.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/imu_units.h"
+#include "core/data/mirroring.h"
 #include "core/geometry/measured_length.h"
 #include "core/pipeline/session/calibration_options.h"
 
@@ -30,6 +31,9 @@ struct SessionCamera {
   // Camera with the same sensor chip: this camera has its pose and lens. Empty: none.
   std::string same_sensor_as = {};
   std::string board = {};  // the one that it sees, if there are several; empty: the first
+  // Mirroring by the driver, which is reversed on reading; resolution and intrinsics are those of the image
+  // without it. Absent: unknown, read as not mirrored.
+  std::optional<Mirroring> mirrored = {};
 };
 
 struct SessionImu {
@@ -88,9 +92,9 @@ struct Session {
 // Sets the length and the spacing with its sigma. Without a length the spacing stays, with the default sigma.
 void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session);
 
-// Sets one key, as for `--set` and repairs: an option, cameras.<name>.clock_scale, or imus.<name>. with
-// acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws
-// CalibrationError (BadInput).
+// Sets one key, as for `--set` and repairs: an option, cameras.<name>. with clock_scale or mirrored, or
+// imus.<name>. with acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale.
+// Throws CalibrationError (BadInput).
 void setInSession(Session& session, const std::string& key, const std::string& value);
 
 // Lenses that the session gives; others are unknown.

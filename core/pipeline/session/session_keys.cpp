@@ -15,13 +15,14 @@ namespace {
 const std::vector<std::string> kImuKeys = {"acceleration_unit", "angular_rate_unit", "gyroscope_axes",
                                            "accelerometer_axes", "clock_scale"};
 
-template <class Unit, class Names>
-Unit unitFrom(const Names& names, const std::string& key, const std::string& value) {
+// The enumerator of this name.
+template <class Enum, class Names>
+Enum enumFrom(const Names& names, const std::string& key, const std::string& value) {
   const auto found = std::find(names.begin(), names.end(), value);
   if (found == names.end())
     throw badInput(key, fmt::format("'{}' is not a valid value", value),
                    nameAdvice(value, std::vector<std::string>(names.begin(), names.end())));
-  return static_cast<Unit>(found - names.begin());
+  return static_cast<Enum>(found - names.begin());
 }
 
 AxesReading axesOrThrow(const std::string& key, const std::string& value) {
@@ -46,9 +47,9 @@ std::array<double, 2> timeRangeFrom(const YamlNode& node) {
 
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value) {
   if (key == "acceleration_unit") {
-    imu.acceleration_unit = unitFrom<AccelerationUnit>(kAccelerationUnits, key, value);
+    imu.acceleration_unit = enumFrom<AccelerationUnit>(kAccelerationUnits, key, value);
   } else if (key == "angular_rate_unit") {
-    imu.angular_rate_unit = unitFrom<AngularRateUnit>(kAngularRateUnits, key, value);
+    imu.angular_rate_unit = enumFrom<AngularRateUnit>(kAngularRateUnits, key, value);
   } else if (key == "gyroscope_axes") {
     imu.gyroscope_axes = axesOrThrow(key, value);
   } else if (key == "accelerometer_axes") {
@@ -66,6 +67,10 @@ void setInSession(Session& session, const std::string& key, const std::string& v
     return;
   }
   for (SessionCamera& camera : session.cameras) {
+    if (key == "cameras." + camera.name + ".mirrored") {
+      camera.mirrored = enumFrom<Mirroring>(kMirroringNames, key, value);
+      return;
+    }
     if (key != "cameras." + camera.name + ".clock_scale") continue;
     camera.clock_scale = clockScaleFrom(key, value);
     return;

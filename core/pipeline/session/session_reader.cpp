@@ -97,14 +97,16 @@ SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_na
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
   map.allowOnly({"recording", "stream", "points", "clock_offset_s", "clock_scale", "columns", "resolution_px",
-                 "shutter", "same_sensor_as", "same_sensor_check", "board", "intrinsics", "intrinsics_std",
-                 "intrinsics_correlation"});
+                 "shutter", "same_sensor_as", "same_sensor_check", "board", "mirrored", "intrinsics",
+                 "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readCameraSource(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
     camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
   if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = nameFrom(*node);
   if (const auto node = map.find("board")) camera.board = nameFrom(*node);
+  if (const auto node = map.find("mirrored"))
+    camera.mirrored = static_cast<Mirroring>(node->choice(kMirroringNames));
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics) throw sigmas->error("is given without intrinsics", "Give intrinsics, too");
   if (!intrinsics) return camera;

@@ -1,4 +1,6 @@
 #include "core/base/error.h"
+#include "core/format/gray_png.h"
+#include "core/frames/gray_image.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/pass/session_recording.h"
 #include "core/pipeline/simulate/simulation.h"
@@ -44,6 +46,9 @@ class TestSessionRecording : public QObject {
   void clockScale_isApplied();
   void clockScale_startsBehindStrays();
   void absurdClocks_areRefused();
+  void mirroredImages_areReversed_data();
+  void mirroredImages_areReversed();
+  void mirroredFrames_areReversed();
   void columns_areThoseOfTheSession();
   void units_areThoseOfTheSession();
   void clocksWithoutRelation_areRefused();
@@ -173,6 +178,61 @@ void TestSessionRecording::absurdClocks_areRefused() {
   useTwoFiles();
   session_.imus[0].clock_offset_s = 4.5e9;  // from 2020 on that is in the year 2162
   QVERIFY_THROWS_EXCEPTION(CalibrationError, SessionRecording recording(session_));
+}
+
+// The driver's image is the mirror image of the written one, also of a sensor that is not square.
+void TestSessionRecording::mirroredImages_areReversed_data() {
+  QTest::addColumn<int>("how");
+  for (std::size_t how = 0; how < kMirroringNames.size(); ++how)
+    QTest::addRow("%s", kMirroringNames[how]) << static_cast<int>(how);
+}
+void TestSessionRecording::mirroredImages_areReversed() {
+  QFETCH(int, how);
+  const auto mirroring = static_cast<Mirroring>(how);
+  Recording mirrored = written_;
+  for (Event& event : mirrored.events) {
+    const Event straight = event;
+    if (mirroring == Mirroring::X) event.x_px = static_cast<std::uint16_t>(345 - straight.x_px);
+    if (mirroring == Mirroring::Y) event.y_px = static_cast<std::uint16_t>(259 - straight.y_px);
+    if (mirroring == Mirroring::Transposed) event.x_px = straight.y_px, event.y_px = straight.x_px;
+  }
+  std::vector<StreamInfo> streams = sampleStreams();
+  if (mirroring == Mirroring::Transposed) streams[0].resolution_px = {260, 346};
+  writeAll(*createBag(path("mirrored.bag"), streams, false), mirrored);
+  session_.recording = path("mirrored.bag");
+  setInSession(session_, "cameras.camera.mirrored", kMirroringNames[static_cast<std::size_t>(how)]);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QVERIFY(same(read.events, written_.events));
+  QVERIFY(same(read.imu_samples, written_.imu_samples));
+  QVERIFY((SessionRecording(session_).resolution_px(0) == Resolution{346, 260}));
+}
+
+void TestSessionRecording::mirroredFrames_areReversed() {
+  std::filesystem::create_directory(path("frames"));
+  for (const char* const name : {"frames/1600000000000000000.png", "frames/1600000000050000000.png"}) {
+    GrayPng picture(3, 2, 72.0);
+    picture.addRow(std::vector<std::uint8_t>{1, 2, 3});
+    picture.addRow(std::vector<std::uint8_t>{4, 5, 6});
+    writeFile(path(name), picture.finish());
+  }
+  session_.imus.clear();
+  session_.cameras[0].stream = "frames";
+  session_.recording = path("frames");
+  const std::pair<Mirroring, std::vector<std::uint8_t>> kExpected[] = {
+      {Mirroring::None, {1, 2, 3, 4, 5, 6}},
+      {Mirroring::X, {3, 2, 1, 6, 5, 4}},
+      {Mirroring::Y, {4, 5, 6, 1, 2, 3}},
+      {Mirroring::Transposed, {1, 4, 2, 5, 3, 6}}};
+  for (const auto& [mirroring, bytes] : kExpected) {
+    session_.cameras[0].mirrored = mirroring;
+    SessionRecording recording(session_);
+    SensorPacket packet;
+    QVERIFY(recording.read(packet));
+    const GrayImage image = decodeFrame(packet.frames.at(0), "frame");
+    QVERIFY(image.pixels == bytes);
+    QVERIFY(image.size_px == mirroredSize(mirroring, {3, 2}));
+  }
 }
 
 void TestSessionRecording::columns_areThoseOfTheSession() {

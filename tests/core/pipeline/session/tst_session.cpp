@@ -234,6 +234,18 @@ class TestSession : public QObject {
     QVERIFY(sessionWith("", "").cameras[0].shutter == Shutter::Global);
   }
 
+  void mirroring_isReadAndWritten() {
+    for (std::size_t k = 0; k < kMirroringNames.size(); ++k) {
+      const QString key = QString("    mirrored: %1\n").arg(kMirroringNames[k]);
+      const Session session = sessionWith("    stream: /left/events\n", "    stream: /left/events\n" + key);
+      QVERIFY(session.cameras[0].mirrored == static_cast<Mirroring>(k));
+      QVERIFY(QString::fromStdString(sessionYaml(session, folder())).contains(key));
+    }
+    QVERIFY(!sessionWith("", "").cameras[0].mirrored);
+    Session session = sessionWith("", "");
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, setInSession(session, "cameras.left.mirrored", "z"));
+  }
+
   void camerasOfOneSensor_haveOneLens() {
     const Session session =
         sessionWith("imus:\n", "  frames:\n    stream: /left/image_raw\n    same_sensor_as: left\nimus:\n");
