@@ -126,17 +126,24 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
       "Check that the files belong together, and the clocks");
 }
 
-void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
-                             const InitialisationOptions& options, const RunContext& context) {
+void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& stated,
+                             std::span<const AlignedCamera> cameras, const GyroRotation& gyro,
+                             const GravityAlignment& gravity, const InitialisationOptions& options,
+                             const RunContext& context) {
   const ImuData& imu = input.imus[input.reference_imu];
   // Gravity dominates the spread and agrees even if only the motion is wrong: test from a low limit on
   // (chosen, not measured).
   constexpr double kSuspicious = 0.25;
-  if (gravity.acceleration_misfit_m_s2 <
-      kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))
+  const bool negative = signOfScale(gravity, options) < 0;
+  if (!negative && gravity.acceleration_misfit_m_s2 <
+                       kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))
     return;
-  if (const auto cause = findWrongAxes(input, false, options, context))
+  const auto cause = findWrongAxes(input, false, options, context);
+  if (cause && !cause->negated)
     throw calibrationFailed(imu.name, cause->problem, cause->advice).repairedBy(cause->repair);
+  if (!cause && !negative) return;
+  if (const auto mirror = findMirror(input, stated, cameras, gyro, true, options, context))
+    throw CalibrationError(*mirror);
 }
 
 }  // namespace evical

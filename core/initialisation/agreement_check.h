@@ -6,6 +6,9 @@
 #include "core/data/calibration_setup.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialise.h"
+#include "core/initialisation/mirror_check.h"
+
+#include <span>
 
 namespace evical {
 
@@ -16,8 +19,11 @@ void checkAxesAlive(const ImuData& imu);
 void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,
                          const InitialisationOptions& options, const RunContext& context);
 
-// Fails only if another reading of the accelerometer's axes agrees far better.
-void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
-                             const InitialisationOptions& options, const RunContext& context);
+// Fails only if another reading of the accelerometer's axes agrees far better, or if accelerations have the
+// opposite sign. `gyro` without its bias.
+void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& stated,
+                             std::span<const AlignedCamera> cameras, const GyroRotation& gyro,
+                             const GravityAlignment& gravity, const InitialisationOptions& options,
+                             const RunContext& context);
 
 }  // namespace evical

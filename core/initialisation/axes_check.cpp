@@ -93,31 +93,36 @@ AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, co
   // A reflected axis also reverses the direction of rates.
   const Eigen::Matrix3d gyroscope =
       (left_handed_gyroscope ? -1.0 : 1.0) * reading.determinant() * reading.transpose();
-  const auto read = [&](const char* sensor, const Eigen::Matrix3d& as) {
-    return Repair{fmt::format("imus.{}.{}_axes", imu, sensor), axesText(axesOf(as))};
+  const auto readGyroscopeAs = [&](const Eigen::Matrix3d& as) {
+    return Repair{"imus." + imu + ".gyroscope_axes", axesText(axesOf(as))};
   };
   if (left_handed_gyroscope && as_is)
     return {"the angular rates seem negated: " + proof,
-            "Change the sign of all three axes in the recording software", read("gyroscope", -identity)};
+            "Change the sign of all three axes in the recording software", false, readGyroscopeAs(-identity)};
   if (left_handed_gyroscope && negated)
     return {
         "the IMU's axes seem left-handed (one axis mirrored, or two swapped) in both gyroscope and "
-        "accelerometer: " +
+        "accelerometer, or the angular rates negated and the camera's image mirrored: " +
             proof,
-        "Change the sign of one axis, or swap two axes, of both sensors in the recording software"};
+        "Check that writing is readable in the camera's picture. If so, change the sign of one axis, or swap "
+        "two axes, of both sensors in the recording software. If not, turn the mirroring off, and change the "
+        "sign of the angular rates"};
+  if (negated) return {"the accelerations seem negated: " + proof, "", true};
+  if (reading.determinant() < 0.0)  // no reading of the gyroscope alone repairs it
+    return {fmt::format(
+                "the accelerometer's axes seem left-handed, mirrored or swapped{}, or permuted and the "
+                "camera's image mirrored: if read as {}, {}",
+                left_handed_gyroscope ? ", and the angular rates negated" : "", axesWords(reading), proof),
+            "Check that writing is readable in the camera's picture. If so, record accelerations in the "
+            "gyroscope's frame, or set accelerometer_axes. If not, turn the mirroring off first"};
   if (left_handed_gyroscope)
     return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: if read as {}, {}",
                         axesWords(gyroscope), proof),
-            "Record them in the accelerometer's frame", read("gyroscope", gyroscope)};
-  if (negated)
-    return {"the accelerations seem negated: " + proof,
-            "Change their sign (at rest, an accelerometer measures +g upwards), or set acceleration_unit: -g "
-            "for values in g",
-            read("accelerometer", -identity)};
+            "Record them in the accelerometer's frame", false, readGyroscopeAs(gyroscope)};
   return {fmt::format("the axes of accelerometer and gyroscope seem permuted relative to each other: if the "
                       "accelerometer's are read as {}, or the gyroscope's as {}, {}",
                       axesWords(reading), axesWords(gyroscope), proof),
-          "Record both sensors in one frame", read("gyroscope", gyroscope)};
+          "Record both sensors in one frame", false, readGyroscopeAs(gyroscope)};
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace evical {
 
 struct AxesCause {
   std::string problem, advice;
+  bool negated = false;  // only the sign of accelerations is wrong, as for a mirrored image (mirror_check.h)
   std::optional<Repair> repair = {};  // if only one sensor's axes are wrong
 };
 // `left_handed_gyroscope`: the gyroscope's rotation is a reflection of the camera's. Empty if no reading is

@@ -17,15 +17,16 @@ struct Moment {
   RigidTransform world_from_body, board_from_camera;
 };
 
-std::vector<Moment> momentsOf(const CameraTrajectory& body, std::span<const BoardSight> sights,
-                              double gap_s) {
+std::vector<Moment> momentsOf(const CameraTrajectory& body, std::span<const BoardSight> sights, double gap_s,
+                              double scale) {
   std::vector<Moment> moments;
   for (std::size_t k = 0; k < sights.size(); ++k) {
     for (const CameraPose& pose : sights[k].poses) {
       const double time_s = pose.time_s + sights[k].time_offset_s;
       if (!body.isKnownAt(time_s, gap_s)) continue;
-      moments.push_back({k, worldFromImu(body.world_from_camera_rotation, body.camera_in_world_m, time_s),
-                         pose.world_from_camera});
+      moments.push_back({k,
+                         worldFromImu(body.world_from_camera_rotation, body.camera_in_world_m, time_s),
+                         {pose.world_from_camera.rotation, scale * pose.world_from_camera.translation_m}});
     }
   }
   return moments;
@@ -128,8 +129,8 @@ class Translations {
 }  // namespace
 
 std::optional<BoardAlignment> alignBoard(const CameraTrajectory& body, std::span<const BoardSight> sights,
-                                         double gap_s, int least_views) {
-  const std::vector<Moment> moments = momentsOf(body, sights, gap_s);
+                                         double gap_s, int least_views, double scale) {
+  const std::vector<Moment> moments = momentsOf(body, sights, gap_s, scale);
   if (moments.empty() || static_cast<int>(moments.size()) < least_views) return std::nullopt;
   BoardAlignment result;
   result.views = static_cast<int>(moments.size());

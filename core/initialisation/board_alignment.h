@@ -33,7 +33,8 @@ struct BoardAlignment {
 };
 
 // From views within `gap_s` of known poses of the body; empty if there are fewer than `least_views`.
+// `scale`: of the board; -1 if the images of its cameras or those of the body's are mirrored (8.13).
 std::optional<BoardAlignment> alignBoard(const CameraTrajectory& body, std::span<const BoardSight> sights,
-                                         double gap_s, int least_views);
+                                         double gap_s, int least_views, double scale = 1.0);
 
 }  // namespace evical

@@ -6,6 +6,7 @@
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/further_boards.h"
 #include "core/initialisation/initialisation_checks.h"
+#include "core/initialisation/mirror_check.h"
 #include "core/initialisation/non_overlapping_cameras.h"
 #include "core/numerics/angles.h"
 
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace evical {
@@ -21,9 +23,9 @@ namespace {
 // Cameras without an IMU: the trajectory is the reference camera's, whose rotation replaces a gyroscope.
 class CamerasAlone {
  public:
-  CamerasAlone(const CalibrationInput& input, const InitialisationOptions& options, const RunContext& context,
-               Initialisation& result)
-      : input_(input), options_(options), context_(context), result_(result) {}
+  CamerasAlone(const CalibrationInput& input, const StatedSigns& stated, const InitialisationOptions& options,
+               const RunContext& context, Initialisation& result)
+      : input_(input), stated_(stated), options_(options), context_(context), result_(result) {}
 
   void run() {
     followReference();
@@ -74,10 +76,16 @@ class CamerasAlone {
   // From simultaneous views of both cameras; else from the gaps when the board passes from one to the other.
   void findOnReference(std::size_t k, const CalibrationInput& felt, const GyroRotation& gyro) {
     const std::size_t steps = result_.steps.size(), warnings = result_.warnings.size();
+    std::optional<CalibrationError> mirrored;
     try {
       AlignedCamera aligned = alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_);
+      aligned.camera = k;
+      AlignedCamera first{poses_, {}, input_.reference_camera};
+      first.hand_eye.axis_ratio = 1.0;  // its rotation is the identity, not estimated
       if (input_.cameras[k].board > 0)
         before_further_.emplace(k, std::move(aligned));
+      else if (contradictsHandedness(first, aligned, gyro, options_))
+        mirrored = mirroredOfTwo(input_, stated_, first, aligned);
       else
         place(k, aligned);
     } catch (const CalibrationError&) {
@@ -85,6 +93,7 @@ class CamerasAlone {
       result_.warnings.resize(warnings);
       if (input_.cameras[k].board > 0 || !bridge(k)) throw;
     }
+    if (mirrored) throw CalibrationError(*mirrored);
   }
 
   bool bridge(std::size_t k) {
@@ -159,6 +168,7 @@ class CamerasAlone {
   }
 
   const CalibrationInput& input_;
+  const StatedSigns& stated_;
   const InitialisationOptions& options_;
   const RunContext& context_;
   Initialisation& result_;
@@ -170,9 +180,10 @@ class CamerasAlone {
 
 }  // namespace
 
-void initialiseCamerasAlone(const CalibrationInput& input, const InitialisationOptions& options,
-                            const RunContext& context, Initialisation& result) {
-  CamerasAlone(input, options, context, result).run();
+void initialiseCamerasAlone(const CalibrationInput& input, const StatedSigns& stated,
+                            const InitialisationOptions& options, const RunContext& context,
+                            Initialisation& result) {
+  CamerasAlone(input, stated, options, context, result).run();
 }
 
 }  // namespace evical

@@ -7,7 +7,8 @@
 namespace evical {
 
 // Adds to `result`. Throws CalibrationFailed with advice.
-void initialiseCamerasAlone(const CalibrationInput& input, const InitialisationOptions& options,
-                            const RunContext& context, Initialisation& result);
+void initialiseCamerasAlone(const CalibrationInput& input, const StatedSigns& stated,
+                            const InitialisationOptions& options, const RunContext& context,
+                            Initialisation& result);
 
 }  // namespace evical

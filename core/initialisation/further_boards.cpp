@@ -7,8 +7,18 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 namespace evical {
 namespace {
+
+constexpr double kLeastAgreement = 0.75;  // the gyroscope has removed most misidentified views
+
+bool agrees(const std::optional<BoardAlignment>& found) {
+  return found && found->agreeing >= kLeastAgreement;
+}
 
 void checkAlignment(const std::string& board, const CalibrationInput& input,
                     const std::optional<BoardAlignment>& found, double gap_s,
@@ -22,8 +32,7 @@ void checkAlignment(const std::string& board, const CalibrationInput& input,
             options.least_views, gap_s, input.boardName(0)),
         "Keep each board in its camera's view at the same time, for most of the recording");
   }
-  constexpr double kLeastAgreement = 0.75;  // the gyroscope has removed most misidentified views
-  if (found->agreeing >= kLeastAgreement) return;
+  if (agrees(found)) return;
   throw calibrationFailed(
       board,
       fmt::format("only {:.0f} % of its views agree on its pose relative to '{}'", 100.0 * found->agreeing,
@@ -49,6 +58,14 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
     }
     const std::string& name = input.boardName(board);
     const auto found = alignBoard(body, sights, gap_s, options.least_views);
+    if (!agrees(found) && agrees(alignBoard(body, sights, gap_s, options.least_views, -1.0)))
+      throw calibrationFailed(
+          name,
+          fmt::format("its views agree with '{}' only if the images of the cameras of one of the two boards "
+                      "are mirrored",
+                      input.boardName(0)),
+          "Check whether writing is readable in the cameras' pictures. If not, turn the mirroring off in the "
+          "driver, or set mirrored: x, y or transposed for the camera");
     checkAlignment(name, input, found, gap_s, options);
     result.state.boardAt(board).world_from_board = found->world_from_board;
     for (std::size_t i = 0; i < cameras.size(); ++i) {

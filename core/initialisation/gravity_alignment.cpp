@@ -387,6 +387,13 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
   return result;
 }
 
+int signOfScale(const GravityAlignment& gravity, const InitialisationOptions& options) {
+  constexpr double kHalfSize = 0.5;  // far from the accuracy of any board's size
+  const double scale = gravity.board_scale;
+  if (std::abs(scale) < std::max(kHalfSize, options.scale_error_sigmas * gravity.board_scale_std)) return 0;
+  return scale < 0.0 ? -1 : 1;
+}
+
 double accelerationMisfit_m_s2(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                                std::int64_t start_ns, const So3Spline& rotation,
                                const InitialisationOptions& options, const RunContext& context) {

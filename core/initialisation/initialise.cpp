@@ -120,9 +120,9 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
   result.warnings.push_back(result.doubt);
 }
 
-void alignTranslations(const CalibrationInput& input, const InitialisationOptions& options,
-                       const std::vector<AlignedCamera>& cameras, const RunContext& context,
-                       Initialisation& result) {
+void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
+                       const InitialisationOptions& options, const std::vector<AlignedCamera>& cameras,
+                       const GyroRotation& gyro, const RunContext& context, Initialisation& result) {
   CalibrationState& state = result.state;
   Stopwatch stopwatch;
   const GravityAlignment gravity =
@@ -140,7 +140,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
         "probably misidentified",
         gravity.outlying_views, gravity.views));
   }
-  checkAccelerationsAgree(input, gravity, options, context);
+  checkAccelerationsAgree(input, stated, cameras, gyro, gravity, options, context);
   checkBoardScale(gravity, input.board, options, result);
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
@@ -162,6 +162,12 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
   const ImuData& imu = input.imus[k];
   Stopwatch stopwatch;
   const ImuRotation rotation = alignFurtherGyroscope(imu, input.start_ns, reference, options, context);
+  if (forcesOppose(referenceImu(input), imu, rotation.hand_eye.reference_from_sensor,
+                   rotation.hand_eye.time_offset_s))
+    throw calibrationFailed(imu.name,
+                            "the accelerations are negated relative to those of " + referenceImu(input).name,
+                            "Change their sign (at rest, an accelerometer measures +g upwards)")
+        .repairedBy(Repair{"imus." + imu.name + ".accelerometer_axes", "-x,-y,-z"});
   const LeverArm lever = solveLeverArm(imu, input.start_ns, rotation, result.state, options);
   const RelativeRotation& hand_eye = rotation.hand_eye;
   ImuState& state = result.state.imus[k];
@@ -241,6 +247,7 @@ std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const Gyr
     // A given offset may be the error; it is reported later, with the recording's estimate.
     if (!isGiven(camera.prior.time_offset))
       checkRotationsAgree(input, result.agreements.back(), options, context);
+    checkGivenRotation(input, cameras.back(), gyro, options);
     tellSteps(result.steps, context.observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
@@ -249,13 +256,52 @@ std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const Gyr
   return cameras;
 }
 
-Initialisation initialiseStraight(const CalibrationInput& input, const InitialisationOptions& options,
-                                  const RunContext& context) {
+std::vector<AlignedCamera> withFurther(std::vector<AlignedCamera> cameras,
+                                       const std::map<std::size_t, AlignedCamera>& further) {
+  for (const auto& [index, camera] : further) cameras.push_back(camera);
+  return cameras;
+}
+
+// Throws CalibrationFailed if one of two cameras that see the same board has a mirrored image.
+void checkHandedness(const CalibrationInput& input, const StatedSigns& stated,
+                     const std::vector<AlignedCamera>& cameras,
+                     const std::map<std::size_t, AlignedCamera>& further, const GyroRotation& gyro,
+                     const InitialisationOptions& options, const RunContext& context) {
+  if (input.cameras.size() < 2) return;
+  const std::vector<AlignedCamera> all = withFurther(cameras, further);
+  for (auto camera = all.begin() + 1; camera != all.end(); ++camera) {
+    const std::size_t board = input.cameras[camera->camera].board;
+    const AlignedCamera& first = *std::ranges::find_if(
+        all, [&](const AlignedCamera& each) { return input.cameras[each.camera].board == board; });
+    if (!contradictsHandedness(first, *camera, gyro, options)) continue;
+    const auto cause = findMirror(input, stated, all, gyro, false, options, context);
+    throw CalibrationError(cause ? *cause : mirroredOfTwo(input, stated, first, *camera));
+  }
+}
+
+// Boards other than the world's. If one does not fit, a mirrored image may be the cause.
+void alignFurther(const CalibrationInput& input, const StatedSigns& stated,
+                  const std::vector<AlignedCamera>& cameras,
+                  const std::map<std::size_t, AlignedCamera>& further, const GyroRotation& gyro,
+                  const InitialisationOptions& options, const RunContext& context, Initialisation& result) {
+  constexpr double kCarried_s = 0.3;  // longest time that the IMU bridges between views of the world's board
+  try {
+    alignFurtherBoards(input, further, bodyTrajectory(cameras, result.state), kCarried_s, options, result);
+  } catch (const CalibrationError&) {
+    const auto mirror =
+        findMirror(input, stated, withFurther(cameras, further), gyro, false, options, context);
+    if (mirror) throw CalibrationError(*mirror);
+    throw;
+  }
+}
+
+Initialisation initialiseStraight(const CalibrationInput& input, const StatedSigns& stated,
+                                  const InitialisationOptions& options, const RunContext& context) {
   Initialisation result;
   std::size_t told = 0;
   checkInput(input, options);
   if (input.imus.empty()) {
-    initialiseCamerasAlone(input, options, context, result);
+    initialiseCamerasAlone(input, stated, options, context, result);
     keepLenses(input, result.state);
     tellSteps(result.steps, context.observer, told);
     context.progress.stageProgress(1.0);
@@ -272,6 +318,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
                   std::min(views.end_s + options.margin_s, gyro.end_s())};
   const std::map<std::size_t, AlignedCamera> before_further = takeFurther(input, cameras);
   const GyroRotation unbiased(rates, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
+  checkHandedness(input, stated, cameras, before_further, unbiased, options, context);
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
   const double knot_s = commonKnotSpacing_s(input, options, cameras, range, unbiased, result);
@@ -280,14 +327,14 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
       fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, knot_s,
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
-  alignTranslations(input, options, cameras, context, result);
-  constexpr double kCarried_s = 0.3;  // longest time that the IMU bridges between views of the world's board
-  alignFurtherBoards(input, before_further, bodyTrajectory(cameras, result.state), kCarried_s, options,
-                     result);
+  alignTranslations(input, stated, options, cameras, unbiased, context, result);
+  alignFurther(input, stated, cameras, before_further, unbiased, options, context, result);
   keepLenses(input, result.state);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }
+  result.mirror_doubt =
+      mirrorDoubt(input, stated, withFurther(std::move(cameras), before_further), result.state);
   tellSteps(result.steps, context.observer, told);
   context.progress.stageProgress(1.0);
   return result;
@@ -296,12 +343,12 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
 }  // namespace
 
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context) {
+                          const RunContext& context, const StatedSigns& stated) {
   const bool turned = std::any_of(input.imus.begin(), input.imus.end(), [](const ImuData& imu) {
     return imu.prior.gyroscope_rotation.has_value();
   });
-  if (!turned) return initialiseStraight(input, options, context);
-  Initialisation result = initialiseStraight(withStraightGyroscopes(input), options, context);
+  if (!turned) return initialiseStraight(input, stated, options, context);
+  Initialisation result = initialiseStraight(withStraightGyroscopes(input), stated, options, context);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (!input.imus[k].prior.gyroscope_rotation) continue;
     const Eigen::Quaterniond& turn = input.imus[k].prior.gyroscope_rotation->value;

@@ -6,6 +6,7 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
+#include "core/initialisation/mirror_check.h"
 #include "core/initialisation/piecewise_time_offset.h"
 #include "core/initialisation/rotation_agreement.h"
 
@@ -38,12 +39,13 @@ struct Initialisation {
   std::vector<InitialisationStep> steps;
   std::vector<CameraAgreement> agreements;  // empty without an IMU
   std::vector<std::string> warnings;
-  std::string doubt;  // reason for a doubtful result; may be empty
+  std::string doubt;         // about the board's size; may be empty
+  std::string mirror_doubt;  // about a mirrored image; may be empty
 };
 
 // Any number of cameras and IMUs relative to the reference: an IMU, or a camera if there is no IMU. Throws
 // CalibrationFailed with the reason: too few views, too short, no overlap in time, no motion.
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context);
+                          const RunContext& context, const StatedSigns& stated = {});
 
 }  // namespace evical

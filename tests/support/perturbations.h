@@ -2,6 +2,7 @@
 // verdicts. The events are not changed, so that all share the front end's results.
 #pragma once
 
+#include "core/data/mirroring.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
@@ -41,6 +42,10 @@ struct Perturbation {
 std::span<const Perturbation> perturbations();
 // The perturbation of this name; throws CalibrationError (BadInput) if there is none.
 const Perturbation& perturbation(std::string_view name);
+
+// Mirrors a camera's image, as a driver may do: its observations, and its lens unless `same_lens`. Another
+// mirror image of the board is found in it, if there is one: nothing of a board with tags is.
+void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session, DetectionResult& pass);
 
 // Restricts it to a session's time_range_s.
 void cutTo(const std::array<double, 2>& range_s, Recorded& recorded);

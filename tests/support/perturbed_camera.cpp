@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace evical::test {
 namespace {
@@ -108,6 +110,33 @@ void hiddenAtFirst(Recorded& recorded, double duration_s) {
 
 constexpr double kPriorSigma_deg = 0.05, kPriorSigma_ms = 0.1;
 
+// The lens whose image is the mirror image of this one's.
+CameraIntrinsics mirroredLens(Mirroring how, CameraIntrinsics lens) {
+  lens.resolution_px = mirroredSize(how, lens.resolution_px);
+  mirrorPoint(how, lens.resolution_px, lens.principal_point_px.x(), lens.principal_point_px.y());
+  double &p1 = lens.distortion[2], &p2 = lens.distortion[3];  // tangential, of the model pinhole_radtan
+  if (how == Mirroring::X) p2 = -p2;
+  if (how == Mirroring::Y) p1 = -p1;
+  if (how == Mirroring::Transposed) {
+    std::swap(p1, p2);
+    std::swap(lens.focal_length_px.x(), lens.focal_length_px.y());
+  }
+  return lens;
+}
+
+// The circle at whose place a mirror image of the board has this one. Asymmetric grids with an odd number of
+// rows are their own mirror images with rows exchanged; given points are recognised from behind, too.
+int mirroredCircle(const Board& board, int circle) {
+  if (!board.hasPattern()) return circle;
+  const int per_row = board.pointsInRow();
+  return board.index(board.rows - 1 - circle / per_row, circle % per_row);
+}
+
+template <int kImage>
+void imageMirrored(Recorded& recorded, double) {
+  mirrorImage(static_cast<Mirroring>(kImage), 0, false, recorded.session, recorded.pass);
+}
+
 void wrongRotationPrior(Recorded& recorded, double sigmas) {
   const Eigen::Quaterniond truth = recorded.scenario.cameras.front().imu_from_camera.rotation;
   const double sigma_rad = kRadPerDeg * kPriorSigma_deg;
@@ -123,6 +152,33 @@ void wrongOffsetPrior(Recorded& recorded, double sigmas) {
 
 }  // namespace
 
+void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session, DetectionResult& pass) {
+  BoardObservations& seen = pass.cameras[camera];
+  const Board& board = session.boardOf(camera);
+  const CameraIntrinsics lens = *pass.lenses[camera].detection_intrinsics;
+  const CameraIntrinsics mirrored = mirroredLens(how, lens);
+  if (board.hasTags()) seen.views.clear();
+  Eigen::Matrix2d image = Eigen::Matrix2d::Identity();
+  if (how == Mirroring::Transposed) image << 0.0, 1.0, 1.0, 0.0;
+  if (how == Mirroring::X) image(0, 0) = -1.0;
+  if (how == Mirroring::Y) image(1, 1) = -1.0;
+  for (BoardView& view : seen.views) {
+    for (CircleObservation& circle : view.circles) {
+      circle.circle = mirroredCircle(board, circle.circle);
+      mirrorPoint(how, mirrored.resolution_px, circle.centre_px.x(), circle.centre_px.y());
+      circle.covariance_px2 = (image * circle.covariance_px2 * image.transpose()).eval();
+      circle.velocity_px_s = (image * circle.velocity_px_s).eval();
+      circle.edge_localisation_bias_effect = (image * circle.edge_localisation_bias_effect).eval();
+    }
+    std::ranges::sort(view.circles, {}, &CircleObservation::circle);
+  }
+  if (same_lens) return seeThrough(mirrored, lens, seen);
+  pass.lenses[camera] = givenLens(mirrored);
+  if (!pass.resolutions_px.empty()) pass.resolutions_px[camera] = mirrored.resolution_px;
+  session.cameras[camera].resolution_px = mirrored.resolution_px;
+  session.cameras[camera].intrinsics = mirrored;
+}
+
 std::vector<Perturbation> cameraPerturbations() {
   return {{"focal length", "%", {0.3, 1, 5}, {"lens", "focal", "intrinsics"}, focalLength},
           {"focal length x", "%", {0.3, 1, 3}, {"lens", "focal", "intrinsics"}, focalLengthX},
@@ -134,6 +190,9 @@ std::vector<Perturbation> cameraPerturbations() {
           {"camera moved", "deg", {0.2, 1, 5}, {"moved", "parts", "halves", "thirds"}, cameraMoved},
           {"hand over board", "of it", {0.1, 0.3, 0.5}, {}, handOverBoard},
           {"third hidden at first", "s", {1, 3, 5}, {}, hiddenAtFirst},
+          {"image mirrored in x", "", {1}, {"mirror"}, imageMirrored<1>},
+          {"image mirrored in y", "", {1}, {"mirror"}, imageMirrored<2>},
+          {"image transposed", "", {1}, {"mirror"}, imageMirrored<3>},
           {"prior of rotation", "sigmas", {10, 20, 40}, {"prior"}, wrongRotationPrior},
           {"prior of time offset", "sigmas", {10, 20, 40}, {"prior"}, wrongOffsetPrior}};
 }

@@ -80,12 +80,12 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(!test.child<ErrorPanel>()->isVisible());
   }
 
-  // An accelerometer with reversed axes: the panel offers the repair, a click applies it, and undo reverts
+  // A gyroscope with reversed axes: the panel offers the repair, a click applies it, and undo reverts
   // it.
   void failureWithARepair_isMendedByAClick() {
     WindowFixture test;
     Session session = readSession(simulatedSession().toStdString());
-    session.imus[0].accelerometer_axes = {-1, -2, -3};
+    session.imus[0].gyroscope_axes = {-1, -2, -3};
     test.document().startSession(session);
     test.press(Qt::Key_F5);
     QCOMPARE(test.waitForJob(), JobOutcome::Failed);
@@ -93,14 +93,14 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY2(test.child<ErrorPanel>()->text().contains("negated"),
              qPrintable(test.child<ErrorPanel>()->text()));
     QVERIFY(button->isVisible());
-    QCOMPARE(button->text(), QString("Set accelerometer_axes to x,y,z and calibrate again"));
+    QCOMPARE(button->text(), QString("Set gyroscope_axes to x,y,z and calibrate again"));
     QTest::mouseClick(button, Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
-    QVERIFY(test.document().session().imus[0].accelerometer_axes == kIdentityAxes);
+    QVERIFY(test.document().session().imus[0].gyroscope_axes == kIdentityAxes);
     QVERIFY(test.document().last().run);
     QVERIFY(!test.child<ErrorPanel>()->isVisible());
     test.press(Qt::Key_Z, Qt::ControlModifier);
-    QVERIFY((test.document().session().imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
+    QVERIFY((test.document().session().imus[0].gyroscope_axes == AxesReading{-1, -2, -3}));
     QVERIFY(test.window.close());
   }
 

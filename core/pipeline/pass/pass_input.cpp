@@ -3,6 +3,8 @@
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
 
+#include <Eigen/LU>
+
 #include <cstddef>
 #include <utility>
 
@@ -41,6 +43,19 @@ CalibrationInput makeInput(const Session& session, DetectionResult& pass) {
   input.gravity_norm_m_s2 = session.options.initialisation->gravity_m_s2;
   if (!session.options.optimisation->free_time_offsets) holdTimeOffsets(input);
   return input;
+}
+
+StatedSigns statedSigns(const Session& session) {
+  StatedSigns stated;
+  for (const SessionCamera& camera : session.cameras) stated.mirroring.push_back(camera.mirrored.has_value());
+  for (const SessionImu& imu : session.imus) {
+    Eigen::Matrix3d axes;
+    for (Eigen::Index i = 0; i < 3; ++i)
+      axes.col(i) = readAs(imu.accelerometer_axes, Eigen::Vector3d::Unit(i));
+    const double unit = metresPerSecond2(imu.acceleration_unit.value_or(AccelerationUnit::Gravity));
+    stated.inverted_forces.push_back(unit * axes.determinant() < 0.0);
+  }
+  return stated;
 }
 
 void restorePass(CalibrationInput input, DetectionResult& pass) {

@@ -167,7 +167,7 @@ class Calibration {
 
   void initialiseState() {
     try {
-      initial_ = initialise(input_, *session_.options.initialisation, context_);
+      initial_ = initialise(input_, *session_.options.initialisation, context_, statedSigns(session_));
     } catch (const CalibrationError& error) {
       if (input_.cameras.empty()) throw;
       throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
@@ -193,7 +193,7 @@ class Calibration {
           doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
     }
     if (doubt.empty()) return;
-    initial_ = initialise(input_, *session_.options.initialisation, context_);
+    initial_ = initialise(input_, *session_.options.initialisation, context_, statedSigns(session_));
     initial_.warnings.push_back(doubt);
     clock_doubt_ = doubt;
   }
@@ -310,6 +310,7 @@ class Calibration {
       flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
       flagDoubtful(saturationIn(input_, options), result, "saturation");
     }
+    flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -403,6 +404,12 @@ class Calibration {
       result.notes.push_back(
           fmt::format("{}: therefore, the option {} was set", freed.text, freed.repair->text()));
     tellRejected();
+    for (const SessionCamera& camera : session_.cameras)
+      if (camera.mirrored.value_or(Mirroring::None) != Mirroring::None)
+        result.notes.push_back(
+            fmt::format("{}: its image is mirrored ({}), which is reversed on reading; reverse it before "
+                        "using this result, too",
+                        camera.name, kMirroringNames[static_cast<std::size_t>(*camera.mirrored)]));
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());

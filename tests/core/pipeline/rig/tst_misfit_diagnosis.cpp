@@ -40,6 +40,9 @@ class TestCauses : public QObject {
     row("gyroscope mirrored", 0, true);
     row("gyroscope permuted", 1, true);
     row("forces negated", 1, true);
+    row("image mirrored in x", 1, true);
+    row("image mirrored in y", 1, true);
+    row("image transposed", 1, true);
     row("rates negated", 1, true);
     row("gyroscope dead", 0, true);
     row("accelerometer dead", 2, true);
@@ -151,7 +154,6 @@ class TestCauses : public QObject {
     };
     row("forces in g", 1, "imus.left_imu.acceleration_unit=g");
     row("rates in deg/s", 1, "imus.left_imu.angular_rate_unit=deg/s");
-    row("forces negated", 1, "imus.left_imu.accelerometer_axes=-x,-y,-z");
     row("rates negated", 1, "imus.left_imu.gyroscope_axes=-x,-y,-z");
     row("gyroscope swapped", 1, "imus.left_imu.gyroscope_axes=y,x,z");
     row("gyroscope mirrored", 2, "imus.left_imu.gyroscope_axes=x,y,-z");

@@ -1,0 +1,291 @@
+// Mirrored images and negated accelerations, which are the same data on a board that is its own mirror image:
+// a wrong result is never ok, the true cause is named, and a repair is offered only if nothing else explains
+// the data.
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/report/report_options.h"
+#include "tests/support/perturbations.h"
+#include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
+
+#include <Eigen/Geometry>
+
+namespace {
+
+using namespace evical;
+using test::SimulatedPass;
+
+constexpr Mirroring kAll[] = {Mirroring::X, Mirroring::Y, Mirroring::Transposed};
+
+void negate(ImuData& imu) {
+  for (ImuSample& sample : imu.samples) sample.specific_force_m_s2 *= -1.0;
+}
+void mirror(Mirroring how, std::size_t camera, SimulatedPass& rig) {
+  test::mirrorImage(how, camera, false, rig.session, rig.pass);
+}
+// The session's reading of the accelerometer, which has been applied to the samples.
+void declareNegated(SessionImu& imu) {
+  imu.accelerometer_axes = {-1, -2, -3};
+}
+void stateMount(SimulatedPass& rig, std::optional<double> sigma_deg) {
+  KnownRotation mount{rig.truth.cameras.front().imu_from_camera.rotation};
+  if (sigma_deg) mount.sigma = Eigen::Vector3d::Constant(kRadPerDeg * *sigma_deg);
+  rig.session.cameras.front().prior.rotation = mount;
+}
+
+struct Outcome {
+  QString failure, repair, reason;
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the first camera
+
+  bool ok() const { return failure.isEmpty() && reason.isEmpty(); }
+};
+
+Outcome outcomeOf(const SimulatedPass& rig) {
+  Outcome outcome;
+  const auto textOf = [](const std::optional<Repair>& repair) {
+    return repair ? QString::fromStdString(repair->text()) : QString();
+  };
+  try {
+    const CalibrationRun run = calibrate(rig.session, rig.pass, RunContext{});
+    if (run.result.status != CalibrationStatus::Ok)
+      outcome.reason = QString::fromStdString(run.result.reason);
+    outcome.repair = textOf(run.result.repair);
+    outcome.rotation = run.result.state.cameras.front().reference_from_camera.rotation;
+  } catch (const CalibrationError& error) {
+    outcome.failure = error.what();
+    outcome.repair = textOf(error.repair());
+  }
+  return outcome;
+}
+
+double errorOf_deg(const SimulatedPass& rig, const Outcome& outcome) {
+  return kDegPerRad *
+         rotationAngleBetween_rad(outcome.rotation, rig.truth.cameras.front().imu_from_camera.rotation);
+}
+
+// The text has all of these words.
+#define VERIFY_NAMES(text, ...)                                                            \
+  for (const char* const word : {__VA_ARGS__}) {                                           \
+    QVERIFY2((text).contains(word), qPrintable(QString("'%1' in: %2").arg(word, (text)))); \
+  }
+
+class TestMirroredImages : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void initTestCase() {
+    single_ = rig("davis346_10s");
+    QVERIFY(outcomeOf(single_).ok());
+  }
+
+  void mirroredOrNegated_isEitherOfBoth() {
+    for (const Mirroring how : kAll) {
+      SimulatedPass mirrored = single_;
+      mirror(how, 0, mirrored);
+      const Outcome outcome = outcomeOf(mirrored);
+      VERIFY_NAMES(outcome.failure, "negated", "the image of left is mirrored", "readable");
+      QCOMPARE(outcome.repair, QString());
+    }
+    SimulatedPass negated = single_;
+    negate(negated.pass.imus.front());
+    const Outcome outcome = outcomeOf(negated);
+    VERIFY_NAMES(outcome.failure, "negated", "the image of left is mirrored", "readable");
+    QCOMPARE(outcome.repair, QString());
+  }
+
+  // Gravity dominates the accelerations, so that their misfit is small: the sign of the scale is decisive.
+  void slowMotion_isNamed() {
+    for (const char* const scenario : {"slow", "small_motion"}) {
+      SimulatedPass mirrored = rig(scenario);
+      mirror(Mirroring::Y, 0, mirrored);
+      const Outcome outcome = outcomeOf(mirrored);
+      VERIFY_NAMES(outcome.failure, "negated", "mirrored");
+      QCOMPARE(outcome.repair, QString());
+    }
+  }
+
+  // Two reflections are a rotation: the image is upside down, and the result is that of such a camera.
+  void bothReflections_areARotation() {
+    SimulatedPass turned = single_;
+    mirror(Mirroring::X, 0, turned);
+    mirror(Mirroring::Y, 0, turned);
+    const Outcome outcome = outcomeOf(turned);
+    QVERIFY2(outcome.ok(), qPrintable(outcome.failure + outcome.reason));
+    const Eigen::Quaterniond half_turn(Eigen::AngleAxisd(kRadPerDeg * 180.0, Eigen::Vector3d::UnitZ()));
+    const Eigen::Quaterniond truth = turned.truth.cameras.front().imu_from_camera.rotation;
+    QVERIFY(rotationAngleBetween_rad(outcome.rotation, truth * half_turn) < 2e-3);
+  }
+
+  // With the cause known, the repair is right.
+  void mountIsKnown() {
+    const std::pair<Mirroring, const char*> kRepairs[] = {
+        {Mirroring::X, "cameras.left.mirrored=x"},
+        {Mirroring::Y, "cameras.left.mirrored=y"},
+        {Mirroring::Transposed, "cameras.left.mirrored=transposed"}};
+    for (const auto& [how, repair] : kRepairs) {
+      SimulatedPass mirrored = single_;
+      stateMount(mirrored, 5.0);
+      mirror(how, 0, mirrored);
+      const Outcome outcome = outcomeOf(mirrored);
+      VERIFY_NAMES(outcome.failure, "left: the image is mirrored", "prior");
+      QCOMPARE(outcome.repair, QString(repair));
+    }
+    for (const std::optional<double> sigma_deg : {std::optional(5.0), std::optional<double>()}) {
+      SimulatedPass negated = single_;
+      stateMount(negated, sigma_deg);
+      negate(negated.pass.imus.front());
+      const Outcome outcome = outcomeOf(negated);
+      VERIFY_NAMES(outcome.failure, "left_imu: the accelerations are negated", "not mirrored");
+      QCOMPARE(outcome.repair, QString("imus.left_imu.accelerometer_axes=-x,-y,-z"));
+    }
+    SimulatedPass given = single_;
+    stateMount(given, {});
+    mirror(Mirroring::Transposed, 0, given);
+    VERIFY_NAMES(outcomeOf(given).failure, "mirrored", "given rotation", "180 deg");
+  }
+
+  void statedMirroring_leavesAccelerations() {
+    SimulatedPass negated = single_;
+    negated.session.cameras.front().mirrored = Mirroring::None;
+    negate(negated.pass.imus.front());
+    QCOMPARE(outcomeOf(negated).repair, QString("imus.left_imu.accelerometer_axes=-x,-y,-z"));
+  }
+
+  // Accelerations that are negated to make a mirrored camera fit do not give an ok result.
+  void negationInTheSession_isDoubtful_unlessConfirmed() {
+    SimulatedPass wrong = single_;
+    mirror(Mirroring::X, 0, wrong);
+    negate(wrong.pass.imus.front());
+    declareNegated(wrong.session.imus.front());
+    const Outcome misled = outcomeOf(wrong);
+    QVERIFY(errorOf_deg(wrong, misled) > 179.0);
+    VERIFY_NAMES(misled.reason, "left_imu: the session inverts the accelerations", "mirrored");
+    QCOMPARE(misled.repair, QString());
+    stateMount(wrong, 5.0);
+    VERIFY_NAMES(outcomeOf(wrong).reason, "mirrored in x", "prior");
+
+    SimulatedPass right = single_;  // an accelerometer that measures gravity, and the session's reading of it
+    right.session.imus.front().acceleration_unit = AccelerationUnit::MinusGravity;
+    VERIFY_NAMES(outcomeOf(right).reason, "the session inverts the accelerations");
+    right.session.cameras.front().mirrored = Mirroring::None;
+    Outcome confirmed = outcomeOf(right);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+    right.session.cameras.front().mirrored.reset();
+    stateMount(right, 5.0);
+    confirmed = outcomeOf(right);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+    right.session.cameras.front().prior = {};
+    right.session.imus.front().accelerometer_axes = {-1, -2, -3};  // twice: not inverted
+    confirmed = outcomeOf(right);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+  }
+
+  void oneOfTwoCameras_isNamed() {
+    SimulatedPass stereo = rig("stereo_two_imus");
+    stereo.session.imus.resize(1);
+    stereo.pass.imus.resize(1);
+    for (const std::size_t camera : {0U, 1U}) {
+      SimulatedPass mirrored = stereo;
+      mirror(Mirroring::X, camera, mirrored);
+      const Outcome outcome = outcomeOf(mirrored);
+      const std::string name = stereo.session.cameras[camera].name;
+      QVERIFY2(outcome.failure.startsWith(QString::fromStdString(name + ": the image is mirrored")),
+               qPrintable(outcome.failure));
+      QCOMPARE(outcome.repair, QString());  // whether in x or in y is not known
+      mirrored.session.imus.clear();
+      mirrored.pass.imus.clear();
+      mirrored.session.reference = stereo.session.cameras.front().name;
+      VERIFY_NAMES(outcomeOf(mirrored).failure, "mirrored", "from behind", "left", "right");
+      mirrored.session.cameras[1 - camera].mirrored = Mirroring::None;
+      const Outcome stated = outcomeOf(mirrored);
+      QVERIFY2(stated.failure.startsWith(QString::fromStdString(name + ": the image is mirrored")),
+               qPrintable(stated.failure));
+    }
+    SimulatedPass both = stereo;  // as one driver does
+    mirror(Mirroring::X, 0, both);
+    mirror(Mirroring::X, 1, both);
+    const Outcome outcome = outcomeOf(both);
+    VERIFY_NAMES(outcome.failure, "negated", "the images of left, right are mirrored");
+    QCOMPARE(outcome.repair, QString());
+  }
+
+  void camerasOfTwoKinds_confirmEachOther() {
+    SimulatedPass hybrid = rig("hybrid_stereo");
+    declareNegated(hybrid.session.imus.front());
+    const Outcome confirmed = outcomeOf(hybrid);
+    QVERIFY2(!confirmed.reason.contains("inverts"), qPrintable(confirmed.reason));
+    QVERIFY2(confirmed.failure.isEmpty(), qPrintable(confirmed.failure));
+    hybrid.session.imus.front().accelerometer_axes = kIdentityAxes;
+    negate(hybrid.pass.imus.front());
+    QVERIFY(outcomeOf(hybrid).repair.endsWith("accelerometer_axes=-x,-y,-z"));
+  }
+
+  void framesOfTheSensor_showTheDirection() {
+    const SimulatedPass davis = rig("davis346_frames");
+    for (const Mirroring how : {Mirroring::X, Mirroring::Y}) {
+      SimulatedPass mirrored = davis;
+      test::mirrorImage(how, 0, true, mirrored.session, mirrored.pass);
+      const Outcome outcome = outcomeOf(mirrored);
+      VERIFY_NAMES(outcome.failure, "left: the image is mirrored");
+      QCOMPARE(outcome.repair, QString("cameras.left.mirrored=%1").arg(how == Mirroring::X ? "x" : "y"));
+    }
+  }
+
+  void tags_areReadableInRightImagesOnly() {
+    SimulatedPass boards = rig("two_boards");
+    declareNegated(boards.session.imus.front());
+    const Outcome confirmed = outcomeOf(boards);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+    boards.session.imus.front().accelerometer_axes = kIdentityAxes;
+    SimulatedPass mirrored = boards;
+    mirror(Mirroring::Y, 0, mirrored);
+    QVERIFY2(outcomeOf(mirrored).failure.startsWith("events: the image is mirrored"),
+             qPrintable(outcomeOf(mirrored).failure));
+    mirrored.session.imus.clear();
+    mirrored.pass.imus.clear();
+    mirrored.session.reference = "events";
+    VERIFY_NAMES(outcomeOf(mirrored).failure, "mirrored");
+    negate(boards.pass.imus.front());
+    const Outcome negated = outcomeOf(boards);
+    VERIFY_NAMES(negated.failure, "accelerations are negated", "tags are readable");
+    QVERIFY(negated.repair.endsWith("accelerometer_axes=-x,-y,-z"));
+  }
+
+  // One inverted axis of the accelerometer: no reading of the gyroscope repairs it.
+  void leftHandedAccelerometer_hasNoRepair() {
+    SimulatedPass rig = single_;
+    for (ImuSample& sample : rig.pass.imus.front().samples) sample.specific_force_m_s2.z() *= -1.0;
+    const Outcome outcome = outcomeOf(rig);
+    VERIFY_NAMES(outcome.failure, "accelerometer's axes seem left-handed", "(x,y,-z)", "readable");
+    QCOMPARE(outcome.repair, QString());
+  }
+
+  void secondImu_showsTheSign() {
+    const SimulatedPass two = rig("stereo_two_imus");
+    for (const std::size_t imu : {0U, 1U}) {
+      SimulatedPass negated = two;
+      negate(negated.pass.imus[imu]);
+      const Outcome outcome = outcomeOf(negated);
+      VERIFY_NAMES(outcome.failure, "accelerations are negated");
+      QCOMPARE(outcome.repair,
+               QString::fromStdString("imus." + two.session.imus[imu].name + ".accelerometer_axes=-x,-y,-z"));
+    }
+  }
+
+ private:
+  static SimulatedPass rig(const char* scenario) {
+    constexpr double kDuration_s = 8.0;
+    SimulatedPass simulated = test::simulatePass(kDuration_s, scenario);
+    simulated.session.options.report.edit().split_half_check = false;  // not tested here
+    return simulated;
+  }
+
+  SimulatedPass single_;
+};
+
+}  // namespace
+
+EVICAL_TEST(TestMirroredImages)
+#include "tst_mirrored_images.moc"
