@@ -42,6 +42,14 @@ bool parseWhole(std::string_view text, Number& value) {
   return error == std::errc{} && end == text.data() + text.size() && !text.empty();
 }
 
+// For values that are too large: the units in which data sheets and rulers have them.
+std::string otherUnits(const std::string& unit) {
+  if (unit == "m") return "; 50 mm are 0.05 m";
+  if (unit == "rad/s/sqrt(Hz)") return "; multiply deg/s/sqrt(Hz) by 0.01745, and deg/h/sqrt(Hz) by 4.848e-6";
+  if (unit == "m/s^2/sqrt(Hz)") return "; multiply micro-g/sqrt(Hz) by 9.81e-6, and mg/sqrt(Hz) by 9.81e-3";
+  return "";
+}
+
 template <class Number>
 void checkRange(const std::string& name, Number value, Number minimum, Number maximum, const char* unit) {
   if (value >= minimum && value <= maximum) return;
@@ -50,7 +58,8 @@ void checkRange(const std::string& name, Number value, Number minimum, Number ma
       name,
       fmt::format("{} is {} the {} of {}", withUnit(numberText(value), unit), below ? "below" : "above",
                   below ? "minimum" : "maximum", withUnit(numberText(below ? minimum : maximum), unit)),
-      fmt::format("Give a value from {} to {}", numberText(minimum), withUnit(numberText(maximum), unit)));
+      fmt::format("Give a value from {} to {}{}", numberText(minimum), withUnit(numberText(maximum), unit),
+                  below ? "" : otherUnits(unit)));
 }
 
 }  // namespace

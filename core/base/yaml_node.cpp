@@ -1,5 +1,6 @@
 #include "core/base/yaml_node.h"
 
+#include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/base/option_table.h"
 
@@ -24,13 +25,24 @@ YamlNode::YamlNode(std::shared_ptr<const Node> node, std::string file, std::stri
 
 namespace {
 
+// "Check the path", or the name of the file in this folder that was probably meant.
+std::string adviceOnMissing(const std::filesystem::path& file) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    names.push_back(entry.path().filename().string());
+  const std::string nearest = nearestName(file.filename().string(), names);
+  return nearest.empty() ? "Check the path" : fmt::format("Check the path. Did you mean '{}'?", nearest);
+}
+
 // Devices, pipes and files of a recording's size are rejected before they are read into memory.
 void requireText(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 64 << 20;
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found)
-    throw badInput(file.string(), "does not exist", "Check the path");
+    throw badInput(file.string(), "does not exist", adviceOnMissing(file));
   if (error) throw badInput(file.string(), "cannot be reached: " + error.message(), "Check its permissions");
   if (std::filesystem::is_directory(status)) throw badInput(file.string(), "is a folder, not a YAML file");
   if (!std::filesystem::is_regular_file(status))
@@ -38,7 +50,19 @@ void requireText(const std::filesystem::path& file) {
   const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
   if (!error && size_bytes > kLargest_bytes)
     throw badInput(file.string(), fmt::format("has {} MB, too much for a YAML file", size_bytes >> 20),
-                   "Check that it is not the recording itself");
+                   "Check that it is not the recording itself. If there is no session yet: " +
+                       howTo(HowTo::MakeSession));
+}
+
+// True if this line, or the one before it, is indented with a tab, which YAML does not allow.
+bool hasTab(const std::string& text, int line) {
+  std::istringstream stream(text);
+  std::string each;
+  for (int k = 0; k <= line && std::getline(stream, each); ++k)
+    if (k + 1 >= line && each.find_first_not_of(" -") == each.find('\t') &&
+        each.find('\t') != std::string::npos)
+      return true;
+  return false;
 }
 
 }  // namespace
@@ -56,6 +80,10 @@ YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
   try {
     return {std::make_shared<const Node>(Node{YAML::Load(text), 1}), file, ""};
   } catch (const YAML::Exception& problem) {
+    if (hasTab(text, problem.mark.line))
+      throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1),
+                     "is not valid YAML: the line, or the one before it, is indented with a tab",
+                     "Indent with spaces");
     throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1),
                    fmt::format("is not valid YAML: {}", problem.msg),
                    "Correct the line, or the one before it");

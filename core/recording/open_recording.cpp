@@ -144,7 +144,7 @@ std::unique_ptr<RecordingReader> openBinary(const std::filesystem::path& path, s
 std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, const ColumnNames& names) {
   const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) {
-    throw badInput(path.string(), "there is no such file or folder", "Check the path");
+    throw badInput(path.string(), "does not exist", "Check the path");
   }
   if (std::filesystem::is_directory(status)) return openFolder(path, names);
   if (!std::filesystem::is_regular_file(status)) {

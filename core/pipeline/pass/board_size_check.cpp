@@ -149,7 +149,10 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
                                       : larger          ? "larger than"
                                                         : "smaller than",
                                       board.rows, board.cols, text),
-                          "Check rows and columns " + howTo(HowTo::EditBoard));
+                          "Check rows and columns " + howTo(HowTo::EditBoard) +
+                              (larger && smaller && board.rows != board.cols
+                                   ? fmt::format(": are they exchanged ({} and {})?", board.cols, board.rows)
+                                   : ""));
 }
 
 std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board) {

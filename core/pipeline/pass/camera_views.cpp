@@ -8,6 +8,7 @@
 #include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/frame_views.h"
 #include "core/pipeline/pass/point_views.h"
+#include "core/recording/recording_reader.h"
 
 namespace evical {
 namespace {
@@ -32,6 +33,21 @@ class EventViews final : public CameraViews {
   BoardTracker tracker_;
 };
 
+// "calibrate the sensor's frames (stream /davis/image_raw)", which show boards that events cannot.
+std::string framesInstead(const Session& session, const SessionCamera& camera) {
+  std::string names;
+  try {
+    const std::unique_ptr<RecordingReader> reader =
+        openRecording(camera.recording.empty() ? session.recording : camera.recording);
+    for (const StreamInfo& stream : reader->streams())
+      if (stream.type == StreamType::Frames) names += (names.empty() ? "" : ", ") + stream.name;
+  } catch (const CalibrationError&) {
+    names.clear();  // the general advice is enough
+  }
+  return names.empty() ? "calibrate frames of the same sensor"
+                       : "calibrate the sensor's frames (stream " + names + ")";
+}
+
 }  // namespace
 
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
@@ -48,7 +64,8 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
     throw badInput(
         session.cameras[first.camera].name,
         std::string("a moving event camera cannot detect a board of type ") + boardTypeName(board.type),
-        "Use a circle grid, or show this board on a flashing screen (create a page for it " +
+        "Use a circle grid, " + framesInstead(session, session.cameras[first.camera]) +
+            ", or show this board on a flashing screen (create a page for it " +
             howTo(HowTo::MakeFlashingPage) + "), " + howTo(HowTo::SayThatBoardFlashes) +
             " and calibrate the camera " + howTo(HowTo::CalibrateLens));
   return std::make_unique<EventViews>(first, request);

@@ -59,8 +59,11 @@ void checkTurned(const Session& session, const Board& board, const std::string& 
                       : "an asymmetric board with an even number of rows"),
       type == BoardType::Checkerboard
           ? "Use a board with one even and one odd number, or remove the IMUs to calibrate only intrinsics"
-          : "Use an asymmetric board with an odd number of rows, or remove the IMUs to calibrate only "
-            "intrinsics");
+          : (type == BoardType::AsymmetricCircles && board.cols % 2 == 1
+                 ? fmt::format("Are rows and cols exchanged ({} and {})? If not: use", board.cols, board.rows)
+                 : std::string("Use")) +
+                " an asymmetric board with an odd number of rows, or remove the IMUs to calibrate only "
+                "intrinsics");
 }
 
 // True if the measured length still matches the spacing: either may have been changed since.

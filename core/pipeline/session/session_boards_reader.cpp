@@ -76,8 +76,21 @@ Board readPointsBoard(const YamlNode& map, const std::filesystem::path& folder) 
   return board;
 }
 
+// Refuses the keys of Kalibr's targets.
+void refuseKalibrKeys(const YamlNode& map) {
+  for (const char* const key :
+       {"target_type", "targetRows", "targetCols", "tagRows", "tagCols", "tagSize", "tagSpacing",
+        "rowSpacingMeters", "colSpacingMeters", "spacingMeters", "asymmetricGrid"})
+    if (const auto node = map.find(key))
+      throw node->error(
+          "is a key of Kalibr's target files",
+          "Import that file, or describe the board with type, rows, cols, spacing_m, and radius_m or "
+          "tag_size_m");
+}
+
 Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured,
                 const std::filesystem::path& folder) {
+  refuseKalibrKeys(map);
   Board board;
   board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
   if (!board.hasPattern()) return readPointsBoard(map, folder);
@@ -132,7 +145,16 @@ SessionBoard readFurtherBoard(const YamlNode& map, const std::string& board_name
 // One board, or several by name; the first is that of the reference, which defines the world.
 void readBoards(const YamlNode& root, const std::filesystem::path& folder, Session& session) {
   const auto several = root.find("boards");
-  if (!several) return readFirstBoard(root["board"], folder, session);
+  if (!several) {
+    const char* const advice =
+        "Give the board's type, rows, cols and dimensions. If a proposed session has them as comments, "
+        "correct "
+        "them and remove the '#' in front of each line";
+    const auto board = root.find("board");
+    if (!board) throw badInput(root.place() + ": board", "is missing", advice);
+    if (board->isNull()) throw board->error("is empty", advice);
+    return readFirstBoard(*board, folder, session);
+  }
   if (root.has("board"))
     throw several->error("is given in addition to board", "Keep one of the two: boards lists them by name");
   const std::vector<std::string> names = several->keys();

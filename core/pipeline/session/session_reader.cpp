@@ -145,8 +145,17 @@ SessionImu readImu(const YamlNode& map, const std::string& imu_name, const Sessi
                  "accelerometer_random_walk", "gyroscope_random_walk", "acceleration_unit",
                  "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
   SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
-  imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
-  imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  const auto density = [&](const char* key, double least, const char* unit, double typical) {
+    if (const auto node = map.find(key)) return node->real(least, 10.0, unit);
+    throw map.error(
+        fmt::format("{} is missing", key),
+        fmt::format("Give the white noise of the data sheet in {}; typical: {:g}", unit, typical));
+  };
+  const ImuNoise typical;
+  imu.noise.accelerometer_density =
+      density("accelerometer_noise_density", 1e-7, "m/s^2/sqrt(Hz)", typical.accelerometer_density);
+  imu.noise.gyroscope_density =
+      density("gyroscope_noise_density", 1e-8, "rad/s/sqrt(Hz)", typical.gyroscope_density);
   if (const auto node = map.find("accelerometer_random_walk"))
     imu.noise.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
   if (const auto node = map.find("gyroscope_random_walk"))
