@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace evical {
 namespace {
@@ -117,6 +118,17 @@ const char* nameOf(QuantityNeed need) {
                                              : "time offset";
 }
 
+// "1.04": as many digits as show that the sigma is larger than needed.
+std::string beyondNeed(double sigma, double needed) {
+  std::string text;
+  constexpr int kFewest = 2, kMost = 6;
+  for (int digits = kFewest; digits <= kMost; ++digits) {
+    text = fmt::format("{:.{}g}", sigma, digits);
+    if (!(std::stod(text) <= needed)) break;
+  }
+  return text;
+}
+
 // Empty if the part is certain enough in every direction.
 std::string Judge::unmetNeed(const Part& part) const {
   const Quantity& quantity = covariance_.quantities[part.quantity];
@@ -132,13 +144,16 @@ std::string Judge::unmetNeed(const Part& part) const {
     return words + " is not observable in this recording";
   switch (part.need) {
     case QuantityNeed::Rotation:
-      return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, kDegPerRad * sigma,
+      return fmt::format("{} has a sigma of {} deg (needed: {:.2g})", words,
+                         beyondNeed(kDegPerRad * sigma, options_.needed_rotation_deg),
                          options_.needed_rotation_deg);
     case QuantityNeed::Translation:
-      return fmt::format("{} has a sigma of {:.2g} mm (needed: {:.2g})", words, sigma * 1e3,
+      return fmt::format("{} has a sigma of {} mm (needed: {:.2g})", words,
+                         beyondNeed(1e3 * sigma, options_.needed_translation_mm),
                          options_.needed_translation_mm);
     default:
-      return fmt::format("{} has a sigma of {:.2g} ms (needed: {:.2g})", words, sigma * 1e3,
+      return fmt::format("{} has a sigma of {} ms (needed: {:.2g})", words,
+                         beyondNeed(1e3 * sigma, options_.needed_time_offset_ms),
                          options_.needed_time_offset_ms);
   }
 }
@@ -209,8 +224,9 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
       continue;
     flagDoubtful(
         fmt::format("the event time stamps of {} have steps of {:.3g} ms, which leave an error of "
-                    "{:.2g} ms in its time offset (needed: {:.2g}): record the sensor's own stamps in us",
-                    camera.name, 2.0 * uncertain_ms, uncertain_ms, options.needed_time_offset_ms),
+                    "{} ms in its time offset (needed: {:.2g}): record the sensor's own stamps in us",
+                    camera.name, 2.0 * uncertain_ms, beyondNeed(uncertain_ms, options.needed_time_offset_ms),
+                    options.needed_time_offset_ms),
         result);
   }
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
@@ -219,10 +235,10 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
     const double whole_mm = 1e3 * worstOf(covariance, i).sigma, own_mm = 1e3 * worstOf(scale_known, i).sigma;
     if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
     flagDoubtful(
-        fmt::format(
-            "the translation of {} has a sigma of {:.2g} mm with the board's size uncertainty (needed: "
-            "{:.2g}): measure the board more accurately and set board.spacing_std, or move closer",
-            sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
+        fmt::format("the translation of {} has a sigma of {} mm with the board's size uncertainty (needed: "
+                    "{:.2g}): measure the board more accurately and set board.spacing_std, or move closer",
+                    sensorName(input, covariance.quantities[i]),
+                    beyondNeed(whole_mm, options.needed_scale_mm), options.needed_scale_mm),
         result);
   }
   return result;
