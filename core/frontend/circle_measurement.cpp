@@ -118,7 +118,10 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
   out.edge_localisation_bias_effect = fit.by_lead.head<2>();
   out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
-  out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse();  // ascending shape: major axis first
+  const double outside_px =
+      (motion.radius_offset_px + fit.shift.z()) * circle.largest_radius_px / circle.sensor_radius_px;
+  out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse().array() +
+                     outside_px;  // ascending shape: major axis first
   out.angle_rad = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
   out.events = fit.points;
   out.residual_rms_px = std::sqrt(fit.squares / fit.weight);

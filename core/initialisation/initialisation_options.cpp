@@ -91,6 +91,18 @@ constexpr std::tuple kInitialisationFields{
     Field{"largest_rotation_rate_rad_s", &InitialisationOptions::largest_rotation_rate_rad_s, 25.0,
           within(0.1, 1000.0), "rad/s",
           "Largest plausible RMS rate; above it the unit is assumed to be deg/s."},
+    Field{"wrong_rate_ratio", &InitialisationOptions::wrong_rate_ratio, 1.2, within(1.01, 100.0), "",
+          "Smallest ratio of the gyroscope's rates to the camera's that is named as the cause of a failure."},
+    Field{"wrong_size_ratio", &InitialisationOptions::wrong_size_ratio, 1.3, within(1.01, 100.0), "",
+          "Smallest ratio of the board's spacing to that from accelerations that is named as the cause of "
+          "doubt."},
+    Field{"wrong_radius_ratio", &InitialisationOptions::wrong_radius_ratio, 1.35, within(1.01, 100.0), "",
+          "Smallest ratio of the circles' radius to that of their edges that makes the result doubtful."},
+    Field{"wrong_lens_share", &InitialisationOptions::wrong_lens_share, 0.02, within(1e-4, 10.0), "",
+          "Smallest projection error of a given lens that makes the result doubtful, RMS, relative to the "
+          "image's diagonal."},
+    Field{"wrong_noise_ratio", &InitialisationOptions::wrong_noise_ratio, 12.0, within(1.1, 1e6), "",
+          "Smallest ratio of a noise density to that of the samples with a warning."},
     Field{"ambiguous_pose_ratio", &InitialisationOptions::ambiguous_pose_ratio, 2.0, within(1.0, 100.0), "",
           "Largest ratio of errors up to which a plane's other pose is considered."},
     Field{"ambiguous_pose_px", &InitialisationOptions::ambiguous_pose_px, 0.02, within(0.0, 10.0), "px",

@@ -39,6 +39,11 @@ struct InitialisationOptions {
   double least_acceleration_m_s2;
   double largest_acceleration_m_s2;
   double largest_rotation_rate_rad_s;
+  double wrong_rate_ratio;
+  double wrong_size_ratio;
+  double wrong_radius_ratio;
+  double wrong_lens_share;
+  double wrong_noise_ratio;
   double ambiguous_pose_ratio;
   double ambiguous_pose_px;
   double fastest_view_ratio;

@@ -115,9 +115,34 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
        std::abs(excess), sigma});
   if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
     return;
-  result.doubt = fmt::format("the board seems {:.0f} % {} than specified (spacing {:.4g} m): measure it",
-                             100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.spacing_m);
+  result.board_scale = gravity.board_scale;
+  result.doubt = fmt::format(
+      "the board seems {:.0f} % {} than specified (spacing {:.4g} m): measure it; accelerations "
+      "agree with a spacing of {:.3g} m",
+      100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.spacing_m,
+      gravity.board_scale * board.spacing_m);
   result.warnings.push_back(result.doubt);
+}
+
+// The board's scale if it is far from 1: positions from views are scaled until it no longer changes, since their noise
+// would bias it.
+void refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& input,
+                      const So3Spline& rotation, const InitialisationOptions& options,
+                      const RunContext& context, GravityAlignment& gravity) {
+  constexpr int kMostRounds = 5;
+  constexpr double kFar = 0.3, kSettled = 0.02, kLeast = 1e-3;
+  double step = gravity.board_scale, scale = step;
+  for (int round = 0; round < kMostRounds && std::abs(step - 1.0) > (round == 0 ? kFar : kSettled); ++round) {
+    if (!(step > kLeast)) return;
+    for (CameraTrack& track : tracks)
+      for (CameraPose& pose : track.poses) pose.world_from_camera.translation_m *= step;
+    const GravityAlignment again = alignGravity(tracks, withFitForces(referenceImu(input).samples),
+                                                input.start_ns, rotation, options, context);
+    step = again.board_scale;
+    scale *= step;
+    gravity.board_scale_std = scale * again.board_scale_std;
+    gravity.board_scale = scale;
+  }
 }
 
 void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
@@ -125,9 +150,10 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
                        const GyroRotation& gyro, const RunContext& context, Initialisation& result) {
   CalibrationState& state = result.state;
   Stopwatch stopwatch;
-  const GravityAlignment gravity =
+  GravityAlignment gravity =
       alignGravity(tracksOf(input, cameras), withFitForces(referenceImu(input).samples), input.start_ns,
                    state.world_from_imu_rotation, options, context);
+  refineBoardScale(tracksOf(input, cameras), input, state.world_from_imu_rotation, options, context, gravity);
   result.steps.push_back(
       {"gravity and translation", "",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",

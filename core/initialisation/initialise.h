@@ -41,6 +41,8 @@ struct Initialisation {
   std::vector<std::string> warnings;
   std::string doubt;         // about the board's size; may be empty
   std::string mirror_doubt;  // about a mirrored image; may be empty
+  double board_scale =
+      1.0;  // according to accelerations: the board's size in units of the given one, if in doubt
 };
 
 // Any number of cameras and IMUs relative to the reference: an IMU, or a camera if there is no IMU. Throws

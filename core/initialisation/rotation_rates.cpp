@@ -1,12 +1,18 @@
 #include "core/initialisation/rotation_rates.h"
 
 #include "core/base/time.h"
+#include "core/data/unfit_samples.h"
+#include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/time_offset.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -67,6 +73,38 @@ RotationRates rotationRates(const CameraData& camera, const Board& board, const 
     rates.imu_after_rad_s.push_back(gyro.between(imuTime_s(begin_s), imuTime_s(end_s)).norm() / duration_s);
   }
   return rates;
+}
+
+// The ratio of medians leads to a first scale, with which the search for the time offset works as usual; ratios of
+// single pairs at this offset refine it.
+std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board, const ImuData& imu,
+                                   std::int64_t start_ns, const InitialisationOptions& options,
+                                   const RunContext& context) {
+  const std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options, context).poses;
+  const std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  std::vector<ImuSample> samples = withoutRateSpikes(imu.samples);
+  if (pairs.empty() || samples.size() < 2) return std::nullopt;
+  const auto seenRate = [](const RotationPair& pair) {
+    return pair.seen_rad.norm() / (pair.to_s - pair.from_s);
+  };
+  std::vector<double> seen, felt, ratios;
+  for (const RotationPair& pair : pairs) seen.push_back(seenRate(pair));
+  for (const ImuSample& sample : samples) felt.push_back(sample.angular_rate_rad_s.norm());
+  const double usual_rad_s = medianOf(std::move(seen));
+  const double first = medianOf(std::move(felt)) / std::max(usual_rad_s, 1e-9);
+  if (!(first > 0.0) || !std::isfinite(first)) return std::nullopt;
+  for (ImuSample& sample : samples) sample.angular_rate_rad_s /= first;
+  const GyroRotation gyro(samples, start_ns);
+  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
+  if (peaks.empty() || peaks.front().correlation < options.clear_peak_correlation) return std::nullopt;
+  const double offset_s = peaks.front().time_offset_s;
+  for (const RotationPair& pair : pairs) {
+    const double from_s = pair.from_s + offset_s, to_s = pair.to_s + offset_s;
+    if (seenRate(pair) < usual_rad_s || !gyro.covers(from_s, to_s)) continue;
+    ratios.push_back(gyro.between(from_s, to_s).norm() / pair.seen_rad.norm());
+  }
+  if (ratios.empty()) return std::nullopt;
+  return RateRatio{first * medianOf(std::move(ratios)), peaks.front().correlation};
 }
 
 }  // namespace evical

@@ -22,6 +22,10 @@ void spacing(Recorded& recorded, double percent) {
   recorded.session.board.radius_m *= 1.0 + 0.01 * percent;
 }
 
+void spacingAlone(Recorded& recorded, double percent) {
+  recorded.session.board.spacing_m *= 1.0 + 0.01 * percent;
+}
+
 void stretch(Recorded& recorded, double percent) {
   deformBoard(recorded, [&](const Eigen::Vector3d& point_m) {
     return Eigen::Vector3d(0.0, 0.01 * percent * point_m.y(), 0.0);
@@ -55,6 +59,7 @@ void gravityNorm(Recorded& recorded, double norm_m_s2) {
 
 std::vector<Perturbation> boardPerturbations() {
   return {{"board spacing", "%", {0.5, 1, 2, -1, -2.5}, {"spacing", "board's scale"}, spacing},
+          {"board spacing alone", "%", {900, 100, -50, -90}, {"spacing_m"}, spacingAlone},
           {"board stretch", "%", {0.25, 0.5, 1}, {"stretch", "board's shape", "ratio"}, stretch},
           {"board bow", "mm", {0.5, 1, 2}, {"bow", "bent", "flat", "board's shape"}, bow},
           {"board rows", "", {2, -2}, {"rows"}, rows, PerturbedStage::FrontEnd},

@@ -180,11 +180,11 @@ void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& ses
 }
 
 std::vector<Perturbation> cameraPerturbations() {
-  return {{"focal length", "%", {0.3, 1, 5}, {"lens", "focal", "intrinsics"}, focalLength},
+  return {{"focal length", "%", {0.3, 1, 5, 100, -50}, {"lens", "focal", "intrinsics"}, focalLength},
           {"focal length x", "%", {0.3, 1, 3}, {"lens", "focal", "intrinsics"}, focalLengthX},
           {"centre", "px", {1, 2, 10}, {"lens", "principal", "intrinsics"}, centre},
           {"swapped centre", "", {1}, {"lens", "principal", "intrinsics"}, swappedCentre},
-          {"distortion", "of truth", {0.9, 0.5, 0}, {"lens", "distortion", "intrinsics"}, distortion},
+          {"distortion", "of truth", {0.9, 0.5, 0, -1}, {"lens", "distortion", "intrinsics"}, distortion},
           {"other lens model", "", {1}, {"lens", "model", "intrinsics", "focal_length"}, otherModel},
           {"dark for bright", "", {1}, {"dark", "bright"}, shadeSwapped, PerturbedStage::FrontEnd},
           {"camera moved", "deg", {0.2, 1, 5}, {"moved", "parts", "halves", "thirds"}, cameraMoved},

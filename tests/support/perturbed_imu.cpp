@@ -169,6 +169,12 @@ void walkingBiases(Recorded& recorded, double rad_s2_per_root_hz) {
   recorded.scenario.imus.front().accelerometer_walk = kForcePerRate * rad_s2_per_root_hz;
   simulateImuAnew(recorded);
 }
+void timesRates(Recorded& recorded, double times) {
+  changeSamples(recorded, [&](ImuSample& sample) { sample.angular_rate_rad_s *= times; });
+}
+void timesForces(Recorded& recorded, double times) {
+  changeSamples(recorded, [&](ImuSample& sample) { sample.specific_force_m_s2 *= times; });
+}
 void statedNoise(Recorded& recorded, double times) {
   for (ImuNoise* noise : {&recorded.pass.imus.front().noise, &recorded.session.imus.front().noise}) {
     noise->gyroscope_density *= times;
@@ -179,42 +185,45 @@ void statedNoise(Recorded& recorded, double times) {
 }  // namespace
 
 std::vector<Perturbation> imuPerturbations() {
-  return {{"accelerometer late", "ms", {1, 3, 5}, {"delay", "late"}, accelerometerLate},
-          {"gyroscope turned", "deg", {0.3, 1, 3}, {"gyroscope seems misaligned"}, gyroscopeTurned},
-          {"both mirrored", "axis", {0, 1, 2}, {"left-handed", "mirror"}, mirrorBoth},
-          {"both swapped", "", {1}, {"left-handed", "swapped"}, swapBoth},
-          {"gyroscope swapped", "", {1}, {"left-handed", "swapped", "permuted"}, swapGyroscope},
-          {"gyroscope mirrored", "axis", {0, 2}, {"left-handed", "mirror", "negated"}, mirrorGyroscope},
-          {"gyroscope permuted", "", {1}, {"permuted", "axes"}, permuteGyroscope},
-          {"forces negated", "", {1}, {"negated", "sign", "-g"}, negateForces},
-          {"rates negated", "", {1}, {"negated", "sign"}, negateRates},
-          {"forces in g", "", {1}, {"acceleration_unit"}, forcesInG},
-          {"rates in deg/s", "", {1}, {"angular_rate_unit"}, ratesInDegrees},
-          {"gyroscope dead", "axis", {0, 1, 2}, {"dead", "stays at"}, deadGyroscope},
-          {"accelerometer dead", "axis", {0, 1, 2}, {"dead", "stays at"}, deadAccelerometer},
-          {"rates clipped", "of largest", {0.9, 0.8, 0.6}, {"limit", "clipped", "saturat"}, clipRates},
-          {"forces clipped", "m/s^2", {12, 11, 9}, {"limit", "clipped", "saturat"}, clipForces},
-          {"spikes", "", {1, 5, 50}, {"spike"}, spikes},
-          {"no numbers", "", {1, 10}, {"no number", "finite"}, notNumbers},
-          {"another IMU", "", {1}, {"another recording", "other recording"}, otherImu},
-          {"low pass", "Hz", {100, 30, 10}, {"filter", "bandwidth", "noise density"}, lowPass},
-          {"g-sensitivity", "rad s/m", {1e-5, 1e-4, 3e-4}, {"noise density", "sensitiv"}, gSensitivity},
-          {"coarse samples",
-           "rad/s",
-           {3e-4, 3e-3, 3e-2},
-           {"noise density", "steps", "at its limit", "saturated"},
-           coarseSamples},
-          {"wandering noise",
-           "rad/s",
-           {1e-3, 3e-3, 1e-2},
-           {"noise density", "bias", "has a sigma of"},
-           wanderingNoise},
-          {"walking biases",
-           "rad/s^2",
-           {1e-5, 1e-4, 1e-3},
-           {"bias", "noise density", "has a sigma of"},
-           walkingBiases},
-          {"stated noise", "of truth", {0.1, 0.33, 3}, {"noise density"}, statedNoise}};
+  return {
+      {"accelerometer late", "ms", {1, 3, 5}, {"delay", "late"}, accelerometerLate},
+      {"gyroscope turned", "deg", {0.3, 1, 3}, {"gyroscope seems misaligned"}, gyroscopeTurned},
+      {"both mirrored", "axis", {0, 1, 2}, {"left-handed", "mirror"}, mirrorBoth},
+      {"both swapped", "", {1}, {"left-handed", "swapped"}, swapBoth},
+      {"gyroscope swapped", "", {1}, {"left-handed", "swapped", "permuted"}, swapGyroscope},
+      {"gyroscope mirrored", "axis", {0, 2}, {"left-handed", "mirror", "negated"}, mirrorGyroscope},
+      {"gyroscope permuted", "", {1}, {"permuted", "axes"}, permuteGyroscope},
+      {"forces negated", "", {1}, {"negated", "sign", "-g"}, negateForces},
+      {"rates negated", "", {1}, {"negated", "sign"}, negateRates},
+      {"forces in g", "", {1}, {"acceleration_unit"}, forcesInG},
+      {"rates in deg/s", "", {1}, {"angular_rate_unit"}, ratesInDegrees},
+      {"gyroscope dead", "axis", {0, 1, 2}, {"dead", "stays at"}, deadGyroscope},
+      {"accelerometer dead", "axis", {0, 1, 2}, {"dead", "stays at"}, deadAccelerometer},
+      {"rates clipped", "of largest", {0.9, 0.8, 0.6}, {"limit", "clipped", "saturat"}, clipRates},
+      {"forces clipped", "m/s^2", {12, 11, 9}, {"limit", "clipped", "saturat"}, clipForces},
+      {"spikes", "", {1, 5, 50}, {"spike"}, spikes},
+      {"no numbers", "", {1, 10}, {"no number", "finite"}, notNumbers},
+      {"another IMU", "", {1}, {"another recording", "other recording"}, otherImu},
+      {"low pass", "Hz", {100, 30, 10}, {"filter", "bandwidth", "noise density"}, lowPass},
+      {"g-sensitivity", "rad s/m", {1e-5, 1e-4, 3e-4}, {"noise density", "sensitiv"}, gSensitivity},
+      {"coarse samples",
+       "rad/s",
+       {3e-4, 3e-3, 3e-2},
+       {"noise density", "steps", "at its limit", "saturated"},
+       coarseSamples},
+      {"wandering noise",
+       "rad/s",
+       {1e-3, 3e-3, 1e-2},
+       {"noise density", "bias", "has a sigma of"},
+       wanderingNoise},
+      {"walking biases",
+       "rad/s^2",
+       {1e-5, 1e-4, 1e-3},
+       {"bias", "noise density", "has a sigma of"},
+       walkingBiases},
+      {"rates times", "", {0.0175, 0.5, 2, 16, 57.3, 1000}, {"angular_rate_unit", "rates are"}, timesRates},
+      {"forces times", "", {0.102, 2, 3.28, 9.81, 100, 1000}, {"accelerations is"}, timesForces},
+      {"stated noise", "of truth", {0.001, 0.01, 0.1, 0.33, 3, 57.3, 1e4}, {"noise_density"}, statedNoise}};
 }
 
 }  // namespace evical::test

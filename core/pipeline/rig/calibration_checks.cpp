@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/time.h"
+#include "core/data/likely_unit.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialisation_options.h"
@@ -28,7 +29,7 @@ namespace {
 
 // Checks units: of accelerations by their median norm, with bounds that allow shaking at several g; of
 // angular rates only by implausible values.
-void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
+void checkUnits(const ImuData& imu, const SessionImu* session, const InitialisationOptions& options) {
   std::vector<double> norms;
   double rate2 = 0.0;
   for (const ImuSample& sample : imu.samples) {
@@ -36,15 +37,25 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
     rate2 += sample.angular_rate_rad_s.squaredNorm();
   }
   const double norm = medianOf(std::move(norms));
-  constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
   if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
-    const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
+    constexpr double kShaken = 0.3;  // of the norm, by motion
+    const AccelerationUnit read_as = session != nullptr && session->acceleration_unit
+                                         ? *session->acceleration_unit
+                                         : AccelerationUnit::MetresPerSecond2;
+    const LikelyUnit unit = likelyUnit(read_as, norm / options.gravity_m_s2, kShaken);
     throw badInput(
         imu.name,
-        fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}", norm,
-                    g ? ": the unit seems to be g" : ""),
-        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
-        .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
+        fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,
+                    unit.words.empty() ? "" : ": the unit seems to be ", unit.words),
+        unit.in_session ? fmt::format("Set acceleration_unit: {} for this IMU", *unit.in_session)
+        : !unit.words.empty()
+            ? fmt::format("Convert the accelerations to m/s^2: multiply them by {:.3g}",
+                          options.gravity_m_s2 / norm * std::abs(metresPerSecond2(read_as)))
+            : "Check acceleration_unit (m/s^2, g, -g) of this IMU, and that gravity was not removed "
+              "from its accelerations")
+        .repairedBy(unit.in_session
+                        ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", *unit.in_session})
+                        : std::nullopt);
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
   if (rms > options.largest_rotation_rate_rad_s) {
@@ -206,7 +217,7 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);
     checkStampsApart(imu);
     checkAxesAlive(imu);
-    checkUnits(imu, *session.options.initialisation);
+    checkUnits(imu, k < session.imus.size() ? &session.imus[k] : nullptr, *session.options.initialisation);
     for (const RecordingFault& fault : checkImu(imu.name, imu.samples))
       if (fault.kind != FaultKind::Encoding) addFault(fault, pass.faults);  // of stamps: named while reading
   }

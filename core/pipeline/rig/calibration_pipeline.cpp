@@ -27,6 +27,7 @@
 #include "core/pipeline/rig/residual_consistency.h"
 #include "core/pipeline/rig/split_half_check.h"
 #include "core/pipeline/rig/tag_corners.h"
+#include "core/pipeline/rig/wrong_inputs.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/report/report_options.h"
 
@@ -71,6 +72,7 @@ class Calibration {
       : session_(session), context_(context), options_(*session.options.optimisation) {}
 
   CalibrationOutcome fromRecording() {
+    recording_is_there_ = true;
     return outcomeOf([this] {
       checkSession(session_);
       FoundLenses found = findLenses(session_, context_);
@@ -122,12 +124,24 @@ class Calibration {
     } catch (const CalibrationError& error) {
       outcome.status = RunStatus::Failed;
       outcome.error = error;
-      if (error.repair())
-        outcome.error = CalibrationError(error).repairedBy(ofRawAxes(*error.repair(), session_));
     }
+    if (outcome.error) tellCause(outcome);
     returnPass();
     outcome.pass = std::move(run_.pass);
     return outcome;
+  }
+
+  // Replaces the error by the wrong input that caused it.
+  void tellCause(CalibrationOutcome& outcome) {
+    try {
+      outcome.error =
+          withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);
+      if (const std::optional<Repair> repair = outcome.error->repair())
+        outcome.error = CalibrationError(*outcome.error).repairedBy(ofRawAxes(*repair, session_));
+    } catch (const Cancelled&) {
+      outcome = {};
+      outcome.status = RunStatus::Cancelled;
+    }
   }
 
   void runFrom(CalibrationStage first) {
@@ -305,6 +319,9 @@ class Calibration {
     flagDoubtful(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
     flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
     flagDoubtful(clock_doubt_, result, "clock_step");
+    for (const QualityWarning& wrong : wrongInputs(session_, input_, initial_, solution))
+      flagDoubtful(wrong, result);
+    wrong_noise_ = wrongNoise(session_, input_, solution);
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) {
       flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
@@ -368,11 +385,16 @@ class Calibration {
         cause = {found->text, found->repair, causeName(found->kind), found->explains};
     if (cause.text.empty() && !misfit.failure.empty())
       cause = {scatteringStampsIn(input_, solution, run_.pass.faults, options), {}, "stamp_jitter"};
-    if (!misfit.failure.empty())
-      throw calibrationFailed(session_.source.string(),
-                              cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
+    if (!misfit.failure.empty()) {
+      std::erase_if(run_.result.causes, [](const QualityWarning& each) { return !isWrongInput(each); });
+      flagDoubtful(misfit.failure, run_.result, "misfit");
+      flagDoubtful(cause, run_.result);
+      for (const QualityWarning& noise : wrong_noise_) flagDoubtful(noise, run_.result);
+      rankReasons(run_.result);
+      throw calibrationFailed(session_.source.string(), run_.result.reason,
                               "Check the board, the lens and the streams " + howTo(HowTo::EditSession))
-          .repairedBy(cause.repair);
+          .repairedBy(run_.result.repair);
+    }
     if (misfit.doubt.empty() && cause.text.empty()) flagDoubtful(held, run_.result);
     flagDoubtful(misfit.doubt, run_.result, "misfit");
     flagDoubtful(cause, run_.result);
@@ -385,6 +407,32 @@ class Calibration {
     if (run_.result.status == CalibrationStatus::Ok) flagDoubtful(doubt, run_.result, "halves");
   }
 
+  // A density that is too large is a reason only if the result is not ok: it makes sigmas too large.
+  void rank() {
+    CalibrationResult& result = run_.result;
+    for (const QualityWarning& noise : wrong_noise_) {
+      context_.progress.log(LogLevel::Warning, noise.text);
+      if (result.status == CalibrationStatus::Ok)
+        result.notes.insert(result.notes.begin(), noise.text);
+      else
+        flagDoubtful(noise, result);
+    }
+    rankReasons(result);
+    // What a reason states, or what follows from it.
+    const auto named = [&](const char* cause) {
+      return std::ranges::any_of(result.causes,
+                                 [&](const QualityWarning& each) { return each.name == cause; });
+    };
+    const auto isTold = [&](const std::string& note) {
+      return result.reason.find(note) != std::string::npos ||
+             (named(kWrongBoard) &&
+              (note.find("the pixels are slow") != std::string::npos || note == initial_.doubt)) ||
+             (!wrong_noise_.empty() && note.find("times its given sigma") != std::string::npos &&
+              note.find("residual") != std::string::npos);
+    };
+    std::erase_if(result.notes, isTold);
+  }
+
   void tellRejected() {
     for (std::size_t k = 0; k < run_.pass.cameras.size(); ++k) {
       for (const double time_s : rejectedTimes_s(run_.pass.cameras[k]))
@@ -395,8 +443,11 @@ class Calibration {
   }
 
   void conclude() {
-    returnPass();
     CalibrationResult& result = run_.result;
+    if (result.status != CalibrationStatus::Ok)
+      if (const std::optional<QualityWarning> unit = wrongUnit(session_, input_, context_))
+        flagDoubtful(*unit, result);
+    returnPass();
     result.start_ns = run_.pass.start_ns;
     result.freed = freed_;
     noteCornersOfTags();
@@ -419,6 +470,7 @@ class Calibration {
     timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
     tellLenses(session_, run_);
+    rank();
   }
 
   const Session& session_;
@@ -431,9 +483,11 @@ class Calibration {
   CalibrationInput input_;
   Initialisation initial_;
   const Stopwatch stopwatch_;
-  double before_s_ = 0.0;                                           // time of a pass of an earlier run
-  std::string clock_doubt_;                                         // of a clock step
-  std::vector<std::string> notes_;                                  // of the batch
+  double before_s_ = 0.0;           // time of a pass of an earlier run
+  std::string clock_doubt_;         // of a clock step
+  std::vector<std::string> notes_;  // of the batch
+  std::vector<QualityWarning> wrong_noise_;
+  bool recording_is_there_ = false;
   std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, if views were removed
 };
 

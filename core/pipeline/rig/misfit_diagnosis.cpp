@@ -5,6 +5,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/rig/residual_consistency.h"
+#include "core/pipeline/rig/wrong_inputs.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 namespace evical {
 
@@ -98,7 +100,65 @@ const std::array<Trial, 3> kTrials = {
       "optimisation.model.gyroscope_rotation: true",
       kFreeTurn}}};
 
+// The reasons that a wrong input explains: all later ones that are symptoms of any, or only of weak data.
+enum class Explains { Itself, WeakData, Symptoms };
+enum class Reason { Independent, Symptom, WeakData };
+struct RankedReason {
+  std::string_view name;
+  Explains explains = Explains::Itself;
+  Reason is = Reason::Symptom;
+};
+// In the order in which they are reported. Unlisted ones come between causes and symptoms.
+constexpr std::array kRanks = {RankedReason{kWrongUnit, Explains::Symptoms, Reason::Independent},
+                               RankedReason{kWrongLens, Explains::Symptoms},
+                               RankedReason{kWrongBoard, Explains::Symptoms},
+                               RankedReason{"first_look_at_lens"},
+                               RankedReason{"saturation", Explains::Itself, Reason::Independent},
+                               RankedReason{"stamp_jitter", Explains::Itself, Reason::Independent},
+                               RankedReason{kWrongNoise, Explains::WeakData},
+                               RankedReason{"clock_step", Explains::Itself, Reason::Independent},
+                               RankedReason{"other"},
+                               RankedReason{"gyroscope_turned"},
+                               RankedReason{"lens"},
+                               RankedReason{"board_bow"},
+                               RankedReason{"misfit"},
+                               RankedReason{"wandering_imu"},
+                               RankedReason{"board_stretch"},
+                               RankedReason{"board_size"},
+                               RankedReason{"prior"},
+                               RankedReason{"rolling_shutter"},
+                               RankedReason{"another_sensor"},
+                               RankedReason{"not_converged"},
+                               RankedReason{"halves", Explains::Itself, Reason::WeakData},
+                               RankedReason{"observability", Explains::Itself, Reason::WeakData}};
+
+std::size_t rankOf(const QualityWarning& reason) {
+  const auto row = std::ranges::find(kRanks, std::string_view(reason.name), &RankedReason::name);
+  const auto other = std::ranges::find(kRanks, std::string_view("other"), &RankedReason::name);
+  return static_cast<std::size_t>((row == kRanks.end() ? other : row) - kRanks.begin());
+}
+
 }  // namespace
+
+void rankReasons(CalibrationResult& result) {
+  if (result.causes.empty()) return;
+  std::ranges::stable_sort(result.causes, {}, rankOf);
+  std::vector<QualityWarning> kept;
+  Explains explained = Explains::Itself;
+  for (QualityWarning& cause : result.causes) {
+    const RankedReason& row = kRanks.at(rankOf(cause));
+    const bool follows = (explained == Explains::Symptoms && row.is != Reason::Independent) ||
+                         (explained == Explains::WeakData && row.is == Reason::WeakData);
+    if (follows && cause.name != kept.back().name) continue;
+    explained = std::max(explained, cause.explains >= 1.0 ? Explains::Symptoms : row.explains);
+    kept.push_back(std::move(cause));
+  }
+  result.causes = std::move(kept);
+  result.reason.clear();
+  for (const QualityWarning& cause : result.causes)
+    result.reason += (result.reason.empty() ? "" : "; ") + cause.text;
+  result.repair = result.causes.front().repair;
+}
 
 const char* causeName(CauseKind kind) {
   constexpr std::array kNames = {"gyroscope_turned", "lens", "board_bow"};  // in the enumeration's order

@@ -4,6 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/repair.h"
+#include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/batch_optimiser.h"
 
@@ -27,5 +28,9 @@ extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kFreeLineDelays;
 // Absent if none of the groups explains a large share.
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context);
+
+// The one place that ranks the reasons of a verdict: causes come before their symptoms, and symptoms of a wrong input
+// are removed. Sets the result's reason, repair and causes.
+void rankReasons(CalibrationResult& result);
 
 }  // namespace evical

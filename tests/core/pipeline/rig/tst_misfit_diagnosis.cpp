@@ -83,6 +83,74 @@ class TestCauses : public QObject {
     QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
   }
 
+  // An input that is wrong by a factor is the first reason, with the value that would agree, and none of its
+  // consequences is listed.
+  void wrongInput_isTheOnlyReason_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    QTest::addColumn<QString>("says");
+    const auto row = [](const char* name, double size, const char* says) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size << QString(says);
+    };
+    row("rates times", 57.29578, "57.* times too large.*unit seems to be deg/s.*angular_rate_unit: deg/s");
+    row("rates times", 1.0 / 57.29578, "57.* times too small.*multiply them by 57");
+    row("rates times", 1e3, "mrad/s.*multiply them by 0.001|seems to be deg/s");
+    row("rates times", 0.0572958, "17.* times too small.*deg/ms");
+    row("rates times", 2.0, "(2|1.9\\d|2.0\\d) times too large.*measuring range.*0.5");
+    row("rates times", 0.5, "(2|1.9\\d|2.0\\d) times too small.*measuring range");
+    row("forces times", 9.80665, "norm .* is 9\\d.*: the unit seems to be (g|m/s)|norm .* is 9\\d");
+    row("forces times", 1e3, "unit seems to be mm/s\\^2.*multiply them by 0.001");
+    row("forces times", 1e3 / 9.80665, "unit seems to be mg or cm/s\\^2.*0.0098");
+    row("forces times", 1.0 / 9.80665, "unit seems to be g.*acceleration_unit: g");
+    row("forces times", 2.0, "norm of the accelerations is (19|20).*measuring range");
+    row("stated noise", 1e4,
+        "gyroscope_noise_density .*e\\+0?4 times too large.*have about 1.9e-04 rad/s/sqrt.*data sheet");
+    row("stated noise", 1e3, "gyroscope_noise_density .*times too large.*have about 1.9e-04 rad/s/sqrt");
+    row("stated noise", 1e-2,
+        "gyroscope_noise_density .*times too small.*have about 0?.*rad/s/sqrt.*data sheet");
+    row("stated noise", 1e-3, "gyroscope_noise_density .*times too small");
+    row("board spacing alone", 900,
+        "spacing_m .0.5 m. is (9.|10).* times too large: accelerations agree with 0.05");
+    row("board spacing alone", 100,
+        "spacing_m .0.1 m. is (1.9|2).* times too large: accelerations agree with 0.0(4|5)");
+    row("board spacing alone", -50,
+        "spacing_m .0.025 m. is (1.9|2).* times too small: accelerations agree with 0.0(4|5)");
+    row("focal length", 100,
+        "left: the given lens differs.*26\\d.* px agree.*2 times too large.*Remove intrinsics");
+    row("focal length", -50,
+        "left: the given lens differs.*26\\d.* px agree.*2 times too small.*Remove intrinsics");
+    row("distortion", -1, "left: the given lens differs.*distortion.*Remove intrinsics");
+  }
+  void wrongInput_isTheOnlyReason() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    QFETCH(QString, says);
+    test::Recorded recorded = base_;
+    test::perturbation(name.toStdString()).apply(recorded, size);
+    QString reason;
+    try {
+      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
+      reason = QString::fromStdString(run.result.reason);
+    } catch (const CalibrationError& error) {
+      reason = error.what();
+    }
+    QVERIFY2(reason.contains(QRegularExpression(says)), qPrintable(reason));
+    for (const char* consequence :
+         {"ecord again", "ecord longer", "not flat", "pixels are slow", "has a sigma of"})
+      QVERIFY2(!reason.contains(consequence), qPrintable(reason));
+  }
+  void noiseTooLarge_isAWarningOfAGoodResult() {
+    test::Recorded recorded = base_;
+    test::perturbation("stated noise").apply(recorded, 30.0);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    if (run.result.status == CalibrationStatus::Ok) {
+      QVERIFY(!run.result.notes.empty());
+      const QString note = QString::fromStdString(run.result.notes.front());
+      QVERIFY2(note.contains("noise_density") && note.contains("times too large"), qPrintable(note));
+    }
+  }
+
   // Seed 3 rotates more about one axis than about the others, and a mirrored gyroscope leaves a third
   // unexplained.
   void leftHandedAxes_areNamedWhereOneAxisOutweighs() {

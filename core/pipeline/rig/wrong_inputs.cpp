@@ -1,0 +1,338 @@
+#include "core/pipeline/rig/wrong_inputs.h"
+
+#include "core/data/likely_unit.h"
+#include "core/geometry/camera_model.h"
+#include "core/geometry/projection_difference.h"
+#include "core/initialisation/initialisation_options.h"
+#include "core/initialisation/rotation_rates.h"
+#include "core/numerics/robust.h"
+#include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
+#include "core/recording/imu_statistics.h"
+#include "core/recording/inspection.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr double kUnitTolerance = 0.1;  // of ratios of rates, which a slightly wrong lens changes, too
+
+// "3.2 times too large", "57 times too small"
+std::string timesWords(double times) {
+  return times >= 1.0 ? fmt::format("{:.3g} times too large", times)
+                      : fmt::format("{:.3g} times too small", 1.0 / times);
+}
+
+struct WrongRates {
+  CalibrationError error;
+  bool certain;  // a unit explains the ratio
+};
+
+// Rates of all gyroscopes are compared with those of the first camera.
+std::optional<WrongRates> wrongRates(const Session& session, const CalibrationInput& input,
+                                     const RunContext& context) {
+  const CameraData& camera = input.cameras.front();
+  if (!camera.lens.detection_intrinsics) return std::nullopt;
+  for (std::size_t k = 0; k < std::min(input.imus.size(), session.imus.size()); ++k) {
+    const ImuData& imu = input.imus[k];
+    const std::optional<RateRatio> found = rateRatio(camera, input.boardAt(camera.board), imu, input.start_ns,
+                                                     *session.options.initialisation, context);
+    if (!found ||
+        std::abs(std::log(found->ratio)) < std::log(session.options.initialisation->wrong_rate_ratio))
+      continue;
+    const AngularRateUnit read_as =
+        session.imus[k].angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond);
+    const LikelyUnit unit = likelyUnit(read_as, found->ratio, kUnitTolerance);
+    std::string problem = fmt::format("the gyroscope's rates are {} compared with the rotation of {}",
+                                      timesWords(found->ratio), camera.name);
+    if (!unit.words.empty()) problem += ": their unit seems to be " + unit.words;
+    const std::string factor = fmt::format("{:.4g}", radiansPerSecond(read_as) / found->ratio);
+    const CalibrationError error = calibrationFailed(
+        imu.name, problem,
+        unit.in_session ? fmt::format("Set angular_rate_unit: {} for this IMU", *unit.in_session)
+        : !unit.words.empty()
+            ? fmt::format("Convert the rates to rad/s: multiply them by {}", factor)
+            : fmt::format("Check the gyroscope's scale (its measuring range), the lens's focal "
+                          "lengths, and that both sensors are of one rig: rates multiplied by {} "
+                          "would agree",
+                          factor));
+    return WrongRates{CalibrationError(error).repairedBy(
+                          unit.in_session ? std::optional(Repair{"imus." + imu.name + ".angular_rate_unit",
+                                                                 *unit.in_session})
+                                          : std::nullopt),
+                      !unit.words.empty()};
+  }
+  return std::nullopt;
+}
+
+// Accelerations whose norm is not gravity's, neither at the median nor as the mean in a frame that does not rotate.
+std::optional<CalibrationError> wrongForces(const Session& session, const CalibrationInput& input) {
+  const InspectionOptions options;
+  constexpr double kShaken = 0.15;  // of the norm, by motion
+  for (std::size_t k = 0; k < std::min(input.imus.size(), session.imus.size()); ++k) {
+    const ImuData& imu = input.imus[k];
+    std::vector<ImuSample> forces;  // without those of separate gyroscopes
+    std::ranges::copy_if(imu.samples, std::back_inserter(forces), measuresForce<ImuSample>);
+    const double norm = medianForceNorm(forces);
+    if (forces.empty() || isGravity(norm, options) ||
+        isGravity(steadyForceNorm(forces).value_or(norm), options))
+      continue;
+    const double times = norm / input.gravity_norm_m_s2;
+    const LikelyUnit unit = likelyUnit(
+        session.imus[k].acceleration_unit.value_or(AccelerationUnit::MetresPerSecond2), times, kShaken);
+    return calibrationFailed(
+        imu.name,
+        fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about {:.3g}{}{}", norm,
+                    input.gravity_norm_m_s2, unit.words.empty() ? "" : ": the unit seems to be ", unit.words),
+        "Check acceleration_unit, the accelerometer's measuring range, and that gravity was not removed");
+  }
+  return std::nullopt;
+}
+
+// Words for a given lens that differs from the recording's; empty if the difference is small.
+std::string wrongLensWords(const std::string& camera, const CameraIntrinsics& given,
+                           const CameraIntrinsics& found, double sigma_px,
+                           const InitialisationOptions& options) {
+  constexpr double kCertain_sigmas = 6.0;
+  const double diagonal_px = std::hypot(found.resolution_px.width_px, found.resolution_px.height_px);
+  const ProjectionDifference difference = projectionDifference(found, given);
+  const Eigen::Vector2d focal_px = idealFocalLength_px(found), given_px = idealFocalLength_px(given);
+  const double times = std::sqrt((given_px.array() / focal_px.array()).prod());
+  const double off_px =
+      difference.places > 0 ? difference.rms_px : std::abs(std::log(times)) * 0.5 * diagonal_px;
+  if (off_px < std::max(options.wrong_lens_share * diagonal_px, kCertain_sigmas * sigma_px)) return {};
+  const Eigen::Vector2d centre_px = found.principal_point_px;
+  const double centre_times = given.principal_point_px.norm() / std::max(centre_px.norm(), 1.0);
+  constexpr double kNoticeable = 1.05, kAlike = 0.1;
+  std::string text = fmt::format(
+      "{}: the given lens differs from that of the recording by {:.2g} px (RMS over the image): focal "
+      "lengths of "
+      "{:.4g} and {:.4g} px agree, the given ones ({:.4g} and {:.4g} px) are {}",
+      camera, off_px, found.focal_length_px.x(), found.focal_length_px.y(), given.focal_length_px.x(),
+      given.focal_length_px.y(),
+      std::abs(std::log(times)) > std::log(kNoticeable)
+          ? timesWords(times)
+          : std::string("similar, so the distortion, its model or the principal point is wrong"));
+  if (std::abs(std::log(times)) > std::log(kNoticeable) && std::abs(centre_times / times - 1.0) < kAlike)
+    text += ", and the principal point alike: the lens seems to be that of another resolution";
+  return text +
+         ". Remove intrinsics of this camera from the session, or give those of this lens at this resolution";
+}
+
+// The lens as calibrated from the recording alone.
+std::optional<CalibrationError> wrongLens(const Session& session, const RunContext& context) {
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (!session.cameras[k].intrinsics || session.sensorOf(k) != k) continue;
+    try {
+      const IntrinsicsResult found =
+          calibrateIntrinsics(session, k, RunContext{silentProgress(), context.stop}).result;
+      CameraIntrinsics given = *session.cameras[k].intrinsics;
+      if (!given.resolution_px.known()) given.resolution_px = found.intrinsics.resolution_px;
+      const std::string words = wrongLensWords(session.cameras[k].name, given, found.intrinsics,
+                                               found.image.rms_px, *session.options.initialisation);
+      if (words.empty()) continue;
+      const std::size_t place = words.find(": ") + 2, advice = words.find(". Remove");
+      return calibrationFailed(session.cameras[k].name, words.substr(place, advice - place),
+                               words.substr(advice + 2));
+    } catch (const CalibrationError&) {
+      continue;  // the recording does not determine this lens
+    }
+  }
+  return std::nullopt;
+}
+
+// Radius of the circles by their edges, in units of the given one; empty if no view shows it.
+std::optional<double> seenRadius(const CameraData& camera, const Board& board) {
+  constexpr std::size_t kLeastCircles = 8, kLeastViews = 10;
+  std::vector<double> ratios;
+  for (const BoardView& view : camera.observations.views) {
+    if (view.circles.size() < kLeastCircles) continue;
+    // Affine map from the board to the image, by least squares.
+    Eigen::MatrixX3d places(static_cast<Eigen::Index>(view.circles.size()), 3);
+    Eigen::MatrixX2d pixels(places.rows(), 2);
+    std::vector<double> radii_px;
+    for (std::size_t i = 0; i < view.circles.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      places.row(row) << board.point_m(view.circles[i].circle).transpose(), 1.0;
+      pixels.row(row) = view.circles[i].centre_px.transpose();
+      radii_px.push_back(std::sqrt(view.circles[i].semi_axes_px.prod()));
+    }
+    const Eigen::Matrix<double, 3, 2> affine =
+        (places.transpose() * places).ldlt().solve(places.transpose() * pixels);
+    const double px_per_m = std::sqrt(std::abs(affine.topRows<2>().determinant()));
+    const double radius_px = medianOf(std::move(radii_px));
+    if (px_per_m > 0.0 && radius_px > 0.0) ratios.push_back(radius_px / (px_per_m * board.radius_m));
+  }
+  if (ratios.size() < kLeastViews) return std::nullopt;
+  return medianOf(std::move(ratios));
+}
+
+bool isFar(double ratio, double bound) {
+  return !(std::abs(std::log(ratio)) < std::log(bound));
+}
+
+// Spacing by accelerations, and radius relative to it by the circles' edges: one reason for both.
+std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const Initialisation& initial,
+                                         const InitialisationOptions& options) {
+  const double scale = initial.board_scale;
+  const bool wrong_spacing = isFar(scale, options.wrong_size_ratio);
+  for (const CameraData& camera : input.cameras) {
+    const Board& board = input.boardAt(camera.board);
+    const std::optional<double> seen =
+        board.hasCircles() ? seenRadius(camera, board) : std::optional<double>();
+    if (!seen || !isFar(*seen, options.wrong_radius_ratio)) continue;
+    const double of_spacing = wrong_spacing && camera.board == 0 ? scale : 1.0;
+    const double radius = *seen * of_spacing;  // in units of the given one
+    if (!isFar(radius, options.wrong_radius_ratio)) continue;
+    if (wrong_spacing && camera.board == 0) break;  // the spacing comes first
+    return QualityWarning{
+        fmt::format(
+            "{}: radius_m ({:.4g} m) is {}: the circles' edges agree with {:.3g} m at this spacing. Measure "
+            "the diameter of a circle, and give half of it",
+            input.boardWords(camera.board), board.radius_m, timesWords(1.0 / radius),
+            radius * board.radius_m),
+        {},
+        kWrongBoard};
+  }
+  if (!wrong_spacing) return std::nullopt;
+  return QualityWarning{
+      fmt::format(
+          "{}: spacing_m ({:.4g} m) is {}: accelerations agree with {:.3g} m. Measure the board over as many "
+          "spacings as possible, and give metres",
+          input.boardWords(0), input.board.spacing_m, timesWords(1.0 / scale), scale * input.board.spacing_m),
+      {},
+      kWrongBoard};
+}
+
+// White noise of samples: their third differences contain hardly any motion.
+double whiteDensity(const ImuData& imu, bool of_gyroscope) {
+  std::vector<Eigen::Vector3d> values;
+  for (const ImuSample& sample : imu.samples) {
+    if (of_gyroscope ? !measuresRate(sample) : !measuresForce(sample)) continue;
+    values.push_back(of_gyroscope ? sample.angular_rate_rad_s : sample.specific_force_m_s2);
+  }
+  std::vector<double> differences;
+  for (std::size_t i = 3; i < values.size(); ++i) {
+    const Eigen::Vector3d difference = values[i] - 3.0 * values[i - 1] + 3.0 * values[i - 2] - values[i - 3];
+    for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(difference[axis]));
+  }
+  const double of_differences = std::sqrt(20.0);  // squares of 1, 3, 3, 1
+  const double rate_hz = of_gyroscope ? imu.rate_hz() : imu.accelerometerRate_hz();
+  return kMadToSigma * medianOf(std::move(differences)) / of_differences / std::sqrt(std::max(rate_hz, 1e-9));
+}
+
+struct NoiseInput {
+  const char* key;
+  const char* unit;
+  const char* other_unit;  // often confused
+  double other;            // in the unit
+};
+constexpr NoiseInput kGyroscopeNoise = {"gyroscope_noise_density", "rad/s/sqrt(Hz)", "deg/s/sqrt(Hz)",
+                                        kRadPerDeg};
+constexpr NoiseInput kAccelerometerNoise = {"accelerometer_noise_density", "m/s^2/sqrt(Hz)", "mg/sqrt(Hz)",
+                                            1e-3 * kStandardGravity_m_s2};
+
+// `times`: the given density in units of the recording's.
+QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, double given, double found) {
+  const double times = given / found;
+  constexpr double kNear = 1.5;
+  const bool other_unit = !isFar(times * input.other, kNear);
+  return {fmt::format(
+              "{}: {} ({:.3g} {}) is {}: the samples have about {:.2g}{}. Give the data sheet's value in {}",
+              imu, input.key, given, input.unit, timesWords(times), found,
+              other_unit    ? fmt::format("; the given one seems to be in {}", input.other_unit)
+              : times < 1.0 ? std::string(" (vibrations have the same effect)")
+                            : std::string(),
+              input.unit),
+          {},
+          kWrongNoise,
+          times < 1.0 ? 1.0 : 0.0};
+}
+
+}  // namespace
+
+bool isWrongInput(const QualityWarning& reason) {
+  constexpr std::array kNames = {kWrongUnit, kWrongLens, kWrongBoard, kWrongNoise};
+  return std::ranges::any_of(kNames, [&](const char* name) { return reason.name == name; });
+}
+
+CalibrationError withWrongInput(const CalibrationError& error, const Session& session,
+                                const CalibrationInput& input, const Initialisation& initial,
+                                bool recording_is_there, const RunContext& context) {
+  if (error.kind() != ErrorKind::CalibrationFailed || error.repair()) return error;
+  std::optional<WrongRates> rates;
+  if (!input.cameras.empty() && !input.imus.empty()) {
+    if (const std::optional<CalibrationError> forces = wrongForces(session, input)) return *forces;
+    rates = wrongRates(session, input, context);
+    if (rates && rates->certain) return rates->error;
+  }
+  if (recording_is_there)
+    if (const std::optional<CalibrationError> lens = wrongLens(session, context)) return *lens;
+  if (const std::optional<QualityWarning> board = wrongBoard(input, initial, *session.options.initialisation))
+    return calibrationFailed(session.source.string(), board->text, "Correct the board in the session");
+  return rates ? rates->error : error;
+}
+
+std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
+                                        const Initialisation& initial, const BatchSolution& solution) {
+  const InitialisationOptions& options = *session.options.initialisation;
+  std::vector<QualityWarning> wrong;
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) {
+    const CameraLens& lens = solution.state.cameras[k].lens;
+    if (!lens.given || !lens.solved || input.sensorOf(k) != k) continue;
+    QualityWarning warning{
+        wrongLensWords(input.cameras[k].name, *lens.given, *lens.solved, 0.0, options), {}, kWrongLens};
+    if (!warning.text.empty()) wrong.push_back(std::move(warning));
+  }
+  if (std::optional<QualityWarning> board = wrongBoard(input, initial, options))
+    wrong.push_back(std::move(*board));
+  return wrong;
+}
+
+std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
+                                        const RunContext& context) {
+  if (input.cameras.empty() || input.imus.empty()) return std::nullopt;
+  std::optional<CalibrationError> error = wrongForces(session, input);
+  if (!error)
+    if (const std::optional<WrongRates> rates = wrongRates(session, input, context)) error = rates->error;
+  if (!error) return std::nullopt;
+  return QualityWarning{fmt::format("{}: {}. {}", error->place(), error->problem(), error->advice()),
+                        error->repair(), kWrongUnit};
+}
+
+std::vector<QualityWarning> wrongNoise(const Session& session, const CalibrationInput& input,
+                                       const BatchSolution& solution) {
+  const double ratio = session.options.initialisation->wrong_noise_ratio;
+  const double misfit = session.options.optimisation->doubtful_imu_misfit;
+  constexpr double kAlike = 3.0;  // noise in differences of samples, and residuals
+  std::vector<QualityWarning> wrong;
+  for (std::size_t k = 0; k < input.imus.size(); ++k) {
+    const ImuData& imu = input.imus[k];
+    const auto test = [&](const NoiseInput& noise, bool of_gyroscope, double given, double residual_times) {
+      const double white = whiteDensity(imu, of_gyroscope) / given;
+      const double least = std::max(white, residual_times);
+      if (least > 0.0 && least * ratio < 1.0)
+        wrong.push_back(noiseWarning(imu.name, noise, given, given * least));
+      if (white > ratio && residual_times > misfit && !isFar(white / residual_times, kAlike))
+        wrong.push_back(noiseWarning(imu.name, noise, given, given * white));
+    };
+    const ImuFit& fit = solution.imus[k];
+    test(kGyroscopeNoise, true, imu.noise.gyroscope_density,
+         fit.gyroscope_rms_rad_s / imu.gyroscopeSigma_rad_s());
+    test(kAccelerometerNoise, false, imu.noise.accelerometer_density,
+         fit.accelerometer_rms_m_s2 / imu.accelerometerSigma_m_s2());
+  }
+  return wrong;
+}
+
+}  // namespace evical

@@ -1,0 +1,43 @@
+// Inputs that the recording contradicts by a factor: units, sizes, lenses, noise densities (docs/maths.md, 10.7). A
+// calibration with such an input converges to wrong values or fails later, with a symptom as its reason.
+#pragma once
+
+#include "core/base/error.h"
+#include "core/base/progress.h"
+#include "core/data/quality_warning.h"
+#include "core/initialisation/initialise.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/pipeline/session/session.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// Names of wrong inputs as causes, the ones that explain the others first.
+inline constexpr const char* kWrongUnit = "unit";
+inline constexpr const char* kWrongLens = "given_lens";
+inline constexpr const char* kWrongBoard = "board_dimensions";
+inline constexpr const char* kWrongNoise = "noise_density";
+
+bool isWrongInput(const QualityWarning& reason);
+
+// The wrong input that caused a failure; the error itself if there is none. Looks for the lens in the recording if
+// `recording_is_there`: this takes as long as a calibration of the lens.
+CalibrationError withWrongInput(const CalibrationError& error, const Session& session,
+                                const CalibrationInput& input, const Initialisation& initial,
+                                bool recording_is_there, const RunContext& context);
+
+// A wrong unit behind a doubtful solution.
+std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
+                                        const RunContext& context);
+
+// Wrong inputs of a solution, each with the value that would agree. They make any result doubtful.
+std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
+                                        const Initialisation& initial, const BatchSolution& solution);
+
+// Noise densities that the recording contradicts: too small ones only with a misfit.
+std::vector<QualityWarning> wrongNoise(const Session& session, const CalibrationInput& input,
+                                       const BatchSolution& solution);
+
+}  // namespace evical
