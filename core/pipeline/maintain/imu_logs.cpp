@@ -92,8 +92,8 @@ std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& l
 }
 
 // Matches a stream to an IMU: by the settings, by its name in the calibration, by the IMU's name, or as the
-// only one.
-std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& stream, bool only_one) const {
+// only one. The name of a log with several streams identifies none of them.
+std::optional<ImuLogs::Match> ImuLogs::imuOf(const Log& file, const StreamInfo& stream, bool only_one) const {
   const std::filesystem::path& log = file.path;
   const bool alone = imuStreams(file) == 1;
   for (std::size_t i = 0; i < before_.imus.size(); ++i) {
@@ -102,7 +102,7 @@ std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& str
     const bool is_log = said->second == log.string() || said->second == log.filename().string();
     // In a log with several streams, the one with this name.
     if (said->second == stream.name || (is_log && (alone || stream.name == joinedStreamOf(before_.imus[i]))))
-      return i;
+      return Match{i, MatchedBy::Setting};
   }
   std::vector<std::size_t> by_stream, by_name, open;
   for (std::size_t i = 0; i < before_.imus.size(); ++i) {
@@ -110,11 +110,12 @@ std::optional<std::size_t> ImuLogs::imuOf(const Log& file, const StreamInfo& str
     if (settings_.streams.contains(imu.name)) continue;
     open.push_back(i);
     if (!imu.stream.empty() && joinedStreamOf(imu) == stream.name) by_stream.push_back(i);
-    if (imu.name == stream.name || imu.name == log.stem().string()) by_name.push_back(i);
+    if (imu.name == stream.name || (alone && imu.name == log.stem().string())) by_name.push_back(i);
   }
-  if (const auto found = onlyOne(by_name)) return found;
-  if (const auto found = onlyOne(by_stream)) return found;
-  return only_one ? onlyOne(open) : std::nullopt;
+  if (const auto found = onlyOne(by_stream)) return Match{*found, MatchedBy::Stream};
+  if (const auto found = onlyOne(by_name)) return Match{*found, MatchedBy::Name};
+  if (const auto found = onlyOne(open); found && only_one) return Match{*found, MatchedBy::Default};
+  return std::nullopt;
 }
 
 // From the calibration, and from --imu NAME='GYROSCOPE + ACCELEROMETER'.
@@ -141,26 +142,55 @@ bool ImuLogs::isPartOfJoined(const Log& log, const std::string& stream) const {
   });
 }
 
+bool ImuLogs::isCandidate(const Log& log, const StreamInfo& stream) const {
+  return stream.type == StreamType::Imu && stream.readable && !isPartOfJoined(log, stream.name);
+}
+
 std::size_t ImuLogs::imuStreams(const Log& log) const {
   return static_cast<std::size_t>(std::ranges::count_if(log.reader->streams(), [&](const StreamInfo& stream) {
     return stream.type == StreamType::Imu && !isPartOfJoined(log, stream.name);
   }));
 }
 
+// IMUs of one log's streams. Streams that match an IMU less well than another stream of the log are left out.
+std::vector<std::optional<ImuLogs::Match>> ImuLogs::matchesOf(const Log& log, bool only_one) const {
+  const std::vector<StreamInfo>& streams = log.reader->streams();
+  std::vector<std::optional<Match>> matches(streams.size());
+  std::map<std::size_t, std::size_t> best;  // stream by IMU
+  for (std::size_t s = 0; s < streams.size(); ++s) {
+    if (!isCandidate(log, streams[s])) continue;
+    matches[s] = imuOf(log, streams[s], only_one);
+    if (!matches[s]) continue;
+    const auto [other, is_first] = best.try_emplace(matches[s]->imu, s);
+    if (is_first) continue;
+    std::optional<Match>& known = matches[other->second];
+    if (known->by == matches[s]->by)
+      throw badInput(log.path.string(),
+                     fmt::format("its streams {} and {} both match the IMU '{}'", streams[other->second].name,
+                                 streams[s].name, before_.imus[known->imu].name),
+                     "Specify the stream: " +
+                         howTo(HowTo::NameLogOfImu, {before_.imus[known->imu].name, streams[s].name}));
+    (known->by < matches[s]->by ? matches[s] : known).reset();
+    if (matches[s]) other->second = s;
+  }
+  return matches;
+}
+
 void ImuLogs::match(bool only_one) {
   for (Log& log : streams_.files()) {
     const std::vector<StreamInfo>& streams = log.reader->streams();
+    const std::vector<std::optional<Match>> matches = matchesOf(log, only_one);
     for (std::size_t s = 0; s < streams.size(); ++s) {
-      if (streams[s].type != StreamType::Imu || !streams[s].readable) continue;
-      if (isPartOfJoined(log, streams[s].name)) continue;
-      const auto imu = imuOf(log, streams[s], only_one);
-      if (!imu) {
-        notes_.push_back(fmt::format("{}: the stream {} is ignored: it matches no IMU of the old result",
-                                     log.path.filename().string(), streams[s].name));
+      if (!isCandidate(log, streams[s])) continue;
+      if (!matches[s]) {
+        notes_.push_back(
+            fmt::format("{}: the stream {} is ignored: it matches no IMU of the old result, or another "
+                        "stream matches better",
+                        log.path.filename().string(), streams[s].name));
         continue;
       }
-      log.add(s, *imu, readingOf(*imu));
-      imus_.push_back(*imu);
+      log.add(s, matches[s]->imu, readingOf(matches[s]->imu));
+      imus_.push_back(matches[s]->imu);
     }
   }
   std::sort(imus_.begin(), imus_.end());

@@ -61,7 +61,14 @@ class ImuLogs {
   };
 
   std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
-  std::optional<std::size_t> imuOf(const Log& log, const StreamInfo& stream, bool only_one) const;
+  enum class MatchedBy { Setting, Stream, Name, Default };  // the most certain first
+  struct Match {
+    std::size_t imu = 0;
+    MatchedBy by = MatchedBy::Default;
+  };
+  std::optional<Match> imuOf(const Log& log, const StreamInfo& stream, bool only_one) const;
+  std::vector<std::optional<Match>> matchesOf(const Log& log, bool only_one) const;
+  bool isCandidate(const Log& log, const StreamInfo& stream) const;  // may be an IMU of the result
   std::vector<SeparateImu> separateImus() const;
   bool isPartOfJoined(const Log& log, const std::string& stream) const;
   std::size_t imuStreams(const Log& log) const;
