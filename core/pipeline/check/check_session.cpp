@@ -198,11 +198,11 @@ Session withPriorOf(const NamedResult& before, Session session) {
   const UncertaintyReport& sigmas = before.result->uncertainty;
   for (std::size_t k = 0; k < before.cameras.size(); ++k)
     for (SessionCamera& camera : session.cameras) {
-      if (camera.name != before.cameras[k].name) continue;
+      // A camera with same_sensor_as has its prior from the other camera, even if its lens was estimated separately.
+      if (camera.name != before.cameras[k].name || !camera.same_sensor_as.empty()) continue;
       weighLens(sigmas, k, options.stability_lens_px, camera);
-      if (camera.same_sensor_as.empty())
-        weigh(kCameraQuantities, state.cameras[k], sigmas.cameras[k], camera.name == session.reference,
-              options, camera.prior);
+      weigh(kCameraQuantities, state.cameras[k], sigmas.cameras[k], camera.name == session.reference, options,
+            camera.prior);
     }
   for (std::size_t k = 0; k < before.imus.size(); ++k)
     for (SessionImu& imu : session.imus)

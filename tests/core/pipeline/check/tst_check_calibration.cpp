@@ -1,10 +1,13 @@
 // An old calibration against new recordings of an unchanged rig, and of one with a change.
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
+#include "core/data/quantity.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_calibration.h"
 #include "core/pipeline/check/check_files.h"
+#include "core/pipeline/check/check_session.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/assessment_report.h"
 #include "core/report/report_options.h"
@@ -196,6 +199,25 @@ class TestCheckCalibration : public QObject {
     before_ = kept;
     QVERIFY2(checked.check.verdict != Verdict::Changed, checked.check.reason.c_str());
     QVERIFY(checked.check.findings.front().numbers.front().before.sigma > 0.0);
+  }
+
+  // Cameras of one chip whose lenses were estimated separately, to compare them: the old result has two lenses.
+  void cameraThatSharesItsSensor_hasNoPriorOfItsOwn() {
+    SimulatedPass first = simulatePass(10.0, "davis346_frames");
+    first.session.options.report.edit().split_half_check = false;
+    first.session.options.optimisation.edit().share_sensors = false;
+    first.session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Free;
+    const CalibrationRun run = calibrate(first.session, first.pass, {});
+    QVERIFY(intrinsicsCovariance(run.result.uncertainty, 0).rows() > 0);
+    QVERIFY(intrinsicsCovariance(run.result.uncertainty, 1).rows() > 0);
+    const NamedResult before =
+        namedResult(first.session, std::make_shared<const CalibrationResult>(run.result), "test");
+    const Session weighed = withPriorOf(before, checkInputOf(before, first.session).session);
+    QVERIFY(weighed.cameras[0].intrinsics_uncertainty.has_value());
+    QVERIFY(!weighed.cameras[1].intrinsics_uncertainty.has_value());
+    QVERIFY(!weighed.cameras[1].prior.rotation && !weighed.cameras[1].prior.translation);
+    const CheckRun checked = checkCalibration(checkInputOf(before, first.session), first.pass, {});
+    QVERIFY2(checked.check.verdict != Verdict::Changed, checked.check.reason.c_str());
   }
 
   void cancelled_isNoVerdict() {
