@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace evical {
 namespace {
@@ -83,7 +84,7 @@ void checkTimeRange(const YamlNode& root, const Session& session) {
 
 void logOptions(const YamlNode& map, const Session& session, const RunContext& context) {
   std::string differing;
-  std::vector<OptionRow> rows = detectionOptions(session.options);
+  std::vector<OptionRow> rows = detectionOptions(session);
   for (const std::string& key : map.keys()) {
     const auto same = [&](const OptionRow& row) { return row.name == key && row.value == map[key].text(); };
     const auto found = std::find_if(rows.begin(), rows.end(), same);
@@ -146,12 +147,16 @@ YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera) 
         fmt::format("the session's camera {} is missing; existing cameras: {}", inQuotes(camera.name), names),
         otherFolder());
   }
-  checkSame(*map, "stream", camera.stream, "the stream");
-  const YamlNode offset = (*map)["clock_offset_s"];
-  if (offset.real() != camera.clock_offset_s)
-    throw offset.error(fmt::format("the detections have a clock_offset_s of {}, but the session has {}",
-                                   offset.real(), camera.clock_offset_s),
-                       otherFolder());
+  const std::vector<DetectionKey> usual = detectionKeys({});
+  std::vector<DetectionKey> keys = detectionKeys(camera);
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const auto node = map->find(keys[k].name);
+    const std::string then = node ? node->text() : usual[k].value;
+    if (then == keys[k].value) continue;
+    throw node.value_or(*map).error(fmt::format("the detections have the {} {}, but the session has {}",
+                                                keys[k].name, inQuotes(then), inQuotes(keys[k].value)),
+                                    otherFolder());
+  }
   return *map;
 }
 
@@ -218,11 +223,35 @@ void checkOverlap(const Session& session, const DetectionResult& pass) {
   }
 }
 
-std::vector<OptionRow> detectionOptions(const CalibrationOptions& options) {
-  CalibrationOptions deciding;
-  deciding.front_end = options.front_end;
-  deciding.frames = options.frames;
+// All options except those of later stages and other commands. Those of the intrinsics have an effect on lenses that
+// are calibrated first.
+std::vector<OptionRow> detectionOptions(const Session& session) {
+  const CalibrationOptions usual;
+  CalibrationOptions deciding = session.options;
+  deciding.initialisation = usual.initialisation;
+  deciding.optimisation = usual.optimisation;
+  deciding.report = usual.report;
+  deciding.check = usual.check;
+  deciding.edge_slopes = usual.edge_slopes;
+  deciding.egomotion = usual.egomotion;
+  deciding.maintain = usual.maintain;
+  const std::vector<CameraLens> lenses = givenLenses(session);
+  if (std::ranges::all_of(lenses, [](const CameraLens& lens) { return lens.given.has_value(); }))
+    deciding.intrinsics = usual.intrinsics;
   return differingOptions(deciding);
+}
+
+// Compilation fails if SessionCamera has a member that is missing here. Priors, the lens's uncertainty and the shutter
+// have no effect before the initialisation. The recordings may have been moved.
+std::vector<DetectionKey> detectionKeys(const SessionCamera& camera) {
+  const auto& [name, stream, resolution_px, intrinsics, recording, clock_offset_s, clock_scale, columns,
+               prior, intrinsics_uncertainty, shutter, same_sensor_as, board] = camera;
+  static_cast<void>(std::tie(name, resolution_px, intrinsics, recording, prior, intrinsics_uncertainty,
+                             shutter, same_sensor_as, board));
+  return {{"stream", stream},
+          {"clock_offset_s", fmt::format("{}", clock_offset_s)},
+          {"clock_scale", fmt::format("{}", clock_scale)},
+          {"columns", columns}};
 }
 
 bool isOfImu(const RecordingFault& fault, const Session& session) {

@@ -32,7 +32,14 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera);
 void checkOverlap(const Session& session, const DetectionResult& pass);
 
 // Options that affect the detection and differ from their defaults.
-std::vector<OptionRow> detectionOptions(const CalibrationOptions& options);
+std::vector<OptionRow> detectionOptions(const Session& session);
+
+// A key of a camera on which its detections depend, as text. Board, resolution and lens are compared by value.
+struct DetectionKey {
+  const char* name;
+  std::string value;
+};
+std::vector<DetectionKey> detectionKeys(const SessionCamera& camera);
 
 bool isOfImu(const RecordingFault& fault, const Session& session);
 

@@ -46,13 +46,13 @@ std::string cameraYaml(const SessionCamera& camera, const DetectionResult& pass,
                        const std::optional<IntrinsicsResult>& found) {
   const BoardObservations& seen = pass.cameras[k];
   const Resolution size = elementOrNone(pass.resolutions_px, k);
-  std::string text = fmt::format(
-      "  {}:\n    stream: {}\n    kind: {}\n    measurements: {}\n    clock_offset_s: {}\n    resolution_px: "
-      "[{}, "
-      "{}]\n    extent: {{rows: {}, cols: {}}}\n",
-      yamlText(camera.name), yamlText(camera.stream), kKinds.at(static_cast<std::size_t>(seen.kind)),
-      seen.events, camera.clock_offset_s, size.width_px, size.height_px, endsYaml(seen.extent.rows),
-      endsYaml(seen.extent.cols));
+  std::string text = fmt::format("  {}:\n", yamlText(camera.name));
+  for (const DetectionKey& key : detectionKeys(camera))
+    text += fmt::format("    {}: {}\n", key.name, yamlText(key.value));
+  text += fmt::format(
+      "    kind: {}\n    measurements: {}\n    resolution_px: [{}, {}]\n    extent: {{rows: {}, cols: {}}}\n",
+      kKinds.at(static_cast<std::size_t>(seen.kind)), seen.events, size.width_px, size.height_px,
+      endsYaml(seen.extent.rows), endsYaml(seen.extent.cols));
   if (seen.stamp_step_s > 0.0) text += fmt::format("    stamp_step_s: {}\n", seen.stamp_step_s);
   if (seen.polarity_delay)
     text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
@@ -75,7 +75,7 @@ std::string faultsYaml(const Session& session, const DetectionResult& pass) {
 
 std::string optionsYaml(const Session& session) {
   std::string text;
-  for (const OptionRow& row : detectionOptions(session.options))
+  for (const OptionRow& row : detectionOptions(session))
     text += fmt::format("  {}: {}\n", row.name, yamlText(row.value));
   return text.empty() ? "options: {}\n" : "options:\n" + text;
 }

@@ -1,6 +1,7 @@
 // A run that starts from an earlier run's detections gives the same result, without reading events or frames;
 // detections of another session are refused.
 #include "core/base/error.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/saved_detections.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
@@ -36,6 +37,14 @@ Scenario eventsAndFrames() {
   }
   return scenario;
 }
+
+class LoggedText : public ProgressSink {
+ public:
+  void stageStarted(const ProgressStage& /*stage*/) override {}
+  void stageProgress(double /*fraction*/) override {}
+  void log(LogLevel /*level*/, std::string_view line) override { text += line; }
+  std::string text;
+};
 
 void replaceIn(const std::filesystem::path& path, const QByteArray& what, const QByteArray& by) {
   QByteArray text = evical::test::fileContent(path);
@@ -167,6 +176,36 @@ class TestSavedDetections : public QObject {
     QCOMPARE(restored.pass.cameras[0].camera, run_.pass.cameras[0].camera);
   }
 
+  // Changes that do not affect the detection are accepted.
+  void laterStages_mayChange() {
+    Session other = session_;
+    other.cameras[0].prior.time_offset = KnownNumber{0.001, 0.001};
+    other.cameras[1].shutter = Shutter::Rolling;
+    other.options.optimisation.edit().huber_sigma = 3.0;
+    restoreDetections(result(), other, RunContext{});
+  }
+
+  void otherOptionsOfTheDetection_areReported_data() {
+    QTest::addColumn<QString>("option");
+    QTest::addColumn<QString>("value");
+    QTest::newRow("events") << "front_end.window_s"
+                            << "0.03";
+    QTest::newRow("lens that is calibrated first") << "intrinsics.model"
+                                                   << "pinhole_equidistant";
+  }
+  void otherOptionsOfTheDetection_areReported() {
+    QFETCH(const QString, option);
+    QFETCH(const QString, value);
+    Session other = session_;
+    setOption(other.options, option.toStdString(), value.toStdString());
+    LoggedText logged;
+    restoreDetections(result(), other, RunContext{logged});
+    QVERIFY2(QString::fromStdString(logged.text).contains(option), logged.text.c_str());
+    LoggedText same;
+    restoreDetections(result(), session_, RunContext{same});
+    QVERIFY2(same.text.find("other options") == std::string::npos, same.text.c_str());
+  }
+
   void anotherSession_isRefused_data() {
     QTest::addColumn<Change>("change");
     QTest::addColumn<QString>("said");
@@ -188,6 +227,14 @@ class TestSavedDetections : public QObject {
         "stream", [](Session& s) { s.cameras[0].stream = "/other"; }, "cameras.events.stream");
     row(
         "clock", [](Session& s) { s.cameras[0].clock_offset_s = 1.0; }, "cameras.events.clock_offset_s");
+    row(
+        "rate of the clock", [](Session& s) { s.cameras[0].clock_scale = 0.5; },
+        "cameras.events.clock_scale");
+    row(
+        "columns", [](Session& s) { s.cameras[0].columns = "t,y,x,p"; }, "cameras.events.columns");
+    row(
+        "the other camera's clock", [](Session& s) { s.cameras[1].clock_scale = 1.0001; },
+        "cameras.frames.clock_scale");
     row(
         "resolution",
         [](Session& s) {
