@@ -8,8 +8,8 @@
 
 namespace evical {
 
-// One line for each circle: measured position, residual of the prediction, sigmas, and whether the estimate
-// uses it.
+// One line for each circle: measured position as in the detections, residual of the prediction after all corrections,
+// sigmas, and whether the estimate uses it. `view` counts the camera's windows with the board in the detections.
 void residualsCsv(const NamedResult& named, std::span<const CircleResidual> residuals, const TextSink& sink);
 
 }  // namespace evical

@@ -55,14 +55,24 @@ void validateByHalves(const CalibrationInput& input, const OptimisationOptions& 
           : "halves of the recording: " + validation.failure);
 }
 
-// Removes views on the smaller part's side of a step, and those close to it. Returns their share.
-double keepLargerSide(const ClockStep& step, std::vector<BoardView>& views) {
+// Removes views on the smaller part's side of a step, and those close to it. Returns the indices that the kept ones had.
+std::vector<int> keepLargerSide(const ClockStep& step, std::vector<BoardView>& views) {
   constexpr double kMargin_s = 1.5;  // accuracy of the step's time
-  const auto before = static_cast<double>(views.size());
-  std::erase_if(views, [&](const BoardView& view) {
-    return step.larger_part_first ? view.time_s > step.at_s - kMargin_s : view.time_s < step.at_s + kMargin_s;
-  });
-  return 1.0 - static_cast<double>(views.size()) / std::max(before, 1.0);
+  std::vector<int> kept;
+  std::vector<BoardView> larger;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const double time_s = views[k].time_s;
+    if (step.larger_part_first ? time_s > step.at_s - kMargin_s : time_s < step.at_s + kMargin_s) continue;
+    kept.push_back(static_cast<int>(k));
+    larger.push_back(std::move(views[k]));
+  }
+  views = std::move(larger);
+  return kept;
+}
+
+// Measured centre of a residual's circle.
+Eigen::Vector2d centreIn(const BoardView& view, int circle) {
+  return std::ranges::lower_bound(view.circles, circle, {}, &CircleObservation::circle)->centre_px;
 }
 
 // One run: its stages, and the data that they share.
@@ -200,7 +210,10 @@ class Calibration {
       if (!step) continue;
       std::vector<BoardView>& views = input_.cameras[k].observations.views;
       keepWhole(k);
-      const double share = keepLargerSide(*step, views);
+      kept_views_.resize(input_.cameras.size());
+      kept_views_[k] = keepLargerSide(*step, views);
+      const double share = 1.0 - static_cast<double>(views.size()) /
+                                     static_cast<double>(std::max<std::size_t>(whole_views_[k]->size(), 1));
       doubt += fmt::format(
           "{}{}: the offset between its clock and the IMU's steps by {:.1f} ms about {:.1f} s after the "
           "start: {:.0f} % of the views, those on the shorter side, are excluded",
@@ -278,6 +291,18 @@ class Calibration {
     if (!whole_views_[camera]) whole_views_[camera] = input_.cameras[camera].observations.views;
   }
 
+  // Residuals refer to the views of the pass, of which the input may have only some, with corrected corners of tags.
+  void referToPass(std::vector<CircleResidual>& residuals) const {
+    for (CircleResidual& residual : residuals) {
+      const auto camera = static_cast<std::size_t>(residual.camera);
+      if (camera >= whole_views_.size() || !whole_views_[camera]) continue;
+      if (camera < kept_views_.size() && !kept_views_[camera].empty())
+        residual.view = kept_views_[camera].at(static_cast<std::size_t>(residual.view));
+      const BoardView& view = whole_views_[camera]->at(static_cast<std::size_t>(residual.view));
+      residual.centre_px = centreIn(view, residual.circle);
+    }
+  }
+
   bool freeWhatIsNeeded(const std::vector<QualityWarning>& causes) {
     bool any = false;
     for (const QualityWarning& cause : causes) {
@@ -329,6 +354,7 @@ class Calibration {
     }
     flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
+    referToPass(result.circle_residuals);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
     addStampErrors(input_, run_.pass.imu_stamp_steps_s, options, result);
@@ -488,7 +514,9 @@ class Calibration {
   std::vector<std::string> notes_;  // of the batch
   std::vector<QualityWarning> wrong_noise_;
   bool recording_is_there_ = false;
-  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, if views were removed
+  std::vector<std::optional<std::vector<BoardView>>>
+      whole_views_;                           // by camera, if views were removed or changed
+  std::vector<std::vector<int>> kept_views_;  // by camera: indices in whole_views_, empty if none was removed
 };
 
 const std::array<Calibration::StageWork, 4> Calibration::kWork = {
