@@ -50,7 +50,9 @@ void ImuPairs::add(std::size_t imu, double time_s, const ImuSample& sample) {
   const PairNominal& clock = nominal_[imu];
   const double common_s =
       time_s + clock.time_offset_s + 1e-6 * clock.time_offset_drift_ppm * (time_s - clock.time_offset_at_s);
-  smoothers_[imu].add(common_s, rate, force, sample.measured_by);
+  if (measuresRate(sample)) smoothers_[imu].add(common_s, rate, force, MeasuredBy::Gyroscope);
+  if (measuresForce(sample))
+    smoothers_[imu].add(common_s - state.accelerometer_delay_s, rate, force, MeasuredBy::Accelerometer);
   double earliest = std::numeric_limits<double>::infinity(), latest = -earliest;
   for (const GaussianSmoother& smoother : smoothers_) {
     const double own = smoother.empty() ? -std::numeric_limits<double>::infinity() : smoother.latest_s();

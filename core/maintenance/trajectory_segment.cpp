@@ -208,21 +208,32 @@ void TrajectorySegment::add(double time_s, const ImuSample& sample) {
   if (!times_s_.empty() && time_s <= times_s_.back()) return;
   times_s_.push_back(time_s);
   samples_.push_back(sample);
-  while (to_ < poses_.size() && time_s > poses_[to_].time_s) {
+  while (to_ < poses_.size() && time_s > lastStamp_s(poses_[to_].time_s)) {
     close();
     from_ = to_;
     to_ = nextPose(from_);
-    // The last two samples are needed for the next interval.
-    const std::size_t keep = std::min<std::size_t>(samples_.size(), 2);
-    samples_.erase(samples_.begin(), samples_.end() - static_cast<std::ptrdiff_t>(keep));
-    times_s_.erase(times_s_.begin(), times_s_.end() - static_cast<std::ptrdiff_t>(keep));
+    // The next interval needs the last sample before its first stamp.
+    const auto next = std::ranges::upper_bound(times_s_, firstStamp_s(poses_[from_].time_s));
+    const std::ptrdiff_t unused = std::max<std::ptrdiff_t>(next - times_s_.begin() - 1, 0);
+    samples_.erase(samples_.begin(), samples_.begin() + unused);
+    times_s_.erase(times_s_.begin(), times_s_.begin() + unused);
   }
+}
+
+// Forces at a time have stamps that are later by the accelerometer's delay.
+double TrajectorySegment::firstStamp_s(double time_s) const {
+  return time_s + std::min(0.0, before_.accelerometer_delay_s);
+}
+double TrajectorySegment::lastStamp_s(double time_s) const {
+  return time_s + std::max(0.0, before_.accelerometer_delay_s);
 }
 
 bool TrajectorySegment::isWhole() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
   constexpr double kGap = 0.3;  // relative to the interval of poses
-  if (samples_.size() < 3 || times_s_.front() > from.time_s || times_s_.back() < to.time_s) return false;
+  if (samples_.size() < 3 || times_s_.front() > firstStamp_s(from.time_s) ||
+      times_s_.back() < lastStamp_s(to.time_s))
+    return false;
   // Sensors with separate samples have separate gaps.
   double rate_s = times_s_.front(), force_s = times_s_.front(), longest_s = 0.0;
   for (std::size_t k = 1; k < times_s_.size(); ++k) {
@@ -239,24 +250,27 @@ bool TrajectorySegment::isWhole() const {
 std::vector<TrajectorySegment::Node> TrajectorySegment::nodes() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
   const Eigen::Matrix3d rates = before_.gyroscopeMatrix().inverse();
-  const auto at = [&](std::size_t k, double time_s, auto member) -> Eigen::Vector3d {
+  const auto at = [&](double time_s, auto member) -> Eigen::Vector3d {
+    const auto next = std::upper_bound(times_s_.begin() + 1, times_s_.end() - 1, time_s);
+    const auto k = static_cast<std::size_t>(next - times_s_.begin() - 1);
     const double share = (time_s - times_s_[k]) / (times_s_[k + 1] - times_s_[k]);
     return (1.0 - share) * samples_[k].*member + share * samples_[k + 1].*member;
   };
   std::vector<Node> all;
-  const auto add = [&](std::size_t k, double time_s) {
+  const auto add = [&](double time_s) {
     const Eigen::Vector3d rate =
-        rates * (at(k, time_s, &ImuSample::angular_rate_rad_s) - before_.gyroscope_bias_rad_s);
+        rates * (at(time_s, &ImuSample::angular_rate_rad_s) - before_.gyroscope_bias_rad_s);
     Eigen::Quaterniond rotation = from.world_from_imu;
     if (!all.empty())
       rotation = all.back().rotation *
                  quaternionExp(0.5 * (rate + all.back().rate_rad_s) * (time_s - all.back().time_s));
-    all.push_back({time_s, rate, at(k, time_s, &ImuSample::specific_force_m_s2), rotation});
+    all.push_back({time_s, rate, at(time_s + before_.accelerometer_delay_s, &ImuSample::specific_force_m_s2),
+                   rotation});
   };
   for (std::size_t k = 0; k + 1 < times_s_.size(); ++k) {
     if (times_s_[k + 1] <= from.time_s || times_s_[k] >= to.time_s) continue;
-    add(k, std::max(times_s_[k], from.time_s));
-    if (times_s_[k + 1] >= to.time_s) add(k, to.time_s);
+    add(std::max(times_s_[k], from.time_s));
+    if (times_s_[k + 1] >= to.time_s) add(to.time_s);
   }
   return all;
 }

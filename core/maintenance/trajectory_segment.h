@@ -63,6 +63,8 @@ class TrajectorySegment {
   };
 
   std::size_t nextPose(std::size_t from) const;
+  double firstStamp_s(double time_s) const;
+  double lastStamp_s(double time_s) const;
   void close();
   bool isWhole() const;
   std::vector<Node> nodes() const;

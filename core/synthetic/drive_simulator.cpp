@@ -41,11 +41,15 @@ class ShakenMount {
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero(), force_ = Eigen::Vector3d::Zero();  // of unit size
 };
 
-Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eigen::Vector3d& gravity_m_s2) {
-  const MotionState state = motionOfFrame(body, imu.reference_from_imu);
+Measured measuredBy(const SimulatedImu& imu, const DriveMotionModel& motion, double time_s,
+                    const Eigen::Vector3d& gravity_m_s2) {
+  const auto at = [&](double at_s) { return motionOfFrame(motion.at(at_s), imu.reference_from_imu); };
+  const MotionState state = at(time_s), delayed = imu.accelerometer_delay_s == 0.0
+                                                      ? state
+                                                      : at(time_s - imu.accelerometer_delay_s);
   return {imu.gyroscopeMatrix() * state.angular_velocity_in_body_rad_s,
-          imu.accelerometer_scale_misalignment * (state.world_from_body.rotation.conjugate() *
-                                                  (state.acceleration_in_world_m_s2 - gravity_m_s2))};
+          imu.accelerometer_scale_misalignment * (delayed.world_from_body.rotation.conjugate() *
+                                                  (delayed.acceleration_in_world_m_s2 - gravity_m_s2))};
 }
 
 // spoilSamples needs a scenario of cameras.
@@ -79,7 +83,7 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
     for (const ImuStep& step : scenario.steps) done += step.at_s <= time_s ? 1 : 0;
     if (done != steps_done) imu = scenario.imuAt(index, time_s);
     steps_done = done;
-    const Measured now = measuredBy(imu, motion.at(time_s), gravity_m_s2), shaken = mount.now();
+    const Measured now = measuredBy(imu, motion, time_s, gravity_m_s2), shaken = mount.now();
     mount.step();
     ImuSample sample;
     sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, time_s));

@@ -24,6 +24,31 @@ class TestPairTracking : public QObject {
     QVERIFY2(ratio > 0.7 && ratio < 1.4, qPrintable(QString::number(ratio)));
   }
 
+  // If the accelerometer was late in the calibration, too, nothing has changed.
+  void lateAccelerometer_isTheTruthWithinSigmas_data() {
+    QTest::addColumn<double>("reference_s");
+    QTest::addColumn<double>("other_s");
+    QTest::newRow("of the other") << 0.0 << 0.004;
+    QTest::newRow("of the reference") << 0.006 << 0.0;
+    QTest::newRow("of both, early") << -0.003 << 0.003;
+  }
+  void lateAccelerometer_isTheTruthWithinSigmas() {
+    QFETCH(const double, reference_s);
+    QFETCH(const double, other_s);
+    constexpr int kSeeds = 10;
+    PairVector squares = PairVector::Zero();
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      DriveScenario scenario = driveScenario("none", static_cast<std::uint64_t>(seed));
+      scenario.imus[0].accelerometer_delay_s = reference_s;
+      scenario.imus[1].accelerometer_delay_s = other_s;
+      const PairTrack track = trackOf(scenario);
+      QVERIFY(track.steps.empty());
+      squares += (track.start.array().square() / track.start_covariance.diagonal().array()).matrix();
+    }
+    const double ratio = std::sqrt(squares.head<7>().mean() / kSeeds);
+    QVERIFY2(ratio > 0.6 && ratio < 1.5, qPrintable(QString::number(ratio)));
+  }
+
   void steps_areNamedInTime_data() {
     QTest::addColumn<int>("block");
     QTest::addColumn<double>("size");

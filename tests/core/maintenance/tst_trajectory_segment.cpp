@@ -55,11 +55,19 @@ class TestTrajectoryLag : public QObject {
   Q_OBJECT
 
  private slots:
+  void pieces_giveBiasesAndScalesWithinSigmas_data() {
+    QTest::addColumn<double>("delay_s");
+    QTest::newRow("both sensors at once") << 0.0;
+    QTest::newRow("late accelerometer") << 0.02;
+    QTest::newRow("early accelerometer") << -0.02;
+  }
   void pieces_giveBiasesAndScalesWithinSigmas() {
+    QFETCH(const double, delay_s);
     constexpr int kSeeds = 20;
     double squares = 0.0;
     for (int seed = 1; seed <= kSeeds; ++seed) {
-      const DriveScenario scenario = driveScenario("drive_trajectory", static_cast<std::uint64_t>(seed));
+      DriveScenario scenario = driveScenario("drive_trajectory", static_cast<std::uint64_t>(seed));
+      scenario.imus.front().accelerometer_delay_s = delay_s;
       const auto lags = lagsOf(scenario, poses(scenario));
       QCOMPARE(lags.size(), std::size_t{3});
       const LagSum sum = sumOfLags(lags, accelerometerNumbers(scenario.imus.front()));
