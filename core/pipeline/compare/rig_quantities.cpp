@@ -79,7 +79,7 @@ class Listing {
 
   void addCamera(std::size_t k) {
     const SessionCamera& camera = session_.cameras[k];
-    const PriorOwner owner{session_.sensor(k).resolution_px.height_px};
+    const PriorOwner owner{imageHeight_px(k)};
     forEachQuantity(kCameraQuantities, [&](const auto& row) {
       add(row, camera.name, k, owner, state_.cameras.at(k));
       if (row.info.id == QuantityId::Intrinsics)
@@ -109,6 +109,12 @@ class Listing {
   }
 
  private:
+  // The lens in use has the resolution of the recording, which the session may not give.
+  int imageHeight_px(std::size_t camera) const {
+    const std::optional<CameraIntrinsics>& lens = state_.cameras.at(camera).lens.inUse();
+    return lens ? lens->resolution_px.height_px : session_.sensor(camera).resolution_px.height_px;
+  }
+
   template <class Row, class State>
   void add(const Row& row, const std::string& sensor, std::size_t k, const PriorOwner& owner,
            const State& state) {

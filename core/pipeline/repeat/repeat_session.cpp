@@ -3,6 +3,7 @@
 #include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/pipeline/session/session_of_recording.h"
 
@@ -53,6 +54,7 @@ std::string boardText(const Board& board) {
                      board.rows, board.cols, board.spacing_m);
 }
 
+// Given lenses are priors, which are counted once. Streams, clocks and columns may differ.
 void checkCameras(const Session& first, const Session& session) {
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera &own = session.cameras[k], &other = first.cameras[k];
@@ -64,6 +66,9 @@ void checkCameras(const Session& first, const Session& session) {
       throwOther(session, first, "the lens of " + camera,
                  std::string("is ") + cameraModelTitle(own.intrinsics->model),
                  std::string("is ") + cameraModelTitle(other.intrinsics->model));
+    if (own.intrinsics != other.intrinsics || own.intrinsics_uncertainty != other.intrinsics_uncertainty)
+      throwOther(session, first, "the given lens of " + camera, "differs",
+                 "is another one: give the same lens in all, or none");
     if (own.same_sensor_as != other.same_sensor_as || own.shutter != other.shutter ||
         own.board != other.board)
       throwOther(session, first, camera, "has another board, shutter or same_sensor_as", "does not");
@@ -107,14 +112,23 @@ void checkOptions(const Session& first, const Session& session) {
           "Give all sessions the same options");
 }
 
+double spacingSigma(const SessionBoard& board, const Session& session) {
+  return board.spacing_std.value_or(session.options.optimisation->board_spacing_sigma);
+}
+
 void checkBoards(const Session& first, const Session& session) {
   if (session.board != first.board)
     throwOther(session, first, "its board", "is " + boardText(session.board), "is " + boardText(first.board));
-  for (std::size_t k = 0; k < session.further_boards.size(); ++k)
-    if (session.further_boards[k].board != first.further_boards[k].board)
-      throwOther(session, first, fmt::format("its board {}", session.further_boards[k].name),
-                 "is " + boardText(session.further_boards[k].board),
-                 "is " + boardText(first.further_boards[k].board));
+  for (std::size_t k = 0; k < session.further_boards.size(); ++k) {
+    const SessionBoard &own = session.further_boards[k], &other = first.further_boards[k];
+    const std::string board = "its board " + own.name;
+    if (own.board != other.board)
+      throwOther(session, first, board, "is " + boardText(own.board), "is " + boardText(other.board));
+    const double own_std = spacingSigma(own, session), other_std = spacingSigma(other, first);
+    if (own_std != other_std)
+      throwOther(session, first, board, fmt::format("has a spacing_std of {}", own_std),
+                 fmt::format("has {}", other_std));
+  }
 }
 
 void makeLike(const Session& first, Session& session) {

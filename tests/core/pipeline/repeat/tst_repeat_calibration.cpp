@@ -4,6 +4,7 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/compare/rig_quantities.h"
 #include "core/pipeline/repeat/repeat_calibration.h"
 #include "core/pipeline/repeat/repeat_files.h"
 #include "core/report/assessment_report.h"
@@ -100,6 +101,46 @@ class TestRepeatCalibration : public QObject {
 
  private slots:
   void initTestCase() { good_ = repeatOf(3); }
+
+  // The size of a further board is a prior, too, which is counted once.
+  void sigmasOfFurtherBoards_areTheSame() {
+    const auto repeatWith = [](std::optional<double> first, std::optional<double> second) {
+      std::vector<Session> sessions;
+      for (const char* name : {"a", "b"}) {
+        Session& session = sessions.emplace_back(simulatePass(2.0, "two_boards").session);
+        session.recording = std::string(name) + ".bag";
+        session.source = std::string(name) + ".yaml";
+      }
+      sessions[0].further_boards.at(0).spacing_std = first;
+      sessions[1].further_boards.at(0).spacing_std = second;
+      return evical::repeatOf(std::move(sessions));
+    };
+    const double usual = OptimisationOptions().board_spacing_sigma;
+    repeatWith({}, {});
+    repeatWith({}, usual);
+    repeatWith(0.5 * usual, 0.5 * usual);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, repeatWith({}, 0.5 * usual));
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, repeatWith(0.25 * usual, 0.5 * usual));
+  }
+
+  // A session need not give the resolution, on which the weak prior of a line delay depends.
+  void priorOfLineDelays_needsNoResolutionInTheSession() {
+    const SimulatedPass simulated = simulatePass(2.0, "rolling_shutter");
+    CalibrationState state;
+    for (const CameraLens& lens : simulated.pass.lenses) state.cameras.emplace_back().lens = lens;
+    state.imus.resize(simulated.session.imus.size());
+    Session without = simulated.session;
+    for (SessionCamera& camera : without.cameras) camera.resolution_px = {};
+    int compared = 0;
+    const RigQuantities given(simulated.session, state), recorded(without, state);
+    for (std::size_t k = 0; k < given.all.size(); ++k) {
+      if (given.all[k].info->id != QuantityId::LineDelay) continue;
+      QVERIFY(given.all[k].prior_information.size() == 1 && given.all[k].prior_information(0, 0) > 0.0);
+      QCOMPARE(recorded.all[k].prior_information(0, 0), given.all[k].prior_information(0, 0));
+      ++compared;
+    }
+    QVERIFY(compared > 0);
+  }
 
   void otherOptions_areRefused() {
     verifyRejected([](Session& session) { session.options.optimisation.edit().pixel_delay_ms *= 2.0; },
@@ -290,6 +331,11 @@ class TestRepeatCalibration : public QObject {
                    "lens");
     verifyRejected([](Session& s) { s.cameras.front().prior.time_offset = KnownNumber{0.0, 1e-3}; }, "prior");
     verifyRejected([](Session& s) { s.recording = "a.bag"; }, "twice");
+    verifyRejected([](Session& s) { s.cameras.front().intrinsics->focal_length_px *= 1.01; },
+                   "the given lens");
+    verifyRejected([](Session& s) { s.cameras.front().intrinsics.reset(); }, "the given lens");
+    verifyRejected([](Session& s) { s.cameras.front().intrinsics_uncertainty.emplace().std.setOnes(); },
+                   "the given lens");
   }
 
   void partsOfOneRecording_mayNotOverlap() {
