@@ -4,6 +4,7 @@
 #include "core/data/imu_stamps.h"
 #include "core/recording/event_statistics.h"
 #include "core/recording/imu_statistics.h"
+#include "core/recording/separate_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,6 +143,7 @@ ImuStreamKind imuStreamKind(const std::vector<ImuSample>& samples) {
 
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options,
                             const RunContext& context) {
+  const StopWaiting until_stop(context.stop);
   Inspection inspection;
   inspection.format = reader.format();
   std::map<std::size_t, EventStatistics> events;

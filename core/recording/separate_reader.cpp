@@ -1,6 +1,7 @@
 #include "core/recording/separate_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/progress.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fcntl.h>
@@ -50,33 +51,37 @@ bool sendAll(int socket, std::string_view bytes) {
 }
 
 enum class Silence { Awaited, Limited };
+enum class Heard { All, Closed, Silent, Stopped };
+
+thread_local std::stop_token stop_of_waits;
 
 // Waits in short pieces, and ignores pieces that took much longer than requested: the program was stopped
 // (Ctrl-Z).
-bool isReadable(int socket, Silence silence) {
+Heard waitFor(int socket, Silence silence) {
   constexpr int kPiece_ms = 100;
   for (int waited_ms = 0; waited_ms < SeparateReader::longest_silence_ms;) {
     pollfd waiting{socket, POLLIN, 0};
     const auto begin = std::chrono::steady_clock::now();
     const int ready = ::poll(&waiting, 1, silence == Silence::Limited ? kPiece_ms : -1);
-    if (ready > 0) return true;
-    if (ready < 0 && errno != EINTR) return false;
+    if (ready > 0) return Heard::All;
+    if (ready < 0 && errno != EINTR) return Heard::Closed;
+    if (silence == Silence::Limited && stop_of_waits.stop_requested()) return Heard::Stopped;
     if (std::chrono::steady_clock::now() - begin < 10 * std::chrono::milliseconds(kPiece_ms))
       waited_ms += kPiece_ms;
   }
-  return false;
+  return Heard::Silent;
 }
 
-bool receiveAll(int socket, char* bytes, std::size_t count, Silence silence) {
+Heard receiveAll(int socket, char* bytes, std::size_t count, Silence silence) {
   while (count > 0) {
-    if (!isReadable(socket, silence)) return false;
+    if (const Heard heard = waitFor(socket, silence); heard != Heard::All) return heard;
     const ssize_t got = ::recv(socket, bytes, count, 0);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
+    if (got <= 0) return Heard::Closed;
     bytes += got;
     count -= static_cast<std::size_t>(got);
   }
-  return true;
+  return Heard::All;
 }
 
 bool sendMessage(int socket, const std::string& message) {
@@ -85,9 +90,10 @@ bool sendMessage(int socket, const std::string& message) {
   return sendAll(socket, length) && sendAll(socket, message);
 }
 
-bool receiveMessage(int socket, std::string& message, Silence silence = Silence::Limited) {
+Heard receiveMessage(int socket, std::string& message, Silence silence = Silence::Limited) {
   std::uint64_t length = 0;
-  if (!receiveAll(socket, reinterpret_cast<char*>(&length), sizeof(length), silence)) return false;
+  const Heard heard = receiveAll(socket, reinterpret_cast<char*>(&length), sizeof(length), silence);
+  if (heard != Heard::All) return heard;
   message.resize(static_cast<std::size_t>(length));
   return receiveAll(socket, message.data(), message.size(), silence);
 }
@@ -297,9 +303,17 @@ void serveReader(int socket, const SeparateReader::Open& open) {
   });
   bool heard = sendMessage(socket, first);
   std::string question;
-  while (heard && reader && receiveMessage(socket, question, Silence::Awaited))
+  while (heard && reader && receiveMessage(socket, question, Silence::Awaited) == Heard::All)
     heard = sendMessage(socket, attempt([&] { return answerTo(question, *reader); }));
   ::_exit(0);
+}
+
+StopWaiting::StopWaiting(std::stop_token stop) : before_(stop_of_waits) {
+  if (stop.stop_possible()) stop_of_waits = std::move(stop);
+}
+
+StopWaiting::~StopWaiting() {
+  stop_of_waits = std::move(before_);
 }
 
 SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& open) : path_(path) {
@@ -335,7 +349,8 @@ void SeparateReader::begin(const std::function<pid_t(int own, int other)>& start
 
 void SeparateReader::takeFirstState() {
   std::string message;
-  if (receiveMessage(socket_, message) && !message.empty()) {
+  const Heard heard = receiveMessage(socket_, message);
+  if (heard == Heard::All && !message.empty()) {
     std::string_view rest(message);
     const auto kind = static_cast<Answer>(rest.front());
     rest.remove_prefix(1);
@@ -346,7 +361,11 @@ void SeparateReader::takeFirstState() {
     end();
     throwError(path_, rest);
   }
-  const End how = howItEnded();
+  if (heard == Heard::Stopped) {
+    end();
+    throw Cancelled{};
+  }
+  const End how = howItEnded(heard == Heard::Silent);
   end();
   throwIfKilled(how);
   if (how.kind == End::Kind::Silent)
@@ -392,7 +411,7 @@ void SeparateReader::select(const std::vector<std::size_t>& streams) {
   putInto(question, static_cast<std::uint32_t>(streams.size()));
   for (const std::size_t stream : streams) putInto(question, static_cast<std::uint64_t>(stream));
   // If the server has ended, the next read reports it.
-  const bool answered = sendMessage(socket_, question) && receiveMessage(socket_, answer);
+  const bool answered = sendMessage(socket_, question) && receiveMessage(socket_, answer) == Heard::All;
   if (answered && static_cast<Answer>(answer.front()) == Answer::Error)
     throwError(path_, std::string_view(answer).substr(1));
 }
@@ -408,9 +427,10 @@ bool SeparateReader::read(Packet& packet) {
   packet.clear();
   if (finished_) return false;
   if (!asked_) static_cast<void>(ask());
-  if (!receiveMessage(socket_, message_)) {
+  if (const Heard heard = receiveMessage(socket_, message_); heard != Heard::All) {
     finished_ = true;
-    const End end = howItEnded();
+    if (heard == Heard::Stopped) return false;
+    const End end = howItEnded(heard == Heard::Silent);
     throwIfKilled(end);
     const double percent = 100.0 * fraction_read_;
     faults_.push_back({"", FaultKind::Corrupt, 0.0,
@@ -459,11 +479,11 @@ void SeparateReader::throwIfKilled(const End& end) const {
                             "Close other programs, and try again");
 }
 
-SeparateReader::End SeparateReader::howItEnded() {
-  constexpr int kRounds = 100;  // of 10 ms: a process that has closed its socket exits soon
+SeparateReader::End SeparateReader::howItEnded(bool silent) {
+  const int rounds = silent ? 1 : 100;  // of 10 ms: a process that has closed its socket exits soon
   int status = 0;
   pid_t ended = 0;
-  for (int round = 0; process_ > 0 && ended == 0 && round < kRounds; ++round) {
+  for (int round = 0; process_ > 0 && ended == 0 && round < rounds; ++round) {
     ended = ::waitpid(process_, &status, WNOHANG);
     if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -471,6 +491,7 @@ SeparateReader::End SeparateReader::howItEnded() {
     ::kill(process_, SIGKILL);
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
+    if (!silent) return {End::Kind::Signal, "it closed the connection"};
     return {End::Kind::Silent, fmt::format("no answer for {:g} s", 1e-3 * longest_silence_ms)};
   }
   const bool known = process_ > 0 && ended == process_;

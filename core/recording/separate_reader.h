@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,20 @@ namespace evical {
 
 // The file descriptor of a server's socket.
 inline constexpr int kServerSocket = 3;
+
+// Ends waits of this thread for other processes when a stop is requested, while it exists: reads end as at the end of
+// the file, and opening throws Cancelled. Otherwise a process that hangs would delay the stop. A token without a source
+// changes nothing.
+class StopWaiting {
+ public:
+  explicit StopWaiting(std::stop_token stop);
+  ~StopWaiting();
+  StopWaiting(const StopWaiting&) = delete;
+  StopWaiting& operator=(const StopWaiting&) = delete;
+
+ private:
+  std::stop_token before_;
+};
 
 class SeparateReader : public RecordingReader {
  public:
@@ -49,11 +64,11 @@ class SeparateReader : public RecordingReader {
   void takeState(std::string_view message);
   void takePacket(std::string_view message, Packet& packet);
   struct End {
-    // Killed: by another process. Silent: no answer, and killed by this process.
+    // Killed: by another process. Silent: no answer in time, and killed by this process.
     enum class Kind { Exit, Signal, Killed, Silent } kind;
     std::string reason;
   };
-  End howItEnded();
+  End howItEnded(bool silent);
   void throwIfKilled(const End& end) const;
 
   std::filesystem::path path_;

@@ -5,6 +5,7 @@
 #include "core/base/time.h"
 #include "core/pipeline/pass/event_intake.h"
 #include "core/pipeline/pass/session_recording.h"
+#include "core/recording/separate_reader.h"
 
 #include <algorithm>
 #include <chrono>
@@ -225,6 +226,7 @@ void EventWindowReader::readAll(const std::stop_token& stop) {
     publish();
     told = std::chrono::steady_clock::now();
   }
+  if (stop.stop_requested()) return;
   pass.describe(state_.overview);
   state_.overview.fraction_read = 1.0;
   state_.overview.finished = true;
@@ -232,8 +234,11 @@ void EventWindowReader::readAll(const std::stop_token& stop) {
 }
 
 void EventWindowReader::read(const std::stop_token& stop) {
+  const StopWaiting until_stop(stop);
   try {
     readAll(stop);
+    return;
+  } catch (const Cancelled&) {
     return;
   } catch (const std::exception& problem) {
     state_.overview.error = problem.what();

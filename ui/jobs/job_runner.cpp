@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
 #include "core/base/stopwatch.h"
+#include "core/recording/separate_reader.h"
 
 #include <QMetaObject>
 
@@ -163,6 +164,7 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
   thread_ =
       std::jthread([this, reports = reports_, stop = stop_.get_token(), job = std::move(work)]() mutable {
         makeThreadModest();
+        const StopWaiting until_stop(stop);
         Ending ending = runToEnd(job, RunContext{*reports, stop});
         job = nullptr;  // its data are released before its end is signalled
         returnFreeMemory();

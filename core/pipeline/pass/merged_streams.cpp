@@ -4,6 +4,7 @@
 #include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
+#include "core/recording/separate_reader.h"
 
 #include <fmt/format.h>
 
@@ -170,6 +171,7 @@ bool MergedStreams::read(SensorPacket& packet) {
 
 // Reads the next packet that is not empty.
 void MergedStreams::advance(File& file) {
+  const StopWaiting until_stop(stop_);
   while (!file.read_out) {
     file.read_out = stop_.stop_requested() || !file.reader->read(file.raw);
     if (file.read_out) break;

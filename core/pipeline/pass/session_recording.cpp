@@ -4,6 +4,7 @@
 #include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frames/gray_image.h"
+#include "core/recording/separate_reader.h"
 
 #include <fmt/format.h>
 
@@ -42,7 +43,8 @@ void unmirrorFrame(Mirroring mirroring, Frame& frame) {
 }  // namespace
 
 SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
-    : session_(session), streams_(std::move(stop)) {
+    : session_(session), streams_(stop) {
+  const StopWaiting until_stop(std::move(stop));
   for (const SessionCamera& camera : session.cameras)
     addSensor("cameras", camera, camera.stream, kCameraStreams);
   for (const SessionImu& imu : session.imus) addSensor("imus", imu, imu.joinedStream(), kImuStreams);

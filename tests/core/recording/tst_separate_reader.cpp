@@ -6,8 +6,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <QElapsedTimer>
+
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <stop_token>
+#include <thread>
 #include <utility>
 
 namespace {
@@ -78,6 +83,8 @@ class TestSeparateReader : public QObject {
   void reader_thatFalls_endsTheRecording();
   void fallAtOpening_isBadInput();
   void reader_thatHangs_isEnded();
+  void stop_endsTheWaitForAReaderThatHangs();
+  void closedConnection_isNoSilence();
   void serverThatCannotStart_isSaid();
   void error_isThrownHere();
   void reader_thatIsNotReadToItsEnd_leavesNoProcess();
@@ -152,6 +159,45 @@ void TestSeparateReader::reader_thatHangs_isEnded() {
   SeparateReader::longest_silence_ms = usual_ms;
   QVERIFY2(reader.faults().back().text.find("no answer for 0.2 s") != std::string::npos,
            reader.faults().back().text.c_str());
+  QVERIFY(::waitpid(-1, nullptr, WNOHANG) < 0);  // no process is left
+}
+
+// A window that is closed, or Ctrl-C, need not wait for 30 s.
+void TestSeparateReader::stop_endsTheWaitForAReaderThatHangs() {
+  std::stop_source stop;
+  const auto hang = [] {
+    for (;;) ::pause();
+  };
+  SeparateReader reader("file.h5", [&] { return std::make_unique<CountingReader>(10, 2, hang); });
+  std::jthread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    stop.request_stop();
+  });
+  QElapsedTimer timer;
+  timer.start();
+  {
+    const StopWaiting until_stop(stop.get_token());
+    QCOMPARE(readAll(reader).size(), std::size_t{2});
+    QVERIFY(reader.faults().empty());
+    QVERIFY_THROWS_EXCEPTION(Cancelled, SeparateReader("other.h5", [&]() -> std::unique_ptr<RecordingReader> {
+                               hang();
+                               return nullptr;
+                             }));
+  }
+  QVERIFY2(timer.elapsed() < 10'000, qPrintable(QString::number(timer.elapsed())));
+}
+
+void TestSeparateReader::closedConnection_isNoSilence() {
+  SeparateReader reader("file.h5", [] {
+    return std::make_unique<CountingReader>(10, 4, [] {
+      for (int descriptor = 3; descriptor < 1024; ++descriptor) ::close(descriptor);
+      for (;;) ::pause();
+    });
+  });
+  QCOMPARE(readAll(reader).size(), std::size_t{4});
+  const std::string& text = reader.faults().back().text;
+  QVERIFY2(text.find("it closed the connection") != std::string::npos, text.c_str());
+  QVERIFY2(text.find("no answer") == std::string::npos, text.c_str());
   QVERIFY(::waitpid(-1, nullptr, WNOHANG) < 0);  // no process is left
 }
 
