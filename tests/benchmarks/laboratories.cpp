@@ -12,6 +12,7 @@
 #include "tests/benchmarks/laboratory_faults.h"
 #include "tests/benchmarks/scenario_run.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,7 @@
 namespace evical::benchmarks::laboratories {
 namespace {
 
+// Draws follow each other in braces or in separate statements: the order of function arguments depends on the compiler.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : random_(seed) {}
@@ -41,7 +43,7 @@ class Dice {
   bool chance(double probability) { return between(0.0, 1.0) < probability; }
   Eigen::Vector3d normals(double sigma) { return {normal(sigma), normal(sigma), normal(sigma)}; }
   Eigen::Quaterniond anyRotation() {
-    return Eigen::Quaterniond(normal(1.0), normal(1.0), normal(1.0), normal(1.0)).normalized();
+    return Eigen::Quaterniond{normal(1.0), normal(1.0), normal(1.0), normal(1.0)}.normalized();
   }
   template <class T, std::size_t N>
   const T& oneOf(const std::array<T, N>& all) {
@@ -141,7 +143,6 @@ void drawMotion(Dice& dice, Scenario& scenario) {
   MotionModel& motion = scenario.motion;
   motion.distance_m = camera.focal_length_px.x() / fill * std::max(least / low, most / wide);
   motion.distance_amplitude_m = dice.between(0.08, 0.14) * motion.distance_m;
-  // In an order that does not depend on the compiler.
   const double z_deg = dice.between(12.0, 24.0), y_deg = dice.between(14.0, 24.0),
                x_deg = dice.between(14.0, 24.0);
   motion.angle_amplitude_rad = kRadPerDeg * Eigen::Vector3d(x_deg, y_deg, z_deg);
@@ -185,7 +186,7 @@ Scenario drawLaboratory(int number, bool exact) {
   scenario.name = fmt::format("laboratory{}", number);
   scenario.seed = seed;
   scenario.duration_s = dice.between(12.0, 24.0);
-  const Eigen::Vector3d tilted = Eigen::Vector3d(dice.normal(0.05), 1.0, dice.normal(0.05)).normalized();
+  const Eigen::Vector3d tilted = Eigen::Vector3d{dice.normal(0.05), 1.0, dice.normal(0.05)}.normalized();
   scenario.gravity_in_world_m_s2 = 9.81 * tilted;
   drawBoard(dice, scenario);
   drawCamera(dice, scenario);
@@ -214,16 +215,37 @@ struct Arguments {
     app.flag("--exact", exact, "Sessions without errors");
     app.flag("--quantities", quantities, "Also the error and the sigma of every quantity");
     app.flag("--common", common, "Also the errors that all circles of a window have in common, by speed");
-    app.option("--detections", detections, "Folder of the boards that an earlier run has detected");
+    app.option("--detections", detections,
+               "Folder for detected boards, which later runs with the same detector use again");
     app.option("--variant", variants, "Options of a further run: option=value,...").repeated();
   }
 };
 
-// File of the detections that an earlier run has kept; empty if none are to be kept.
+// Fingerprint (FNV-1a) of the sources on which detections depend: simulation, front end, and the draws above.
+std::uint64_t detectorFingerprint() {
+  std::vector<std::filesystem::path> files = {test::sourcePath("tests/benchmarks/laboratories.cpp")};
+  for (const char* folder : {"core/frontend", "core/geometry", "core/numerics", "core/synthetic"})
+    for (const auto& entry : std::filesystem::directory_iterator(test::sourcePath(folder)))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::uint64_t fingerprint = 14'695'981'039'346'656'037U;
+  for (const std::filesystem::path& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    for (char byte = 0; stream.get(byte);)
+      fingerprint = (fingerprint ^ static_cast<unsigned char>(byte)) * 1'099'511'628'211U;
+  }
+  return fingerprint;
+}
+
+// File of the detections that an earlier run has kept; empty if none are to be kept. Its name has everything on which
+// they depend.
 std::filesystem::path fileOf(const Scenario& scenario, const Arguments& arguments) {
   if (arguments.detections.empty()) return {};
+  static const std::uint64_t detector = detectorFingerprint();
+  const std::string ideal =
+      arguments.ideal_px > 0.0 ? fmt::format("_ideal{}px", arguments.ideal_px) : std::string();
   return std::filesystem::path(arguments.detections) /
-         fmt::format("{}{}.data", scenario.name, arguments.exact ? "_exact" : "");
+         fmt::format("{}{}{}_{:016x}.data", scenario.name, arguments.exact ? "_exact" : "", ideal, detector);
 }
 
 DetectionResult detectionsOf(const Scenario& scenario, double ideal_px) {

@@ -60,8 +60,8 @@ std::vector<Event> manyEvents(Resolution resolution_px, int count) {
   std::uniform_int_distribution<int> x(0, resolution_px.width_px - 1), y(0, resolution_px.height_px - 1);
   std::vector<Event> events;
   for (int k = 0; k < count; ++k) {
-    events.push_back(eventAt(static_cast<std::uint16_t>(x(random)), static_cast<std::uint16_t>(y(random)),
-                             0.05 * (1.0 - k / static_cast<double>(count)), k % 2 == 0));
+    const auto x_px = static_cast<std::uint16_t>(x(random)), y_px = static_cast<std::uint16_t>(y(random));
+    events.push_back(eventAt(x_px, y_px, 0.05 * (1.0 - k / static_cast<double>(count)), k % 2 == 0));
   }
   return events;
 }

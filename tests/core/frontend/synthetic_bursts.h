@@ -69,7 +69,11 @@ inline void addRandomBursts(int count, double half_window_s, std::mt19937& rando
                             std::vector<EdgeCrossing>& bursts) {
   std::uniform_int_distribution<int> x(0, kDavis_px.width_px - 1), y(0, kDavis_px.height_px - 1), bit(0, 1);
   std::uniform_real_distribution<double> time(-half_window_s, half_window_s);
-  for (int i = 0; i < count; ++i) bursts.push_back(burstAt(x(random), y(random), time(random), bit(random)));
+  for (int i = 0; i < count; ++i) {
+    const int x_px = x(random), y_px = y(random);
+    const double time_s = time(random);
+    bursts.push_back(burstAt(x_px, y_px, time_s, bit(random) != 0));
+  }
 }
 
 // A window over the DAVIS346's pixels whose middle is time 0.

@@ -135,7 +135,8 @@ std::vector<Event> randomEvents(int count, std::mt19937& random) {
   std::vector<Event> events;
   double time_ns = 0.0;
   for (int i = 0; i < count; ++i) {
-    time_ns += wait(random) * (bit(random) == 0 ? 30.0 : 1.0);
+    const double wait_ns = wait(random);
+    time_ns += wait_ns * (bit(random) == 0 ? 30.0 : 1.0);
     events.push_back({static_cast<std::int64_t>(time_ns), static_cast<std::uint16_t>(x(random)),
                       static_cast<std::uint16_t>(y(random)), bit(random) < 8});
   }

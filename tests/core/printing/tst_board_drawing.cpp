@@ -166,7 +166,7 @@ void TestBoardDrawing::squares_areThoseThatFindersLookFor() {
   std::uniform_real_distribution<double> beside(-0.06, 0.06 + printed.board.extent_m().maxCoeff());
   int dark = 0;
   for (int k = 0; k < 20000; ++k) {
-    const Eigen::Vector2d at(beside(random), beside(random));
+    const Eigen::Vector2d at{beside(random), beside(random)};
     bool bright = true;
     for (const PaintedBox& box : boxes) {
       const Eigen::Vector2d inside = at - box.corner_m;
