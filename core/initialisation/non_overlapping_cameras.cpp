@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace evical {
 namespace {
@@ -57,28 +58,35 @@ std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s
          std::lower_bound(poses.begin(), poses.end(), begin_s, earlier);
 }
 
-Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<MovingPose>& camera,
+// In order of time on the reference's clock, each change from the views of one camera to those of the other is a gap.
+Bridges bridges(const std::vector<MovingPose>& reference_views, const std::vector<MovingPose>& camera_views,
                 double time_offset_s, double longest_s) {
   constexpr std::size_t kMost = 400;  // limit for cameras that overlap: the first are sufficient
   Bridges found;
-  const auto add = [&](const MovingPose& one, const MovingPose& other) {
-    const double half_s = 0.5 * (other.time_s + time_offset_s - one.time_s);
-    if (2.0 * std::abs(half_s) > longest_s || found.reference_from_camera.size() >= kMost) return;
-    found.reference_from_camera.push_back(inverse(one.after(half_s)) * other.after(-half_s));
-    const double middle_s = one.time_s + half_s, theirs_s = middle_s - time_offset_s;
-    const auto before = viewsBetween(reference, middle_s - longest_s, middle_s) -
-                        viewsBetween(camera, theirs_s - longest_s, theirs_s),
-               after = viewsBetween(reference, middle_s, middle_s + longest_s) -
-                       viewsBetween(camera, theirs_s, theirs_s + longest_s);
+  const auto add = [&](const MovingPose& of_reference, const MovingPose& of_camera) {
+    const double half_gap_s = 0.5 * (of_camera.time_s + time_offset_s - of_reference.time_s);
+    if (2.0 * std::abs(half_gap_s) > longest_s || found.reference_from_camera.size() >= kMost) return;
+    found.reference_from_camera.push_back(inverse(of_reference.after(half_gap_s)) *
+                                          of_camera.after(-half_gap_s));
+    const double middle_s = of_reference.time_s + half_gap_s, camera_middle_s = middle_s - time_offset_s;
+    const auto before = viewsBetween(reference_views, middle_s - longest_s, middle_s) -
+                        viewsBetween(camera_views, camera_middle_s - longest_s, camera_middle_s),
+               after = viewsBetween(reference_views, middle_s, middle_s + longest_s) -
+                       viewsBetween(camera_views, camera_middle_s, camera_middle_s + longest_s);
     found.to_camera += before > 0 && after < 0;
     found.to_reference += before < 0 && after > 0;
   };
-  for (std::size_t i = 0, k = 0; i < reference.size(); ++i) {
-    const std::size_t before = k;
-    while (k < camera.size() && camera[k].time_s + time_offset_s < reference[i].time_s) ++k;
-    if (k == before) continue;
-    if (i > 0) add(reference[i - 1], camera[before]);
-    add(reference[i], camera[k - 1]);
+  auto reference = reference_views.begin(), camera = camera_views.begin();  // the next of each
+  bool was_of_camera = false;
+  while (reference != reference_views.end() || camera != camera_views.end()) {
+    const bool is_of_camera =
+        reference == reference_views.end() ||
+        (camera != camera_views.end() && camera->time_s + time_offset_s < reference->time_s);
+    if (is_of_camera && !was_of_camera && reference != reference_views.begin())
+      add(*std::prev(reference), *camera);
+    if (!is_of_camera && was_of_camera) add(*reference, *std::prev(camera));
+    ++(is_of_camera ? camera : reference);
+    was_of_camera = is_of_camera;
   }
   return found;
 }
@@ -109,14 +117,14 @@ std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& refere
                                            const InitialisationOptions& options, const RunContext& context) {
   constexpr double kStep_s = 0.01;
   if (reference.size() < 2 || camera.size() < 2) return std::nullopt;
-  const std::vector<MovingPose> one = movingPoses(reference), other = movingPoses(camera);
+  const std::vector<MovingPose> reference_views = movingPoses(reference), camera_views = movingPoses(camera);
   std::optional<BridgedCamera> best;
   const double centre_s = time_offset ? time_offset->value : 0.0;
   const int steps = isGiven(time_offset) ? 0 : static_cast<int>(options.time_offset_search_s / kStep_s);
   for (int step = -steps; step <= steps; ++step) {
     context.throwIfStopped();
     const double offset_s = centre_s + step * kStep_s;
-    const Bridges each = bridges(one, other, offset_s, options.longest_bridge_s);
+    const Bridges each = bridges(reference_views, camera_views, offset_s, options.longest_bridge_s);
     if (!each.bothWays(options.least_bridges)) continue;
     const MeanPose found = agreement(each.reference_from_camera);
     if (found.agreeing < options.least_bridge_agreement) continue;

@@ -1,6 +1,6 @@
 // Relative pose of two cameras that see the board alternately, without an IMU for the motion in between: when
 // one loses the board and the other detects it, both are extrapolated to the middle of the gap at constant
-// speed.
+// speed (docs/maths.md, 10.5).
 #pragma once
 
 #include "core/data/calibration_priors.h"

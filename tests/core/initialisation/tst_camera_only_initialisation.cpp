@@ -1,6 +1,7 @@
 #include "core/base/error.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/initialise.h"
+#include "core/initialisation/non_overlapping_cameras.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
@@ -135,6 +136,32 @@ class TestCamerasAlone : public QObject {
     } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains("at the same time"), error.what());
     }
+  }
+
+  // Each change from the views of one camera to those of the other is a gap, also the first and the last one.
+  void everyGap_isABridge_data() {
+    QTest::addColumn<QString>("turns");  // of reference and camera, a quarter of a second each
+    QTest::newRow("camera last") << "rcrc";
+    QTest::newRow("reference last") << "crcr";
+    QTest::newRow("many") << "rcrcrcrcrc";
+  }
+  void everyGap_isABridge() {
+    QFETCH(const QString, turns);
+    std::vector<CameraPose> reference, camera;
+    for (qsizetype turn = 0; turn < turns.size(); ++turn)
+      for (int k = 0; k < 10; ++k) {
+        CameraPose pose;
+        pose.time_s = 0.28 * static_cast<double>(turn) + 0.02 * k;
+        pose.world_from_camera.rotation = Eigen::AngleAxisd(0.5 * pose.time_s, Eigen::Vector3d::UnitZ());
+        pose.world_from_camera.translation_m = {0.1 * pose.time_s, 0.0, 1.0};
+        (turns[turn] == 'r' ? reference : camera).push_back(pose);
+      }
+    InitialisationOptions options;
+    options.least_bridges = 2;
+    const auto bridged = bridgeCameras(reference, camera, KnownNumber{0.0}, options, {});
+    QVERIFY(bridged.has_value());
+    QCOMPARE(bridged->bridges, static_cast<int>(turns.size()) - 1);
+    QVERIFY(bridged->reference_from_camera.mean.translation_m.norm() < 0.005);
   }
 
   void ambiguousPoses_followTheirNeighbours() {
