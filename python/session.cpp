@@ -18,13 +18,24 @@ namespace {
 
 namespace py = pybind11;
 
-// The value of an option as bool, int, float or str.
+// True if the option refuses fractions; its value may be whole by chance.
+bool isCount(const OptionRow& row) {
+  if (row.value.find_first_not_of("-0123456789") != std::string::npos) return false;
+  try {
+    CalibrationOptions other;
+    setOption(other, row.name, row.value + ".0");
+    return false;
+  } catch (const CalibrationError&) {
+    return true;
+  }
+}
+
+// The value of an option as bool, int, float or str: the same type for each of its values.
 py::object valueOf(const OptionRow& row) {
   if (row.choices == std::vector<std::string>{"false", "true"}) return py::bool_(row.value == "true");
   if (!row.choices.empty()) return py::str(row.value);
   const py::object text = py::str(row.value);
-  const bool whole = row.value.find_first_not_of("-0123456789") == std::string::npos;
-  return whole ? py::object(py::int_(text)) : py::object(py::float_(text));
+  return isCount(row) ? py::object(py::int_(text)) : py::object(py::float_(text));
 }
 
 py::object optionsOf(const Session& session) {

@@ -136,3 +136,16 @@ def test_log_lines_that_are_not_utf8_do_not_end_anything(tmp_path, caplog):
     guessed = evical.Session.guess(os.fsdecode(events))
     assert list(guessed.cameras)
     assert caplog.records
+
+
+def test_an_option_has_the_same_type_for_each_value(session):
+    for name, values in {"detection.window_travel_px": (3, 2.5), "grid.least_partial": (1, 0.5),
+                         "initialisation.gravity_m_s2": (10, 9.81)}.items():
+        for value in values:
+            session.set(name, value)
+            assert isinstance(session.options[name], float) and session.options[name] == value
+    for value in (7, 9):
+        session.set("grid.least_circles", value)
+        assert type(session.options["grid.least_circles"]) is int
+    assert type(session.options["report.split_half_check"]) is bool
+    assert type(session.options["intrinsics.model"]) is str
