@@ -1,8 +1,17 @@
 #include "core/export/export_text.h"
 
+#include "core/base/error.h"
+
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace evical {
+
+void throwNotFinite(const std::string& place) {
+  throw badInput(place, "has values that are not finite (NaN or infinity)", "Calibrate again");
+}
+
 namespace {
 
 std::vector<double> elements(const Eigen::MatrixXd& matrix) {
@@ -15,6 +24,7 @@ std::vector<double> elements(const Eigen::MatrixXd& matrix) {
 }  // namespace
 
 std::string real(double value) {
+  if (!std::isfinite(value)) throwNotFinite("result");
   std::string text = fmt::format("{}", value);
   if (text.find('.') == std::string::npos) {
     const std::size_t exponent = text.find('e');

@@ -9,8 +9,12 @@
 namespace evical {
 
 // Shortest text that reads back as the same number, always with a decimal point: YAML 1.1 reads 1e-05 as
-// a string, and OpenCV reads 0 as an integer.
+// a string, and OpenCV reads 0 as an integer. Throws as throwNotFinite: other programs' parsers differ in what they
+// accept as NaN or infinity.
 std::string real(double value);
+
+// Throws CalibrationError (BadInput).
+[[noreturn]] void throwNotFinite(const std::string& place);
 
 std::string realList(const std::vector<double>& values);  // "1.0, 2.0"
 std::string realList(const Eigen::VectorXd& values);

@@ -29,10 +29,6 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
   return unique;
 }
 
-[[noreturn]] void throwNotFinite(const std::string& place) {
-  throw badInput(place, "has values that are not finite (NaN or infinity)", "Calibrate again");
-}
-
 // Checks all numbers of a sensor that exports may contain.
 template <class Rows, class State>
 void checkNumbers(const std::string& place, const Rows& rows, const State& state) {

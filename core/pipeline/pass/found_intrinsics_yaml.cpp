@@ -73,7 +73,8 @@ std::string foundIntrinsicsYaml(const IntrinsicsResult& found, int indent) {
                                  kStatuses.at(static_cast<std::size_t>(found.status)), yamlText(found.reason),
                                  found.advice.empty() ? " []" : "");
   for (const std::string& advice : found.advice) text += fmt::format("{}  - {}\n", blanks, yamlText(advice));
-  for (const NumberKey& row : kNumbers) text += fmt::format("{}{}: {}\n", blanks, row.key, found.*row.number);
+  for (const NumberKey& row : kNumbers)
+    text += fmt::format("{}{}: {}\n", blanks, row.key, exactYaml(found.*row.number));
   for (const CountKey& row : kCounts) text += fmt::format("{}{}: {}\n", blanks, row.key, found.*row.count);
   text += blanks + imageYaml(found.image) + blanks + "covariance:\n";
   for (int row = 0; row < kIntrinsicsCount; ++row)

@@ -4,6 +4,8 @@
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
+#include <QRegularExpression>
+
 #include <algorithm>
 #include <limits>
 
@@ -149,6 +151,42 @@ class TestExportRefusals : public QObject {
     QCOMPARE(exported.refused.size(), 2U);
     QVERIFY(exported.refused[0].starts_with("kalibr: not exported: "));
     QVERIFY(exported.refused[1].starts_with("ros: not exported: "));
+  }
+
+  // No file has a number that is not finite: other programs read it as text, as 0, or not at all.
+  void numbersThatAreNotFinite_areNotWritten_data() {
+    QTest::addColumn<QString>("target");
+    QTest::addColumn<int>("number");
+    for (const ExportTarget& target : exportTargets())
+      for (int number = 0; number < 4; ++number)
+        QTest::addRow("%s, number %d", target.name, number) << target.name << number;
+  }
+  void numbersThatAreNotFinite_areNotWritten() {
+    QFETCH(const QString, target);
+    QFETCH(const int, number);
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
+                     kInfinity = std::numeric_limits<double>::infinity();
+    NamedResult result = rig({});
+    CalibrationResult& own = test::ownResult(result);
+    own.cameras.resize(own.state.cameras.size());
+    if (number == 0) result.imus[0].noise.gyroscope_density = kNaN;
+    if (number == 1) result.imus[0].rate_hz = kInfinity;
+    if (number == 2) own.cameras[0].reprojection_rms_px = kNaN;
+    if (number == 3) own.state.cameras[0].time_offset_at_s = -kInfinity;
+    ExportedFiles exported;
+    try {
+      exported = exportTo(result, target.toStdString());
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("not finite"), error.what());
+      return;
+    }
+    static const QRegularExpression kNumber(R"((?<![\w/])[-.]?(nan|inf)(\.0)?\b)",
+                                            QRegularExpression::CaseInsensitiveOption);
+    for (const FileContent& file : exported.files) {
+      if (file.path.extension() == ".npy" || file.path.extension() == ".h5") continue;
+      const QString text = QString::fromStdString(file.content);
+      QVERIFY2(!kNumber.match(text).hasMatch(), qPrintable(kNumber.match(text).captured()));
+    }
   }
 
   void everyTarget_saysWhoReadsIt() {
