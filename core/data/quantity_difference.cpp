@@ -108,7 +108,28 @@ void addSensors(const Rows& rows, std::vector<Uncertainty>& sums, const std::vec
   for (std::size_t i = 0; i < sums.size() && i < others.size(); ++i) addSigmas(rows, sums[i], others[i]);
 }
 
+// Of the only sensor of a kind; the reference keeps referring to it.
+void matchOnly(const char* kind, const std::vector<std::string>& names,
+               const std::vector<std::string>& others, std::vector<std::string>& renamed,
+               MatchedEstimate& matched) {
+  if (renamed.size() != 1 || names.size() != 1 || renamed[0] == names[0]) return;
+  const bool taken = std::find(others.begin(), others.end(), names[0]) != others.end();
+  if (taken) return;
+  matched.notes.push_back(
+      fmt::format("'{}' is compared with '{}': each is the only {}", names[0], renamed[0], kind));
+  if (matched.estimate.reference == renamed[0]) matched.estimate.reference = names[0];
+  renamed[0] = names[0];
+}
+
 }  // namespace
+
+MatchedEstimate matchedByPlace(const Estimate& a, Estimate b) {
+  MatchedEstimate matched{std::move(b), {}};
+  Estimate& estimate = matched.estimate;
+  matchOnly("camera", a.camera_names, estimate.imu_names, estimate.camera_names, matched);
+  matchOnly("IMU", a.imu_names, estimate.camera_names, estimate.imu_names, matched);
+  return matched;
+}
 
 std::size_t sensorIndex(const std::string& name, const std::vector<std::string>& names, const char* key) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -121,7 +142,7 @@ std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b)
   if (a.reference != b.reference)
     throw badInput("reference",
                    fmt::format("the result has '{}', the truth has '{}'", a.reference, b.reference),
-                   "Compare the result with the truth of the same recording");
+                   "Compare results of the same sensors; if only the names differ, rename the sensors");
   Differences differences;
   for (std::size_t i = 0; i < a.camera_names.size(); ++i) {
     const std::size_t j = sensorIndex(a.camera_names[i], b.camera_names, "cameras");

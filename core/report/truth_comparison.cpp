@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -40,8 +41,11 @@ Estimate estimateOf(const NamedResult& named) {
 }
 
 TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& truth) {
-  const Estimate estimate = estimateOf(result), actual = estimateOf(truth);
+  const Estimate estimate = estimateOf(result);
+  MatchedEstimate matched = matchedByPlace(estimate, estimateOf(truth));
+  const Estimate& actual = matched.estimate;
   TruthComparison comparison;
+  comparison.notes = std::move(matched.notes);
   comparison.quantities = difference(estimate, actual);
   for (std::size_t i = 0; i < estimate.cameras.size(); ++i) {
     const std::string& name = estimate.camera_names.at(i);
@@ -53,7 +57,9 @@ TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& t
 }
 
 std::string comparisonTable(const TruthComparison& comparison) {
-  std::string text = fmt::format("{:<40}{:>14}{:>14}{:>14}\n", "quantity", "error", "sigma", "error/sigma");
+  std::string text;
+  for (const std::string& note : comparison.notes) text += fmt::format("note: {}\n", note);
+  text += fmt::format("{:<40}{:>14}{:>14}{:>14}\n", "quantity", "error", "sigma", "error/sigma");
   for (const QuantityDifference& q : comparison.quantities) {
     const std::string name = q.unit.empty() ? q.name : fmt::format("{} [{}]", q.name, q.unit);
     text += q.sigma > 0.0 ? fmt::format("{:<40}{:>14.6f}{:>14.6f}{:>14.2f}\n", name, q.difference, q.sigma,

@@ -18,6 +18,7 @@ struct TruthComparison {
   std::vector<QuantityDifference> quantities;
   std::vector<CameraError> cameras;
   double gravity_direction_deg = 0.0;
+  std::vector<std::string> notes = {};  // sensors with different names that were compared
 
   double normalisedRms() const { return evical::normalisedRms(quantities); }
 };
@@ -25,7 +26,8 @@ struct TruthComparison {
 // Compared quantities of a result.
 Estimate estimateOf(const NamedResult& named);
 
-// Throws CalibrationError (BadInput) when the two name different sensors or references.
+// Compares sensors by name; the only camera and the only IMU of both, with any names. Throws CalibrationError
+// (BadInput) when the two name different sensors or references.
 TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& truth);
 
 std::string comparisonTable(const TruthComparison& comparison);

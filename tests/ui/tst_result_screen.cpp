@@ -175,8 +175,17 @@ class TestResultScreen : public QObject {
     screen.setReference(truth_, "truth.yaml");
     QCOMPARE(screen.findChild<QComboBox*>("against")->currentText(), QString("truth.yaml"));
     QVERIFY(!table->isColumnHidden(4));
+    // The only camera and the only IMU are compared, with any names.
     NamedResult other = truth_;
-    other.cameras = {{"right"}};
+    other.cameras.at(0).name = "right";
+    other.reference = other.imus.at(0).name = "other_imu";
+    screen.setReference(other, "other.yaml");
+    QVERIFY(!table->isColumnHidden(4));
+    const QString text = allTextForResultScreen(screen);
+    QVERIFY2(text.contains("compared with 'right'") && text.contains("compared with 'other_imu'"),
+             qPrintable(text));
+    other.imus.push_back({"second"});
+    evical::test::ownResult(other).state.imus.emplace_back();
     screen.setReference(other, "other.yaml");
     QVERIFY(table->isColumnHidden(4));
     QVERIFY(allTextForResultScreen(screen).contains("cannot be compared"));

@@ -175,7 +175,7 @@ QString tabbedText(const std::vector<ParameterGroup>& groups) {
   return text;
 }
 
-void compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other) {
+QStringList compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other) {
   const TruthComparison comparison = compareWithTruth(named, other);
   std::map<QString, double> differences = {{kGravityKey, comparison.gravity_direction_deg}};
   for (const QuantityDifference& quantity : comparison.quantities)
@@ -186,6 +186,9 @@ void compare(std::vector<ParameterGroup>& groups, const NamedResult& named, cons
       if (!row.key.isEmpty() && found != differences.end()) row.difference = found->second;
     }
   }
+  QStringList notes;
+  for (const std::string& note : comparison.notes) notes << QString::fromStdString(note);
+  return notes;
 }
 
 }  // namespace evical::ui

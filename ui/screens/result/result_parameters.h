@@ -40,7 +40,8 @@ std::vector<ParameterGroup> parameterGroups(const NamedResult& named);
 // per row. Names start with their group's title.
 QString tabbedText(const std::vector<ParameterGroup>& groups);
 
-// Fills in the differences. Throws CalibrationError if the sensors have different names.
-void compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other);
+// Fills in the differences, and returns notes on sensors with different names that were compared. Throws
+// CalibrationError if the two have different sensors.
+QStringList compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other);
 
 }  // namespace evical::ui

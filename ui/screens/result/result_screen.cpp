@@ -280,16 +280,19 @@ void ResultScreen::showParameters() {
   std::vector<ParameterGroup> groups = parameterGroups(*result_);
   const NamedResult* const other = compared();
   QString remark;
+  bool is_compared = other != nullptr;
   if (other != nullptr) {
     try {
-      compare(groups, *result_, *other);
+      const QStringList notes = compare(groups, *result_, *other);
+      if (!notes.isEmpty()) remark = sentence(notes.join("; "));
     } catch (const CalibrationError& error) {
+      is_compared = false;
       remark = tr("The results cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
     }
   }
   comparison_->setText(remark);
   comparison_->setVisible(!remark.isEmpty());
-  parameters_->setGroups(std::move(groups), other != nullptr && remark.isEmpty());
+  parameters_->setGroups(std::move(groups), is_compared);
 }
 
 void ResultScreen::showDetails() {

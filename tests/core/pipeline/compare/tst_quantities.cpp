@@ -1,4 +1,5 @@
 // Each row of core/data/quantity.h, through all code that iterates over them.
+#include "core/base/error.h"
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
 #include "core/geometry/so3.h"
@@ -194,6 +195,28 @@ class TestQuantities : public QObject {
       verify("far", row, row.value(a.imus[1]), row.sigma(a.uncertainty.imus[1]),
              row.sigma(b.uncertainty.imus[1]));
     });
+  }
+
+  // One camera or IMU each has the same place in any rig; of several, only the name identifies one.
+  void onlySensors_areComparedWithAnyNames() {
+    NamedResult result = filledResult(), truth = result;
+    truth.cameras.at(0).name = "davis";
+    const TruthComparison compared = compareWithTruth(result, truth);
+    QCOMPARE(compared.notes.size(), std::size_t{1});
+    QVERIFY2(comparisonTable(compared).find("'left' is compared with 'davis'") != std::string::npos,
+             comparisonTable(compared).c_str());
+    QCOMPARE(compareWithTruth(result, result).quantities.size(), compared.quantities.size());
+    QVERIFY(compareWithTruth(result, result).notes.empty());
+    truth.imus.at(1).name = "other";
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, compareWithTruth(result, truth));
+
+    // The only IMU is the reference as well.
+    NamedResult one = result;
+    one.imus.resize(1);
+    test::ownResult(one).state.imus.resize(1);
+    NamedResult renamed = one;
+    renamed.reference = renamed.imus.at(0).name = "davis_imu";
+    QCOMPARE(compareWithTruth(one, renamed).notes.size(), std::size_t{1});
   }
 
   // Only estimates have edge localisation biases: those of two estimates are compared, but not with a truth.
