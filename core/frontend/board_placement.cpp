@@ -127,14 +127,22 @@ std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_over
   if (board.type == BoardType::AsymmetricCircles)
     metres_per_step << board.spacing_m, board.spacing_m, -board.spacing_m, board.spacing_m;
   std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()}, onto_itself = shifts;
+  int reach = 0;  // of places from the origin: counts are in a table, since pairs of circles are many
+  for (const auto& [place, circle] : lattice)
+    reach = std::max({reach, std::abs(place.first), std::abs(place.second)});
+  const int side = 4 * reach + 1;
   for (const LatticeMap& turn : kLatticeTurns) {
-    std::map<LatticePlace, int> counts;
+    std::vector<int> counts(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
     for (const auto& [from, circle] : lattice) {
       const LatticePlace at = applied(turn, from);
-      for (const auto& [to, other] : lattice) ++counts[{to.first - at.first, to.second - at.second}];
+      for (const auto& [to, other] : lattice)
+        ++counts[static_cast<std::size_t>((to.first - at.first + 2 * reach) * side + to.second - at.second +
+                                          2 * reach)];
     }
-    for (const auto& [shift, count] : counts) {
-      if (count < least_overlap * board.pointCount()) continue;
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      const int count = counts[k], at = static_cast<int>(k);
+      const LatticePlace shift{at / side - 2 * reach, at % side - 2 * reach};
+      if (count == 0 || count < least_overlap * board.pointCount()) continue;
       if (turn == kLatticeTurns.front() && shift == LatticePlace{0, 0}) continue;
       Eigen::Matrix2d turned;
       turned << turn[0], turn[1], turn[2], turn[3];

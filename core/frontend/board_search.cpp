@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace evical {
 namespace {
@@ -55,14 +56,65 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   return Judged{*motion, measured, std::max(expected - measured, 0)};
 }
 
+// Placements on the same circles: the first one, and the motions of the board's plane from each of them to it.
+struct PlacementGroup {
+  const BoardPlacement* first = nullptr;
+  std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()};
+};
+
+// Motion of the board's plane from `other` to `first`, if `first` has all circles of `other`.
+std::optional<Eigen::Matrix3d> shiftBetween(const BoardPlacement& first, const BoardPlacement& other,
+                                            const Board& board) {
+  std::map<std::size_t, int> circle_of;
+  for (const auto& [circle, index] : first.circles) circle_of[index] = circle;
+  Eigen::Matrix2Xd from(2, static_cast<Eigen::Index>(other.circles.size())), to = from;
+  Eigen::Index column = 0;
+  for (const auto& [circle, index] : other.circles) {
+    const auto found = circle_of.find(index);
+    if (found == circle_of.end()) return std::nullopt;
+    from.col(column) = board.point_m(circle);
+    to.col(column++) = board.point_m(found->second);
+  }
+  const Eigen::Matrix3d shift = Eigen::umeyama(from, to, false);
+  constexpr double kSamePlace = 1e-3;  // of the spacing
+  const Eigen::Matrix2Xd residuals = (shift * from.colwise().homogeneous()).colwise().hnormalized() - to;
+  if (residuals.colwise().norm().maxCoeff() > kSamePlace * board.spacing_m) return std::nullopt;
+  return shift;
+}
+
+// If the given board is larger than the lattice, it has many placements there. A fit takes as long as a
+// tracked window, and is the same for all of them.
+std::vector<PlacementGroup> groupedByCircles(const std::vector<BoardPlacement>& placements,
+                                             const Board& board) {
+  std::vector<PlacementGroup> groups;
+  for (std::size_t k = 0; k < std::min(placements.size(), kMostPlacements); ++k) {
+    bool known = false;
+    for (PlacementGroup& group : groups) {
+      const auto shift = shiftBetween(*group.first, placements[k], board);
+      if (!shift) continue;
+      group.shifts.push_back(*shift);
+      known = true;
+      break;
+    }
+    if (!known) groups.push_back({&placements[k]});
+  }
+  return groups;
+}
+
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
                               const FrontEndOptions& options, BoardSearch& search) {
   std::optional<Judged> best;
-  for (std::size_t k = 0; k < std::min(search.placements.size(), kMostPlacements); ++k) {
-    const std::optional<Judged> judged =
-        judge(search.placements[k], window, scene, search.half_window_s, options);
-    if (judged && (!best || judged->value() > best->value())) best = judged;
-    if (best && best->measured == scene.board.pointCount()) break;
+  for (const PlacementGroup& group : groupedByCircles(search.placements, scene.board)) {
+    std::optional<Judged> judged = judge(*group.first, window, scene, search.half_window_s, options);
+    if (!judged) continue;
+    if (judged->measured < scene.board.pointCount() && group.shifts.size() > 1) {
+      const PlacementScore first =
+          rivalPlacements(judged->motion, group.shifts, window, scene, search.half_window_s, options.tracking)
+              .front();
+      judged = Judged{shifted(judged->motion, first.shift), first.measured, first.missing};
+    }
+    if (!best || judged->value() > best->value()) best = judged;
+    if (best->measured == scene.board.pointCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
   const int count = scene.board.pointCount();

@@ -1,6 +1,7 @@
 #include "core/frontend/board_search.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/test_program.h"
 
 namespace {
@@ -27,6 +28,7 @@ class TestBoardSearch : public QObject {
   void ended_isTheStageThatFailed_data();
   void ended_isTheStageThatFailed();
   void otherSource_isTriedWhereTheFirstFails();
+  void muchTooLargeBoard_takesNotMuchLonger();
   void windows_areNoLongerThanTheReach();
   void flowAround_seesWhatASearchSees();
 };
@@ -106,6 +108,25 @@ void TestBoardSearch::otherSource_isTriedWhereTheFirstFails() {
   QCOMPARE(both[1].ended, SearchStage::Done);
   options.detection.try_both = false;
   QCOMPARE(searchBoard(history(), 0, MovingBoard().scene(), options).size(), std::size_t{1});
+}
+
+// It has dozens of placements on the same circles, which must not be fitted one by one: a recording of 10 s took
+// minutes for its message.
+void TestBoardSearch::muchTooLargeBoard_takesNotMuchLonger() {
+  FrontEndOptions options;
+  const BoardScene given = MovingBoard().scene();
+  Board large = given.board;
+  large.cols = 25;
+  const BoardScene scene(large, kDavis_px, given.camera);
+  const auto searched_s = [&](const BoardScene& searched, bool found) {
+    const double begin_s = processCpu_s();
+    const std::vector<BoardSearch> searches = searchBoard(history(), 0, searched, options);
+    if (searches.back().motion.has_value() != found) return -1.0;
+    return (processCpu_s() - begin_s) / static_cast<double>(searches.size());
+  };
+  const double right_s = searched_s(given, true), wrong_s = searched_s(scene, false);
+  QVERIFY(right_s > 0.0 && wrong_s > 0.0);
+  QVERIFY2(wrong_s < 12.0 * right_s, qPrintable(QString("%1 s, %2 s").arg(right_s).arg(wrong_s)));
 }
 
 // If hardly anything moves, edges count as the slowest possible ones.
