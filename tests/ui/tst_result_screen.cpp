@@ -5,6 +5,7 @@
 #include "core/pipeline/runs/result_files.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/forms/repair_button.h"
 #include "ui/screens/result/correlation_view.h"
@@ -222,6 +223,39 @@ class TestResultScreen : public QObject {
     QTest::mouseClick(&view, Qt::LeftButton, {}, red);
     QVERIFY(view.pinnedText().isEmpty());
     QCOMPARE(view.grab().toImage(), picture);
+  }
+
+  // 210 quantities with 70 names, as of a rig with four cameras and two IMUs.
+  void correlation_ofALargeRig_isPaintedAtOnce() {
+    CorrelationView view;
+    view.resize(700, 700);
+    NamedResult named;
+    UncertaintyReport& report = evical::test::ownResult(named).uncertainty;
+    constexpr int kCameras = 35;
+    for (int k = 0; k < kCameras; ++k) {
+      named.cameras.push_back({"camera_" + std::to_string(k)});
+      for (const QuantityId id : {QuantityId::Rotation, QuantityId::Translation})
+        for (std::size_t part = 0; part < 3; ++part)
+          report.columns.push_back({QuantityOwner::Camera, static_cast<std::size_t>(k), id, part});
+    }
+    const auto count = static_cast<Eigen::Index>(report.columns.size());
+    report.correlation = Eigen::MatrixXd::Constant(count, count, 0.5);
+    view.setResult(named);
+    view.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&view));
+    const auto paint_ms = [&](const auto& act) {
+      const evical::ui::test::ComputedTime since;
+      act();
+      QCoreApplication::sendPostedEvents();
+      QCoreApplication::processEvents();
+      return since.elapsed_ms();
+    };
+    const double whole_ms = paint_ms([&] { view.repaint(); });
+    QVERIFY2(whole_ms < 100.0 * evical::ui::test::slowness(),
+             qPrintable(QString("%1 ms for all").arg(whole_ms)));
+    const double cell_ms = paint_ms([&] { QTest::mouseMove(&view, view.cellMiddle(100, 50)); });
+    QVERIFY2(cell_ms < 30.0 * evical::ui::test::slowness(),
+             qPrintable(QString("%1 ms for a cell").arg(cell_ms)));
   }
 
   void observability_isSaidInWords() {

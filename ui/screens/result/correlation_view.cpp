@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace evical::ui {
@@ -50,6 +51,7 @@ void CorrelationView::setResult(const NamedResult& result) {
   }
   hovered_.reset();
   pinned_.reset();
+  measureLabels();
   setAccessibleDescription(strongestPairs(3).join("; "));
   update();
 }
@@ -67,12 +69,12 @@ QFont CorrelationView::labelFont() const {
   return small;
 }
 
-double CorrelationView::longestLabel_px() const {
+// Kept, since each painted cell needs it: measuring texts takes longer than painting them.
+void CorrelationView::measureLabels() {
   const QFontMetricsF metrics(labelFont());
-  double longest_px = 0.0;
+  longest_label_px_ = 0.0;
   for (const Group& group : groups_)
-    longest_px = std::max(longest_px, metrics.horizontalAdvance(group.label));
-  return longest_px + 8.0;
+    longest_label_px_ = std::max(longest_label_px_, metrics.horizontalAdvance(group.label) + 8.0);
 }
 
 double CorrelationView::cellSize_px() const {
@@ -84,8 +86,8 @@ double CorrelationView::cellSize_px() const {
 // Names are left of the rows and, vertical, above the columns.
 QPointF CorrelationView::origin() const {
   constexpr double kSideShare = 0.36, kTopShare = 0.3;
-  return {std::min(longestLabel_px(), kSideShare * width()),
-          std::min(longestLabel_px(), kTopShare * height())};
+  return {std::min(longest_label_px_, kSideShare * width()),
+          std::min(longest_label_px_, kTopShare * height())};
 }
 
 QPoint CorrelationView::cellMiddle(Eigen::Index row, Eigen::Index col) const {
@@ -93,39 +95,51 @@ QPoint CorrelationView::cellMiddle(Eigen::Index row, Eigen::Index col) const {
   return (origin() + cellSize_px() * inside).toPoint();
 }
 
-void CorrelationView::paintEvent(QPaintEvent*) {
+void CorrelationView::paintEvent(QPaintEvent* event) {
   QPainter painter(this);
   if (correlation_.size() == 0) {
     painter.setPen(theme().faint_text);
     painter.drawText(rect(), Qt::AlignCenter, tr("No correlations yet."));
     return;
   }
-  paintCells(painter);
+  paintCells(painter, event->rect());
   paintLabels(painter);
   paintScale(painter);
   if (pinned_) paintPinned(painter);
 }
 
-void CorrelationView::paintCells(QPainter& painter) const {
+QRectF CorrelationView::square(const Cell& cell) const {
   const double cell_px = cellSize_px();
-  const auto square = [&](Eigen::Index row, Eigen::Index col) {
-    return QRectF(origin() + cell_px * QPointF(static_cast<double>(col), static_cast<double>(row)),
-                  QSizeF(cell_px, cell_px));
+  return {origin() + cell_px * QPointF(static_cast<double>(cell.second), static_cast<double>(cell.first)),
+          QSizeF(cell_px, cell_px)};
+}
+
+void CorrelationView::paintCells(QPainter& painter, const QRectF& dirty) const {
+  const double cell_px = cellSize_px();
+  const QPointF corner = origin();
+  const auto from = [&](double at_px) {
+    const auto most = static_cast<double>(correlation_.rows());
+    return static_cast<Eigen::Index>(std::clamp(std::floor(at_px / cell_px), 0.0, most));
   };
-  for (Eigen::Index row = 0; row < correlation_.rows(); ++row)
-    for (Eigen::Index col = 0; col < correlation_.cols(); ++col)
-      painter.fillRect(square(row, col), colourOf(correlation_(row, col)));
+  const Eigen::Index row_end = std::min(correlation_.rows(), from(dirty.bottom() - corner.y()) + 1);
+  const Eigen::Index col_end = std::min(correlation_.cols(), from(dirty.right() - corner.x()) + 1);
+  for (Eigen::Index row = from(dirty.top() - corner.y()); row < row_end; ++row)
+    for (Eigen::Index col = from(dirty.left() - corner.x()); col < col_end; ++col) {
+      const QPointF at(static_cast<double>(col), static_cast<double>(row));
+      painter.fillRect(QRectF(corner + cell_px * at, QSizeF(cell_px, cell_px)),
+                       colourOf(correlation_(row, col)));
+    }
   painter.setPen(theme().grid_line);
   const double side_px = cell_px * static_cast<double>(correlation_.rows());
-  painter.drawRect(QRectF(origin(), QSizeF(side_px, side_px)));
+  painter.drawRect(QRectF(corner, QSizeF(side_px, side_px)));
   for (const Group& group : groups_) {
     const double at_px = cell_px * static_cast<double>(group.begin);
-    painter.drawLine(origin() + QPointF(0.0, at_px), origin() + QPointF(side_px, at_px));
-    painter.drawLine(origin() + QPointF(at_px, 0.0), origin() + QPointF(at_px, side_px));
+    painter.drawLine(corner + QPointF(0.0, at_px), corner + QPointF(side_px, at_px));
+    painter.drawLine(corner + QPointF(at_px, 0.0), corner + QPointF(at_px, side_px));
   }
   painter.setPen(QPen(theme().text, 1.5));
   for (const std::optional<Cell>& cell : {hovered_, pinned_})
-    if (cell) painter.drawRect(square(cell->first, cell->second));
+    if (cell) painter.drawRect(square(*cell));
 }
 
 // Text of the pinned cell in a box below it; above it if there is no space.
@@ -238,10 +252,17 @@ bool CorrelationView::event(QEvent* event) {
 }
 
 void CorrelationView::mouseMoveEvent(QMouseEvent* event) {
-  const std::optional<Cell> cell = cellAt(event->position());
+  hover(cellAt(event->position()));
+}
+
+// Repaints only the two cells: the whole matrix takes longer than the mouse from cell to cell.
+void CorrelationView::hover(const std::optional<Cell>& cell) {
   if (cell == hovered_) return;
-  hovered_ = cell;
-  update();
+  constexpr int kOutline_px = 2;
+  const std::optional<Cell> before = std::exchange(hovered_, cell);
+  for (const std::optional<Cell>& changed : {before, cell})
+    if (changed)
+      update(square(*changed).toAlignedRect().adjusted(-kOutline_px, -kOutline_px, kOutline_px, kOutline_px));
 }
 
 void CorrelationView::mousePressEvent(QMouseEvent* event) {
@@ -252,8 +273,12 @@ void CorrelationView::mousePressEvent(QMouseEvent* event) {
 }
 
 void CorrelationView::leaveEvent(QEvent*) {
-  hovered_.reset();
-  update();
+  hover(std::nullopt);
+}
+
+void CorrelationView::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) measureLabels();
 }
 
 QString CorrelationView::csv() const {

@@ -40,6 +40,7 @@ class CorrelationView : public QWidget {
   void mouseMoveEvent(QMouseEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void leaveEvent(QEvent* event) override;
+  void changeEvent(QEvent* event) override;
   void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
@@ -50,12 +51,14 @@ class CorrelationView : public QWidget {
     Eigen::Index begin = 0, count = 0;
   };
   double cellSize_px() const;
-  double longestLabel_px() const;
+  void measureLabels();
+  QRectF square(const Cell& cell) const;
+  void hover(const std::optional<Cell>& cell);
   QPointF origin() const;
   QFont labelFont() const;
   std::optional<Cell> cellAt(const QPointF& position) const;
   QString textOf(const std::optional<Cell>& cell) const;
-  void paintCells(QPainter& painter) const;
+  void paintCells(QPainter& painter, const QRectF& dirty) const;
   void paintLabels(QPainter& painter) const;
   void paintScale(QPainter& painter) const;
   void paintPinned(QPainter& painter) const;
@@ -65,6 +68,7 @@ class CorrelationView : public QWidget {
   std::vector<Group> groups_;
   FileSaver* saver_;
   Eigen::MatrixXd correlation_;
+  double longest_label_px_ = 0.0;
   std::optional<Cell> hovered_, pinned_;
 };
 
