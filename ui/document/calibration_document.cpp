@@ -4,12 +4,14 @@
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/geometry/camera_model.h"
+#include "core/pipeline/rig/detected_recording.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_keys.h"
 
 #include <QFileInfo>
 #include <QUndoCommand>
 
+#include <algorithm>
 #include <utility>
 
 namespace evical::ui {

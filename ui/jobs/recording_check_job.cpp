@@ -13,7 +13,7 @@ constexpr int kPause_ms = 800;  // avoids checks between key strokes
 
 bool isSame(const Session& one, const Session& other) {
   const std::filesystem::path folder = "/";
-  return sessionYaml(one, folder) == sessionYaml(other, folder);
+  return sessionYaml(withoutNames(one), folder) == sessionYaml(withoutNames(other), folder);
 }
 
 // By core's names, with shares of the time for a typical recording.
@@ -54,8 +54,9 @@ void RecordingCheckJob::setAutomatic(bool automatic) {
 }
 
 void RecordingCheckJob::setSession(std::optional<Session> session) {
-  if (session.has_value() == session_.has_value() && (!session || isSame(*session, *session_))) return;
+  const bool same = session.has_value() == session_.has_value() && (!session || isSame(*session, *session_));
   session_ = std::move(session);
+  if (same) return;
   asked_ = false;
   if (!session_) detected_.reset();
   checked_.reset();

@@ -7,7 +7,11 @@
 #include "core/pipeline/pass/session_recording.h"
 #include "core/report/report_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
 
 namespace evical {
@@ -28,6 +32,22 @@ Session withoutLaterStages(Session session) {
 }
 
 }  // namespace
+
+Session withoutNames(Session session) {
+  std::map<std::string, std::string> places;
+  const auto place = [&](auto& sensors, const char* kind) {
+    for (std::size_t k = 0; k < sensors.size(); ++k)
+      sensors[k].name = places[sensors[k].name] = fmt::format("{}_{}", kind, k);
+  };
+  place(session.cameras, "camera");
+  place(session.imus, "imu");
+  const auto refer = [&](std::string& name) {
+    if (const auto found = places.find(name); found != places.end()) name = found->second;
+  };
+  refer(session.reference);
+  for (SessionCamera& camera : session.cameras) refer(camera.same_sensor_as);
+  return session;
+}
 
 FoundLenses findLenses(const Session& session, const RunContext& context) {
   FoundLenses found{givenLenses(session), {}};
@@ -53,12 +73,17 @@ DetectedRecording detectRecording(const Session& session, const RunContext& cont
 
 bool detectsTheSame(const Session& one, const Session& other) {
   const std::filesystem::path folder = "/";
-  return sessionYaml(withoutLaterStages(one), folder) == sessionYaml(withoutLaterStages(other), folder);
+  return sessionYaml(withoutLaterStages(withoutNames(one)), folder) ==
+         sessionYaml(withoutLaterStages(withoutNames(other)), folder);
 }
 
 DetectedRecording forSession(DetectedRecording detected, const Session& session) {
-  for (std::size_t k = 0; k < detected.pass.imus.size(); ++k)
+  for (std::size_t k = 0; k < detected.pass.cameras.size(); ++k)
+    detected.pass.cameras[k].camera = session.cameras.at(k).name;
+  for (std::size_t k = 0; k < detected.pass.imus.size(); ++k) {
+    detected.pass.imus[k].name = session.imus.at(k).name;
     detected.pass.imus[k].noise = session.imus.at(k).noise;
+  }
   return detected;
 }
 

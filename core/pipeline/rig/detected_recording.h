@@ -26,11 +26,15 @@ FoundLenses findLenses(const Session& session, const RunContext& context);
 // First stage of a calibration of this session. Throws CalibrationError, and Cancelled when asked to stop.
 DetectedRecording detectRecording(const Session& session, const RunContext& context);
 
-// True if both sessions have the same detections: they differ only in later stages (noise, priors,
-// optimisation, exports).
+// The session with sensors that are named by their place: if two sessions differ only in names, so do their
+// results.
+Session withoutNames(Session session);
+
+// True if both sessions have the same detections: they differ only in names and in later stages (noise,
+// priors, optimisation, exports).
 bool detectsTheSame(const Session& one, const Session& other);
 
-// Detections with the IMU noise of `session`, which must detect the same.
+// Detections with names and IMU noise of `session`, which must detect the same.
 DetectedRecording forSession(DetectedRecording detected, const Session& session);
 
 }  // namespace evical

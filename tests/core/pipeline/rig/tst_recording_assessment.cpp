@@ -207,6 +207,10 @@ class TestRecordingAssessment : public QObject {
     };
     QVERIFY(changed([](Session& other) { other.options.optimisation.edit().needed_rotation_deg = 1.0; }));
     QVERIFY(changed([](Session& other) { other.exports = {"openvins"}; }));
+    QVERIFY(changed([](Session& other) {
+      other.cameras.front().name = "other";
+      other.reference = other.imus.front().name = "another";
+    }));
     QVERIFY(!changed([](Session& other) { other.board.rows = 9; }));
     QVERIFY(!changed([](Session& other) { other.time_range_s = {1.0, 2.0}; }));
     QVERIFY(!changed([](Session& other) { other.cameras.front().intrinsics.reset(); }));
