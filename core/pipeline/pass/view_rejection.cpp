@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -23,6 +24,32 @@ void reportAs(WindowOutcome outcome, double time_s, std::vector<WindowReport>& w
   if (window != windows.end() && window->time_s == time_s) window->outcome = outcome;
 }
 
+double halfWidthAt_s(double time_s, const std::vector<WindowReport>& windows) {
+  const auto window =
+      std::lower_bound(windows.begin(), windows.end(), time_s,
+                       [](const WindowReport& each, double at_s) { return each.time_s < at_s; });
+  return window != windows.end() && window->time_s == time_s ? window->half_width_s : 0.0;
+}
+
+// By view: it is the nearest one to a rejected time, which is within its window. After another detection,
+// windows may have other centres.
+std::vector<bool> areRejected(const std::vector<double>& rejected_s, const std::vector<BoardView>& views,
+                              const std::vector<WindowReport>& windows) {
+  std::vector<bool> rejected(views.size(), false);
+  for (const double time_s : rejected_s) {
+    auto nearest = std::lower_bound(views.begin(), views.end(), time_s,
+                                    [](const BoardView& each, double at_s) { return each.time_s < at_s; });
+    if (nearest == views.end() ||
+        (nearest != views.begin() && time_s - std::prev(nearest)->time_s < nearest->time_s - time_s)) {
+      if (nearest == views.begin()) continue;
+      --nearest;
+    }
+    if (std::abs(nearest->time_s - time_s) <= halfWidthAt_s(nearest->time_s, windows))
+      rejected[static_cast<std::size_t>(nearest - views.begin())] = true;
+  }
+  return rejected;
+}
+
 void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
             std::vector<BoardView>& rejected_views) {
   std::vector<BoardView> all;
@@ -31,8 +58,10 @@ void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
              std::back_inserter(all), earlier);
   camera.views.clear();
   rejected_views.clear();
-  for (BoardView& view : all) {
-    const bool rejected = std::binary_search(rejected_s.begin(), rejected_s.end(), view.time_s);
+  const std::vector<bool> are_rejected = areRejected(rejected_s, all, camera.windows);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    BoardView& view = all[i];
+    const bool rejected = are_rejected[i];
     const WindowOutcome found =
         view.kind == ViewKind::Complete ? WindowOutcome::Complete : WindowOutcome::Partial;
     reportAs(rejected ? WindowOutcome::RejectedByHand : found, view.time_s, camera.windows);

@@ -13,7 +13,8 @@ namespace evical {
 // Centres of windows that were rejected by hand, by camera; in time order.
 using RejectedTimes = std::vector<std::vector<double>>;
 
-// The pass with exactly these windows rejected: other rejected views are restored. Rejected windows whose
+// The pass with exactly these windows rejected, each the nearest one that contains the time: other rejected
+// views are restored. Rejected windows whose
 // views are no longer known stay rejected. Window reports are updated, so that all counts agree. Nothing was
 // read for the new pass: its read_s and detect_s are 0.
 DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& rejected_s);

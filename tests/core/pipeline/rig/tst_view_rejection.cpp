@@ -3,6 +3,7 @@
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -53,6 +54,20 @@ class TestViewRejection : public QObject {
     QCOMPARE(all.cameras[0].views.size(), before.size());
     for (std::size_t k = 0; k < all.cameras[0].windows.size(); ++k)
       QCOMPARE(all.cameras[0].windows[k].outcome, simulated_.pass.cameras[0].windows[k].outcome);
+  }
+
+  // Another detection of the same recording may have windows with other centres.
+  void times_meanTheWindowsThatContainThem() {
+    const BoardObservations& camera = simulated_.pass.cameras[0];
+    const double third_s = camera.views[3].time_s;
+    const auto window = std::find_if(camera.windows.begin(), camera.windows.end(),
+                                     [&](const WindowReport& each) { return each.time_s == third_s; });
+    const double within_s = 0.4 * std::min(window->half_width_s, camera.views[4].time_s - third_s);
+    QVERIFY(within_s > 0.0);
+    const DetectionResult changed =
+        withRejected(simulated_.pass, {{third_s + within_s, camera.windows.back().time_s + 10.0}});
+    QCOMPARE(rejectedTimes_s(changed)[0], std::vector{third_s});
+    QCOMPARE(changed.cameras[0].views.size(), camera.views.size() - 1);
   }
 
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
