@@ -297,7 +297,10 @@ class TestCameraAlone : public QObject {
     const SessionCamera& camera = test.document().session().cameras.front();
     QVERIFY(camera.intrinsics == test.window.workbench().lens.last().run->result.intrinsics);
     QVERIFY(!test.window.workbench().lens.runIsOutdated());
+    QVERIFY(screen->findChild<QLabel*>("lens_in_session")->isVisibleTo(screen));
+    QVERIFY(!screen->findChild<QPushButton*>("use_lens")->isEnabled());
     test.document().undoStack().undo();
+    QVERIFY(!screen->findChild<QLabel*>("lens_in_session")->isVisibleTo(screen));
     QVERIFY(!test.document().session().cameras.front().intrinsics);
     test.document().undoStack().setClean();
   }

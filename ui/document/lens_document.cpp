@@ -98,20 +98,30 @@ void LensDocument::loadOther(const QString& file) {
   emit othersChanged();
 }
 
-void LensDocument::useInSession() {
-  if (!last_.run) return;
-  Session changed = document_.session();
+// A camera on another camera's sensor shares its lens.
+std::optional<std::size_t> LensDocument::cameraOfRun() const {
+  if (!last_.run) return std::nullopt;
+  const Session& session = document_.session();
   const std::string& name = last_.session.cameras.at(last_.camera).name;
-  const auto found = std::find_if(changed.cameras.begin(), changed.cameras.end(),
-                                  [&](const SessionCamera& camera) { return camera.name == name; });
-  if (found == changed.cameras.end()) return;
-  // A camera on another camera's sensor shares its lens.
-  const auto index = static_cast<std::size_t>(found - changed.cameras.begin());
-  SessionCamera& camera = changed.cameras[changed.sensorOf(index)];
+  for (std::size_t k = 0; k < session.cameras.size(); ++k)
+    if (session.cameras[k].name == name) return session.sensorOf(k);
+  return std::nullopt;
+}
+
+void LensDocument::useInSession() {
+  const std::optional<std::size_t> sensor = cameraOfRun();
+  if (!sensor) return;
+  Session changed = document_.session();
+  SessionCamera& camera = changed.cameras[*sensor];
   camera.intrinsics = last_.run->result.intrinsics;
   camera.intrinsics_uncertainty.reset();
   camera.resolution_px = last_.run->result.intrinsics.resolution_px;
-  document_.edit(changed, tr("Use the lens of %1").arg(QString::fromStdString(name)));
+  document_.edit(changed, tr("Use the lens of %1").arg(QString::fromStdString(camera.name)));
+}
+
+bool LensDocument::isInSession() const {
+  const std::optional<std::size_t> sensor = cameraOfRun();
+  return sensor && document_.session().cameras[*sensor].intrinsics == last_.run->result.intrinsics;
 }
 
 }  // namespace evical::ui

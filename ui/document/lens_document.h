@@ -61,6 +61,7 @@ class LensDocument : public QObject {
   // Copies the lens into the session's camera, without its sigmas, since the same recording would count
   // twice.
   void useInSession();
+  bool isInSession() const;  // the session's camera has the last run's lens
 
  signals:
   void aimChanged();  // aim or camera
@@ -68,6 +69,8 @@ class LensDocument : public QObject {
   void othersChanged();
 
  private:
+  std::optional<std::size_t> cameraOfRun() const;  // index in the session, of the last run's sensor
+
   CalibrationDocument& document_;
   CalibrationAim aim_ = CalibrationAim::Rig;
   bool had_session_ = false;

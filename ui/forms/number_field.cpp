@@ -35,6 +35,12 @@ void NumberField::setValue(double value) {
   value_ = value;
   setText(numberText(value));
   refused_->setVisible(false);
+  if (!hasFocus()) setCursorPosition(0);  // a number that is longer than the field shows its start
+}
+
+void NumberField::focusOutEvent(QFocusEvent* event) {
+  QLineEdit::focusOutEvent(event);
+  setCursorPosition(0);
 }
 
 void NumberField::take() {

@@ -20,6 +20,9 @@ class NumberField : public QLineEdit {
  signals:
   void valueEdited(double value);  // by the user, within the range, and different
 
+ protected:
+  void focusOutEvent(QFocusEvent* event) override;
+
  private:
   void take();
   void refuse(const QString& why);

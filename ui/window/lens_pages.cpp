@@ -109,12 +109,14 @@ void wireLens(LensScreen& screen, Workbench& workbench, LensFiles& files) {
     screen.setLens(last.run ? std::optional(namedLens(last, workbench.version)) : std::nullopt);
     show_others();
     screen.setOutdated(workbench.lens.runIsOutdated());
+    screen.setInSession(workbench.lens.isInSession());
   };
   QObject::connect(&lens, &LensDocument::runChanged, &screen,
                    [&screen, fill] { afterTurns(1, &screen, fill); });
   QObject::connect(&lens, &LensDocument::othersChanged, &screen, [&screen, &lens, show_others] {
     show_others();
     screen.setOutdated(lens.runIsOutdated());
+    screen.setInSession(lens.isInSession());
   });
   QObject::connect(&screen, &LensScreen::useRequested, &lens, &LensDocument::useInSession);
   QObject::connect(&screen, &LensScreen::otherRequested, &files, &LensFiles::chooseOther);

@@ -79,6 +79,7 @@ LensScreen::LensScreen(QWidget* parent)
       reason_(selectableLabel("", this)),
       fit_(selectableLabel("hint", this)),
       outdated_(selectableLabel("problem", this)),
+      in_session_(selectableLabel("hint", this)),
       remark_(selectableLabel("hint", this)),
       uncertainty_text_(selectableLabel("", this)),
       coverage_text_(selectableLabel("", this)),
@@ -138,19 +139,22 @@ QWidget* LensScreen::makeHeader() {
   auto* const header = new QWidget(this);
   auto* const words = new QVBoxLayout;
   words->setSpacing(2);
-  for (QLabel* const line : {verdict_, reason_, fit_, outdated_}) words->addWidget(line);
+  for (QLabel* const line : {verdict_, reason_, fit_, outdated_, in_session_}) words->addWidget(line);
   outdated_->setText(tr("The session has changed since this result. Calibrate again to update it."));
   outdated_->hide();
-  auto* const use = new QPushButton(icon("camera"), tr("Use in the session"), header);
-  use->setObjectName("use_lens");
-  use->setToolTip(tr("Set this lens as the session's camera intrinsics, for calibrations of the rig"));
-  connect(use, &QPushButton::clicked, this, &LensScreen::useRequested);
+  in_session_->setObjectName("lens_in_session");
+  in_session_->setText(tr("The session has this lens now: the next calibrations of the rig use it."));
+  use_ = new QPushButton(icon("camera"), tr("Use in the session"), header);
+  use_->setObjectName("use_lens");
+  use_->setToolTip(tr("Set this lens as the session's camera intrinsics, for calibrations of the rig"));
+  connect(use_, &QPushButton::clicked, this, &LensScreen::useRequested);
+  setInSession(false);
   auto* const layout = new QHBoxLayout(header);
   layout->setContentsMargins(4, 0, 4, 0);
   layout->addWidget(icon_, 0, Qt::AlignTop);
   layout->addLayout(words, 1);
   layout->addWidget(makeSave(), 0, Qt::AlignTop);
-  layout->addWidget(use, 0, Qt::AlignTop);
+  layout->addWidget(use_, 0, Qt::AlignTop);
   return header;
 }
 
@@ -275,6 +279,12 @@ void LensScreen::setOthers(std::vector<Other> others) {
 
 void LensScreen::setOutdated(bool outdated) {
   outdated_->setVisible(outdated);
+}
+
+void LensScreen::setInSession(bool in_session) {
+  in_session_->setVisible(in_session);
+  use_->setEnabled(!in_session);
+  use_->setText(in_session ? tr("In the session") : tr("Use in the session"));
 }
 
 const LensScreen::Other* LensScreen::other() const {

@@ -39,7 +39,8 @@ class LensScreen : public QWidget {
   void setLens(std::optional<NamedIntrinsics> found);
   // Lenses to compare with; a new one is compared with immediately.
   void setOthers(std::vector<Other> others);
-  void setOutdated(bool outdated);  // the session has changed since this lens
+  void setOutdated(bool outdated);     // the session has changed since this lens
+  void setInSession(bool in_session);  // the session's camera has this lens
   // Formats of other programs for a lens alone: name and description, listed below Evical's files.
   void setPrograms(const std::vector<std::pair<QString, QString>>& programs);
 
@@ -73,7 +74,8 @@ class LensScreen : public QWidget {
   std::optional<LensComparison> comparison_;
   std::vector<Other> others_;
   QStackedWidget* stack_;
-  QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *remark_;
+  QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *in_session_, *remark_;
+  QPushButton* use_ = nullptr;
   QLabel *uncertainty_text_, *coverage_text_, *difference_text_, *views_text_;
   QComboBox* against_;
   QTreeWidget* parameters_;
