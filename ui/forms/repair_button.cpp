@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/forms/repair_button.h"
 
+#include "ui/forms/form_words.h"
 #include "ui/theme/theme.h"
 
 namespace evical::ui {
@@ -19,7 +20,7 @@ void RepairButton::setRepair(const std::optional<Repair>& repair) {
   setVisible(repair.has_value());
   if (!repair) return;
   const QString key = QString::fromStdString(repair->key), value = QString::fromStdString(repair->value);
-  setText(tr("Set %1 to %2 and calibrate again").arg(key.section('.', -1), value));
+  setText(inFormWords(tr("Set %1 to %2 and calibrate again").arg(key.section('.', -1), value)));
   setToolTip(tr("Sets %1: %2 in the session; Ctrl+Z undoes it").arg(key, value));
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/verdict_labels.h"
 
+#include "ui/forms/form_words.h"
+
 #include <QObject>
 
 #include <algorithm>
+#include <utility>
 
 namespace evical::ui {
 namespace {
@@ -21,6 +24,10 @@ bool isOfRecording(AssessedThing thing) {
     default:
       return false;
   }
+}
+
+bool isObstacle(const Assessed& one) {
+  return one.thing == AssessedThing::Obstacle && one.light != Light::Good;
 }
 
 }  // namespace
@@ -54,23 +61,27 @@ QString titleOf(AssessedThing thing) {
 }
 
 QString sentence(QString text) {
+  text = inFormWords(std::move(text));
   if (!text.isEmpty()) text[0] = text[0].toUpper();
   if (!text.isEmpty() && !text.endsWith('.') && !text.endsWith('?')) text += '.';
   return text;
 }
 
-// Sorted from worst to best; ties keep their order.
 std::vector<const Assessed*> worstFirst(const RecordingAssessment& assessment) {
   std::vector<const Assessed*> sorted;
   for (const Assessed& one : assessment.all) sorted.push_back(&one);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Assessed* a, const Assessed* b) { return a->light > b->light; });
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Assessed* a, const Assessed* b) {
+    const bool first = isObstacle(*a), second = isObstacle(*b);
+    return first != second ? first : a->light > b->light;
+  });
   return sorted;
 }
 
 QString summaryOf(const RecordingAssessment& assessment) {
   if (!assessment.board_seen) return QObject::tr("The board was never seen");
   if (!assessment.can_be_calibrated) return QObject::tr("This recording cannot be calibrated");
+  if (std::any_of(assessment.all.begin(), assessment.all.end(), isObstacle))
+    return QObject::tr("The session contradicts this recording");
   switch (assessment.light) {
     case Light::Good:
       return QObject::tr("This recording is good enough");

@@ -11,8 +11,9 @@
 namespace evical::ui {
 
 QString titleOf(AssessedThing thing);
-QString sentence(QString text);  // adds a capital and a full stop
-// Sorted from worst to best; ties keep their order.
+QString sentence(QString text);  // in the words of the forms, with a capital and a full stop
+// Obstacles first, since other measures may be their consequences; then from worst to best. Ties keep their
+// order.
 std::vector<const Assessed*> worstFirst(const RecordingAssessment& assessment);
 
 QString summaryOf(const RecordingAssessment& assessment);

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/session/session_boards.h"
+#include "ui/forms/form_words.h"
 #include "ui/screens/board/board_chooser.h"
 #include "ui/screens/board/board_form.h"
 
@@ -108,7 +109,7 @@ void BoardsForm::setProblems(const std::vector<std::pair<QString, QString>>& fie
     texts << said;
   }
   chooser_->setWrong(wrong);
-  form_->setProblem(texts.join('\n'));
+  form_->setProblem(inFormWords(texts.join('\n')));
 }
 
 // Only a flashing board may have several recordings, one for each of its poses.
