@@ -7,6 +7,7 @@
 #include "core/pipeline/session/session_guess.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
+#include "ui/forms/form_words.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_drawing.h"
 #include "ui/screens/board/board_form.h"
@@ -137,6 +138,87 @@ class TestRecordingScreen : public QObject {
     QVERIFY(form->isVisible() && form->height() > 100);
     QVERIFY(test.top(form) > test.bottom(test.screen.checkCard()));
     QVERIFY(test.page()->verticalScrollBar()->maximum() > 0);
+  }
+
+  // A check that starts, ends or fails, and problems that come and go: nothing moves under the mouse.
+  void fields_stayInPlace_whateverTheCheckShows() {
+    RecordingScreenFixture test;
+    test.screen.resize(1027, 685);
+    QApplication::processEvents();
+    std::vector<QWidget*> fields;
+    for (const char* const form : {"BoardForm", "CameraForm", "StreamTable"})
+      for (QWidget* const widget : test.screen.findChildren<QWidget*>())
+        if (QString(widget->metaObject()->className()).endsWith(form)) {
+          fields.push_back(widget);
+          for (NumberField* const field : widget->findChildren<NumberField*>())
+            if (field->isVisible()) fields.push_back(field);
+        }
+    QVERIFY(fields.size() > 5);
+    const auto places = [&] {
+      QApplication::processEvents();
+      std::vector<QRect> all;
+      for (QWidget* const field : fields)
+        all.emplace_back(field->mapTo(&test.screen, QPoint()), field->size());
+      return all;
+    };
+    const std::vector<QRect> before = places();
+    CheckCard& card = *test.screen.checkCard();
+    card.setChecking(0.1);
+    QVERIFY(places() == before);
+    test.assess();
+    QVERIFY(places() == before);
+    card.setUnconfirmedBoard("11 x 4, 50 mm");
+    QVERIFY(places() == before);
+    card.setFailed(QString("the board was never found in 250 windows ").repeated(12));
+    QVERIFY(places() == before);
+    card.offerFollowing(true);
+    QVERIFY(places() == before);
+    card.offerFollowing(false);
+    card.setUnconfirmedBoard({});
+    test.screen.setProblems(
+        {{"board.radius_m", "must be less than half"}, {"cameras.left.intrinsics", "bad"}, {"imus", "x"}});
+    QVERIFY(places() == before);
+    QVERIFY(test.problems().contains("bad") && test.problems().contains("x"));
+    test.screen.setProblems({});
+    card.clear();
+    QVERIFY(!card.isVisible());
+    QVERIFY(places() == before);
+    // The same with the table of checks.
+    card.findChild<QToolButton*>("check_details")->setChecked(true);
+    test.assess();
+    const std::vector<QRect> with_table = places();
+    card.setChecking(0.1);
+    QVERIFY(places() == with_table);
+    card.clear();
+    QVERIFY(places() == with_table);
+  }
+
+  // The form has millimetres and labels, a session file metres and keys.
+  void messages_haveTheWordsOfTheForm() {
+    RecordingScreenFixture test;
+    test.screen.setProblems(
+        {{"board.spacing_m", "must be greater than 0. Measure it on the print, in metres"}});
+    QVERIFY2(test.problems().contains("in millimetres"), qPrintable(test.problems()));
+    QCOMPARE(inFormWords("the board seems 100 % larger than specified (spacing 0.025 m): measure it"),
+             QString("the board seems 100 % larger than specified (spacing 25 mm): measure it"));
+    QCOMPARE(inFormWords("set board.spacing_m: 0.05"), QString("set spacing 50 mm"));
+    QCOMPARE(inFormWords("Set radius_m to 0.0125"), QString("Set radius to 12.5 mm"));
+    QCOMPARE(inFormWords("the board is 0.5 m away"), QString("the board is 0.5 m away"));
+  }
+
+  // A number that is longer than its field shows its start.
+  void longNumbers_showTheirStart() {
+    RecordingScreenFixture test;
+    Session session = test.session;
+    session.cameras.front().intrinsics->distortion[0] = -0.380015228531;
+    test.screen.setSession(session);
+    int looked = 0;
+    for (const NumberField* const field :
+         test.screen.findChild<CameraForm*>()->findChildren<NumberField*>()) {
+      QCOMPARE(field->cursorPosition(), 0);
+      ++looked;
+    }
+    QVERIFY(looked > 8);
   }
 
   // A window of 1280 x 800.

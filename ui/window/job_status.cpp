@@ -47,6 +47,11 @@ void JobStatus::reset() {
   if (!runner_.running()) what_->setText(tr("Ready"));
 }
 
+void JobStatus::setReading(const QString& recording) {
+  if (recording.isEmpty()) return reset();
+  if (!runner_.running()) what_->setText(tr("Reading %1...").arg(recording));
+}
+
 void JobStatus::begin(const QString& title) {
   what_->setText(title);
   bar_->setValue(0);

@@ -203,14 +203,20 @@ void SessionFiles::lookForRecording(const QString& missing) {
 
 void SessionFiles::openRecording(const QString& path) {
   if (!mayDiscard()) return;
-  awaited_recording_ = QFileInfo(path).absoluteFilePath();
   further_recordings_.clear();
+  await(QFileInfo(path).absoluteFilePath());
   workbench_.inspection.start({awaited_recording_});
+}
+
+void SessionFiles::await(const QString& recording) {
+  if (recording == awaited_recording_) return;
+  awaited_recording_ = recording;
+  emit reading(QFileInfo(recording).fileName());
 }
 
 // Inspects the streams of the open session; also after a failure to open another recording.
 void SessionFiles::inspectSession() {
-  awaited_recording_.clear();
+  await({});
   further_recordings_.clear();
   const Session& session = workbench_.document.session();
   if (!session.recording.empty()) workbench_.inspection.start(recordingsOf(session));
@@ -224,7 +230,7 @@ bool SessionFiles::refuseUseless(const QString& recording, const Inspection& ins
 
 void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
   if (recording != awaited_recording_) return;
-  awaited_recording_.clear();
+  await({});
   if (refuseUseless(recording, inspection)) return inspectSession();
   Session session = withSeenResolutions(guessedSession(recording.toStdString(), inspection),
                                         recording.toStdString(), inspection);

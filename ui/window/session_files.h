@@ -55,6 +55,8 @@ class SessionFiles : public QObject {
 
  signals:
   void opened();
+  // A recording that replaces the session when it has been read: its name; empty when that has ended.
+  void reading(const QString& recording);
   void recentFilesChanged();
   void demoRunning(bool running);
   void exported(const evical::ui::ExportOutcome& outcome);
@@ -64,6 +66,7 @@ class SessionFiles : public QObject {
  private:
   void openSession(const QString& file);
   void openRecording(const QString& path);
+  void await(const QString& recording);
   void openRun(const QString& path);
   void runOpened(const SavedRun& saved);
   bool saveTo(const QString& file);

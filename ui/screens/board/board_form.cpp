@@ -133,8 +133,8 @@ BoardForm::BoardForm(QWidget* parent)
   row->addWidget(drawing_, 1);
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(problem_);
   layout->addLayout(row, 1);
+  layout->addWidget(problem_);  // below: fields must not move under the mouse
 
   connect(type_, &QComboBox::activated, this, [this] { say("type"); });
   connect(circles_, &QComboBox::activated, this, [this] { say("circles"); });

@@ -124,7 +124,6 @@ CameraForm::CameraForm(QWidget* parent)
   // The rows that most people need are visible in a small window.
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
   form_->addRow(tr("Board"), board_);
-  form_->addRow(problem_);
   form_->addRow(line);
   form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
@@ -136,6 +135,7 @@ CameraForm::CameraForm(QWidget* parent)
   form_->addRow(tr("Shutter"), shutter_);
   form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
+  form_->addRow(problem_);  // below: fields must not move under the mouse
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording/check_card.h"
 
+#include "ui/forms/form_words.h"
 #include "ui/screens/recording/light_mark.h"
 #include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
@@ -12,6 +13,7 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -30,6 +32,28 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
   return count(AssessedThing::Board) > 1 || count(AssessedThing::Turns) > 1;
 }
 
+constexpr int kCardWords_px = 46,
+              kCardDetails_px = 170;  // a line with a button and one of advice; eight checks
+
+void keepPlace(QWidget& widget) {
+  QSizePolicy policy = widget.sizePolicy();
+  policy.setRetainSizeWhenHidden(true);
+  widget.setSizePolicy(policy);
+}
+
+// Has a fixed height, and scrolls: longer texts must not move the page.
+QScrollArea* fixedArea(QWidget* content, int height_px, QWidget* parent) {
+  auto* const area = new QScrollArea(parent);
+  area->setWidget(content);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setFixedHeight(height_px);
+  area->viewport()->setAutoFillBackground(false);
+  content->setAutoFillBackground(false);
+  return area;
+}
+
 }  // namespace
 
 CheckCard::CheckCard(QWidget* parent)
@@ -38,10 +62,11 @@ CheckCard::CheckCard(QWidget* parent)
       summary_(wrappedLabel({}, "heading", this)),
       advice_(wrappedLabel({}, "hint", this)),
       board_(wrappedLabel({}, "hint", this)),
+      missing_(wrappedLabel({}, "problem", this)),
       progress_(new QProgressBar(this)),
       more_(new QToolButton(this)),
-      details_(new QWidget(this)),
-      grid_(new QGridLayout(details_)) {
+      lights_(new QWidget),
+      grid_(new QGridLayout(lights_)) {
   setProperty("card", "true");
   setObjectName("check_card");
   summary_->setObjectName("check_summary");
@@ -69,18 +94,33 @@ CheckCard::CheckCard(QWidget* parent)
   grid_->setHorizontalSpacing(12);
   grid_->setVerticalSpacing(5);
   grid_->setColumnStretch(3, 1);
+  details_ = fixedArea(lights_, kCardDetails_px, this);
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(14, 6, 10, 8);
   layout->setSpacing(4);
   layout->addLayout(line);
-  layout->addWidget(advice_);
-  layout->addWidget(board_line_);
-  layout->addWidget(follow_line_);
+  layout->addWidget(makeWords());
   layout->addWidget(details_);
   grid_->setContentsMargins(0, 4, 0, 2);
+  // The card has the same height in all states, and also while it is hidden: a check that starts or ends must
+  // not move the page under the mouse.
+  for (QWidget* const kept : std::initializer_list<QWidget*>{this, mark_, progress_, more_}) keepPlace(*kept);
   setUnconfirmedBoard({});
+  setMissing({});
   showDetails(false);
   clear();
+}
+
+QWidget* CheckCard::makeWords() {
+  auto* const words = new QWidget;
+  auto* const column = new QVBoxLayout(words);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(2);
+  for (QWidget* const line :
+       {static_cast<QWidget*>(missing_), follow_line_, board_line_, static_cast<QWidget*>(advice_)})
+    column->addWidget(line);
+  column->addStretch(1);
+  return fixedArea(words, kCardWords_px, this);
 }
 
 QWidget* CheckCard::makeBoardLine() {
@@ -140,8 +180,18 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
 void CheckCard::clear() {
   showState(tr("Before you calibrate"), std::nullopt);
   idle_ = true;
-  // Both lines are shown in any state.
-  setVisible(board_line_->isVisibleTo(this) || follow_line_->isVisibleTo(this));
+  setVisible(hasLines());
+}
+
+// These lines are shown in any state.
+bool CheckCard::hasLines() const {
+  return !board_line_->isHidden() || !follow_line_->isHidden() || !missing_->isHidden();
+}
+
+void CheckCard::setMissing(const QString& text) {
+  missing_->setText(text);
+  missing_->setVisible(!text.isEmpty());
+  if (idle_) setVisible(hasLines());
 }
 
 void CheckCard::setChecking(double fraction) {
@@ -207,16 +257,16 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
   const bool named = hasSeveralSensors(assessment);
   int row = 0;
   for (const Assessed& one : assessment.all) {
-    auto* const mark = new LightMark(details_);
+    auto* const mark = new LightMark(lights_);
     mark->setLight(one.light);
     const QString sensor = QString::fromStdString(one.sensor);
     const QString title = titleOf(one.thing);
     auto* const name =
-        wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "", details_);
-    auto* const measured = wrappedLabel(QString::fromStdString(one.measured), "", details_);
+        wrappedLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "", lights_);
+    auto* const measured = wrappedLabel(inFormWords(QString::fromStdString(one.measured)), "", lights_);
     if (!one.required.empty())
       measured->setText(tr("%1, required %2").arg(measured->text(), QString::fromStdString(one.required)));
-    auto* const advice = wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", details_);
+    auto* const advice = wrappedLabel(sentence(QString::fromStdString(one.advice)), "hint", lights_);
     name->setWordWrap(false);
     measured->setWordWrap(one.thing == AssessedThing::Obstacle);
     measured->setAccessibleName(tr("%1: %2, %3").arg(title, measured->text(), lightWord(one.light)));
@@ -233,13 +283,14 @@ void CheckCard::showDetails(bool shown) {
   more_->setIcon(icon(shown ? "up" : "down"));
   more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   more_->setToolTip(shown ? tr("Hides the individual checks") : tr("Shows all checks with their lights"));
-  details_->setVisible(shown && more_->isVisibleTo(this));
+  details_->setVisible(shown);
+  lights_->setVisible(more_->isVisibleTo(this));
 }
 
 void CheckCard::setUnconfirmedBoard(const QString& board) {
   board_->setText(tr("Board: %1, not confirmed. Compare these numbers with the print.").arg(board));
   board_line_->setVisible(!board.isEmpty());
-  if (idle_) setVisible(!board.isEmpty());
+  if (idle_) setVisible(hasLines());
 }
 
 QString CheckCard::text() const {

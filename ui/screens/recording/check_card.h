@@ -34,6 +34,8 @@ class CheckCard : public QFrame {
   void offerFollowing(bool offered);
   // While followed, an assessment concerns part of the recording: no alarm, and it stays until the next one.
   void setFollowing(bool following);
+  // What is missing for a calibration, by line; empty: nothing.
+  void setMissing(const QString& text);
   // Unconfirmed board that was guessed: "11 x 4, 50 mm". Empty: confirmed.
   void setUnconfirmedBoard(const QString& board);
 
@@ -47,16 +49,19 @@ class CheckCard : public QFrame {
  private:
   QWidget* makeBoardLine();
   QWidget* makeFollowLine();
+  QWidget* makeWords();
+  bool hasLines() const;
   void showAdvice(const RecordingAssessment& assessment);
   void showState(const QString& summary, std::optional<Light> light);
   void showLights(const RecordingAssessment& assessment);
   void showDetails(bool shown);
 
   LightMark* mark_;
-  QLabel *summary_, *advice_, *board_;
+  QLabel *summary_, *advice_, *board_, *missing_;
   QProgressBar* progress_;
   QToolButton* more_;
-  QWidget *details_, *board_line_, *follow_line_;
+  QWidget *board_line_ = nullptr, *follow_line_ = nullptr;
+  QWidget *lights_, *details_ = nullptr;  // the table of checks, and the area around it
   QCheckBox* follow_;
   QGridLayout* grid_;
   bool idle_ = true;  // no recording

@@ -3,6 +3,7 @@
 
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_guess.h"
+#include "ui/forms/form_words.h"
 #include "ui/screens/board/boards_form.h"
 #include "ui/screens/recording/aim_chooser.h"
 #include "ui/screens/recording/camera_form.h"
@@ -106,7 +107,6 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       path_(wrappedLabel({}, "hint", this)),
       verdict_(wrappedLabel({}, "heading", this)),
       looking_text_(wrappedLabel({}, "hint", this)),
-      stream_problem_(wrappedLabel({}, "problem", this)),
       file_faults_(wrappedLabel({}, "problem", this)),
       looking_(new QProgressBar(this)),
       streams_(new StreamTable(this)),
@@ -120,6 +120,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       camera_only_(new QPushButton(icon("calibrate"), tr("Calibrate the camera"), this)) {
   stack_->addWidget(makeEmpty());
   stack_->addWidget(makeContent());
+  stack_->addWidget(makeReading());
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(stack_);
@@ -153,6 +154,36 @@ QWidget* RecordingScreen::makeEmpty() {
   return empty;
 }
 
+QWidget* RecordingScreen::makeReading() {
+  constexpr int kBar_px = 320;
+  auto* const page = new QWidget(this);
+  auto* const layout = new QVBoxLayout(page);
+  reading_text_ = wrappedLabel({}, "heading", page);
+  reading_text_->setObjectName("reading");
+  reading_text_->setAlignment(Qt::AlignCenter);
+  reading_bar_ = new QProgressBar(page);
+  reading_bar_->setRange(0, 1000);
+  reading_bar_->setTextVisible(false);
+  reading_bar_->setFixedWidth(kBar_px);
+  reading_bar_->setAccessibleName(tr("Progress of the reading"));
+  layout->addStretch();
+  layout->addWidget(reading_text_);
+  layout->addWidget(reading_bar_, 0, Qt::AlignHCenter);
+  layout->addStretch();
+  return page;
+}
+
+void RecordingScreen::setReading(const QString& recording) {
+  reading_text_->setText(tr("Reading %1...").arg(recording));
+  reading_bar_->setValue(0);
+  reading_ = !recording.isEmpty();
+  showPart();
+}
+
+void RecordingScreen::showPart() {
+  stack_->setCurrentIndex(reading_ ? 2 : session_.recording.empty() ? 0 : 1);
+}
+
 QWidget* RecordingScreen::makeHeader() {
   auto* const header = new QWidget(this);
   auto* const layout = new QVBoxLayout(header);
@@ -182,8 +213,8 @@ QWidget* RecordingScreen::makeContent() {
   column->setContentsMargins(0, 0, 0, 0);
   looking_->setRange(0, 1000);
   looking_->setTextVisible(false);
-  for (QWidget* const widget : std::initializer_list<QWidget*>{
-           looking_text_, looking_, streams_, makeRangeAndFiles(streams), file_faults_, stream_problem_})
+  for (QWidget* const widget : std::initializer_list<QWidget*>{looking_text_, looking_, streams_,
+                                                               makeRangeAndFiles(streams), file_faults_})
     column->addWidget(widget);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -192,7 +223,7 @@ QWidget* RecordingScreen::makeContent() {
   layout->addWidget(card(tr("Streams"), streams, content));
   layout->addWidget(check_);
   layout->addWidget(makeForms(), 1);
-  for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
+  for (QLabel* const hidden : {file_faults_, looking_text_}) hidden->hide();
   looking_->hide();
   return scrolling(content, new PageArea(this));
 }
@@ -236,7 +267,7 @@ QWidget* RecordingScreen::makeForms() {
 void RecordingScreen::setSession(const Session& session) {
   const bool other_recording = session.recording != session_.recording;
   session_ = session;
-  stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
+  showPart();
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
   boards_->setSession(session);
@@ -321,7 +352,7 @@ std::optional<CameraIntrinsics> RecordingScreen::foundIntrinsics(std::size_t cam
 }
 
 void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
-  QStringList at_streams;
+  QStringList on_card;  // on the card, which has room for them: fields must not move
   std::vector<QString> at_cameras(cameras_.size());
   for (const auto& [field, text] : field_and_text) {
     bool placed = false;
@@ -330,11 +361,11 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
       at_cameras[i] = text;
       placed = true;
     }
-    if (!placed && !BoardsForm::isOfBoards(field)) at_streams << text;
+    if (placed || !BoardsForm::isOfBoards(field)) on_card << text;
   }
   for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
   boards_->setProblems(field_and_text);
-  showOrHide(stream_problem_, at_streams.join('\n'));
+  check_->setMissing(inFormWords(on_card.join('\n')));
   problems_ = field_and_text.size();
   showVerdict();
 }
@@ -381,6 +412,7 @@ void RecordingScreen::setInspecting(const QString& recording) {
 }
 
 void RecordingScreen::setInspectionProgress(double fraction) {
+  reading_bar_->setValue(static_cast<int>(1000.0 * fraction));
   looking_->setValue(static_cast<int>(1000.0 * fraction));
 }
 

@@ -50,6 +50,8 @@ class RecordingScreen : public QWidget {
   CheckCard* checkCard() const { return check_; }
 
   void clearInspections();
+  // Name of a recording that replaces the session when it has been read; empty: none.
+  void setReading(const QString& recording);
   void setInspecting(const QString& recording);
   void setInspectionProgress(double fraction);
   // An incomplete end is not a fault then.
@@ -75,6 +77,8 @@ class RecordingScreen : public QWidget {
   QWidget* makeForms();
   QWidget* makeEmpty();
   QWidget* makeContent();
+  QWidget* makeReading();
+  void showPart();
   void showVerdict();
   void showSensors();
   void showShutters();
@@ -95,8 +99,9 @@ class RecordingScreen : public QWidget {
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
   QStackedWidget* stack_;
-  QLabel *title_, *path_, *verdict_, *looking_text_, *stream_problem_, *file_faults_;
-  QProgressBar* looking_;
+  QLabel *title_, *path_, *verdict_, *looking_text_, *file_faults_, *reading_text_ = nullptr;
+  QProgressBar *looking_, *reading_bar_ = nullptr;
+  bool reading_ = false;
   StreamTable* streams_;
   TimeRangeForm* time_range_;
   BoardsForm* boards_;
