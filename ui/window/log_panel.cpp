@@ -17,6 +17,7 @@ namespace evical::ui {
 namespace {
 
 constexpr std::size_t kMostLines = 5000;
+constexpr int kLeastText_px = 40;  // two lines: the dock must not enlarge the window beyond small displays
 
 QColor colourOf(LogLevel level) {
   switch (level) {
@@ -49,6 +50,7 @@ LogPanel::LogPanel(QWidget* parent)
   search_->setClearButtonEnabled(true);
   search_->setToolTip(tr("Show only messages that contain this text"));
   text_->setReadOnly(true);
+  text_->setMinimumHeight(kLeastText_px);
   text_->setMaximumBlockCount(static_cast<int>(kMostLines));
   text_->setPlaceholderText(tr("Messages of calibrations are shown here"));
   auto* const copy = new QToolButton(this);

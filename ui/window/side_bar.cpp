@@ -16,20 +16,31 @@ namespace evical::ui {
 namespace {
 
 constexpr int kSideBar_px = 236, kIcon_px = 20, kPage_px = 31, kHeading_px = 30, kReason_px = 22;
+constexpr int kLeastPages_px = 190, kLeastSteps_px = 70;
 constexpr int kPageRole = Qt::UserRole;  // headings have none
 const char* const kFoldedKey = "window/more_folded";
+
+// The list has the height of its pages, and scrolls in a window that is lower.
+class PageList final : public QListWidget {
+ public:
+  using QListWidget::QListWidget;
+  QSize sizeHint() const override { return {QListWidget::sizeHint().width(), maximumHeight()}; }
+  QSize minimumSizeHint() const override { return {0, kLeastPages_px}; }
+};
 
 }  // namespace
 
 SideBar::SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* parent)
-    : QFrame(parent), pages_(pages), list_(new QListWidget(this)) {
+    : QFrame(parent), pages_(pages), list_(new PageList(this)) {
   setObjectName("sidebar");
   setFixedWidth(kSideBar_px);
   list_->setObjectName("navigation");
   list_->setAccessibleName(tr("Screens"));
   list_->setIconSize(QSize(kIcon_px, kIcon_px));
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  list_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
+  list_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
+  below->setMinimumHeight(kLeastSteps_px);
   addPages();
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -117,7 +128,8 @@ void SideBar::fitHeight() {
   for (int row = 0; row < list_->count(); ++row)
     if (const QListWidgetItem* const item = list_->item(row); !item->isHidden())
       height_px += item->sizeHint().height() + 2;
-  list_->setFixedHeight(height_px);
+  list_->setMaximumHeight(height_px);
+  list_->updateGeometry();
 }
 
 void SideBar::showPage(int page) {
@@ -134,9 +146,8 @@ void SideBar::setReasons(const std::vector<QString>& reasons) {
   }
   const auto first =
       std::find_if(reasons.begin(), reasons.end(), [](const QString& reason) { return !reason.isEmpty(); });
-  reason_->setHidden(first == reasons.end());
-  if (first != reasons.end()) reason_->setText(*first);
-  fitHeight();
+  // Its line stays if there is none: pages must not move under the mouse when a run starts.
+  reason_->setText(first == reasons.end() ? QString() : *first);
 }
 
 void SideBar::setVerdict(int page, std::optional<CalibrationStatus> status) {
