@@ -73,15 +73,24 @@ class TestCalibrationJob : public QObject {
     QTest::addColumn<QString>("stage");
     QTest::newRow("while detecting") << "detect";
     QTest::newRow("while optimising") << "optimise";
+    for (const char* const share : {"0.15", "0.4", "0.6", "0.75", "0.9"}) QTest::newRow(share) << share;
   }
   void cancel_isAnsweredWithinHalfASecond() {
     QFETCH(QString, stage);
     CalibrationJobWatched test;
     std::optional<evical::ui::test::ComputedTime> since_cancel;
-    connect(&test.runner, &JobRunner::stageStarted, &test.runner, [&](const QString& started) {
-      if (started != stage) return;
+    const auto cancel = [&] {
+      if (since_cancel) return;
       since_cancel.emplace();
       test.runner.cancel();
+    };
+    connect(&test.runner, &JobRunner::stageStarted, &test.runner, [&](const QString& started) {
+      if (started == stage) cancel();
+    });
+    bool is_share = false;
+    const double share = stage.toDouble(&is_share);
+    connect(&test.runner, &JobRunner::progressed, &test.runner, [&](const JobProgress& progress) {
+      if (is_share && progress.fraction >= share) cancel();
     });
     test.job.start(session_);
     QCOMPARE(test.outcome(), JobOutcome::Cancelled);

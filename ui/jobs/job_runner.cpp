@@ -167,7 +167,6 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
         const StopWaiting until_stop(stop);
         Ending ending = runToEnd(job, RunContext{*reports, stop});
         job = nullptr;  // its data are released before its end is signalled
-        returnFreeMemory();
         {
           const std::lock_guard lock(reports->mutex);
           reports->ending = std::move(ending);
@@ -206,6 +205,8 @@ void JobRunner::finish() {
   const Ending ending = reports_->ending;
   if (ending.error) emit failed(*ending.error);
   emit finished(ending.outcome);
+  // After the end: it takes as long as a cancelled job may take in all.
+  if (!running_) thread_ = std::jthread(returnFreeMemory);
 }
 
 }  // namespace evical::ui
