@@ -24,13 +24,16 @@
 #include "ui/window/steps_panel.h"
 
 #include <QDesktopServices>
+#include <QDockWidget>
 #include <QLabel>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QMimeData>
 #include <QPushButton>
 #include <QScopeGuard>
 #include <QSettings>
 #include <QSignalSpy>
+#include <QStatusBar>
 #include <QTemporaryDir>
 #include <QTextBrowser>
 #include <QToolButton>
@@ -323,11 +326,15 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.close());
   }
 
-  void closeWhileRunning_cancelsAndThenCloses() {
+  void closeWhileRunning_asks_thenCancelsAndCloses() {
     WindowFixture test;
     test.window.files().open(simulatedSession());
     test.press(Qt::Key_F5);
     QVERIFY(test.runner().running());
+    answerQuestion(QMessageBox::No);
+    QVERIFY(!test.window.close());
+    QVERIFY(test.window.isVisible() && !test.runner().cancelling());
+    answerQuestion(QMessageBox::Yes);
     QVERIFY(!test.window.close());
     QTRY_VERIFY_WITH_TIMEOUT(!test.window.isVisible(), kPatience_ms);
     QVERIFY(!test.runner().running());
@@ -353,6 +360,82 @@ class TestMainWindow : public QObject {
     QCoreApplication::sendEvent(&test.window, &drop);
     QTRY_VERIFY(test.document().hasSession());
     QVERIFY(drop.isAccepted());
+  }
+
+  // Pages keep their place when a run starts: a second click must not reach the next page.
+  void sideBar_staysInPlace_whenARunStarts() {
+    WindowFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    auto* const list = test.child<QListWidget>("navigation");
+    const auto places = [list] {
+      std::vector<QRect> all;
+      for (const char* const title : {"Start", "Recording", "Detection", "Residuals", "More"})
+        all.push_back(list->visualItemRect(list->findItems(title, Qt::MatchStartsWith).front()));
+      return all;
+    };
+    const std::vector<QRect> before = places();
+    const QRect steps = test.child<StepsPanel>()->geometry();
+    test.window.calibrate();
+    spin(50);
+    QVERIFY(test.runner().running());
+    QVERIFY(places() == before);
+    QCOMPARE(test.child<StepsPanel>()->geometry(), steps);
+    test.click("cancel");
+    QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
+    QVERIFY(places() == before);
+    QVERIFY(test.window.close());
+  }
+
+  // 1280x800 with the title bar and a panel of the desktop: nothing may enlarge the window beyond it.
+  void docks_andErrors_fitASmallDisplay() {
+    constexpr int kFree_px = 740;
+    WindowFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    test.window.resize(1280, kFree_px);
+    for (const char* const name : {"log", "runs"}) {
+      auto* const dock = test.child<QDockWidget>(name);
+      dock->show();
+      dock->raise();
+      spin(50);
+      QVERIFY2(test.window.height() == kFree_px,
+               qPrintable(QString("%1: %2 px").arg(name).arg(test.window.height())));
+      const QRect status = test.window.statusBar()->geometry();
+      QVERIFY(test.window.rect().contains(status) && status.height() > 10);
+    }
+    test.child<ErrorPanel>()->showError("Calibrate failed",
+                                        {true, "left", "the board was never found", "Check the board"});
+    spin(50);
+    QCOMPARE(test.window.height(), kFree_px);
+    QVERIFY(test.window.close());
+  }
+
+  // A large recording takes seconds to read: meanwhile the old session is not shown under the new name.
+  void anotherRecording_replacesTheViewAtOnce() {
+    WindowFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    test.window.showScreen("detection");
+    const QString recording = QString::fromStdString(test.document().session().recording.string());
+    spin(200);
+    test.window.files().open(recording);
+    QCOMPARE(test.screen(), QString("recording"));
+    const auto* const reading = test.child<QLabel>("reading");
+    QVERIFY2(reading->isVisible() && reading->text().contains("recording.bag"), qPrintable(reading->text()));
+    QVERIFY(test.window.windowTitle().startsWith("recording.bag"));
+    QVERIFY(visibleTexts(*test.window.statusBar()).contains("Reading recording.bag"));
+    QVERIFY(!test.child<QToolButton>("calibrate")->isEnabled());
+    QTRY_VERIFY_WITH_TIMEOUT(!reading->isVisible() && test.document().file().isEmpty(), kPatience_ms);
+    QVERIFY(test.child<QToolButton>("calibrate")->isEnabled());
+    QVERIFY(!visibleTexts(*test.window.statusBar()).contains("Reading"));
+    // A file that is not a recording leaves the session.
+    const QString nothing = scratch_.filePath("nothing.bag");
+    QFile file(nothing);
+    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("nothing") > 0);
+    file.close();
+    test.window.files().open(nothing);
+    QTRY_VERIFY_WITH_TIMEOUT(test.child<ErrorPanel>()->isVisible(), kPatience_ms);
+    QVERIFY(!reading->isVisible());
+    QCOMPARE(QString::fromStdString(test.document().session().recording.string()), recording);
+    QVERIFY(test.window.close());
   }
 
   // A title bar needs space, too.

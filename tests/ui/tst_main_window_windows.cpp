@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of windows in the main window: rejections apply to the next run and can be undone; a residual
 // leads to its window.
+#include "core/frontend/front_end_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
@@ -12,7 +13,7 @@
 #include "ui/window/session_files.h"
 
 #include <QDialog>
-#include <QPushButton>
+#include <QLabel>
 #include <QRegularExpression>
 #include <QShortcut>
 #include <QTextBrowser>
@@ -57,19 +58,14 @@ struct Story : WindowFixture {
     table().setFocus();
     QTest::keyClick(&table(), Qt::Key_Delete, modifiers);
   }
-  void pressButton(const QString& text) {
-    for (QPushButton* const button : list().findChildren<QPushButton*>()) {
-      if (button->text() != text) continue;
-      QVERIFY2(button->isVisible() && button->isEnabled(), qPrintable(text));
-      QTest::mouseClick(button, Qt::LeftButton);
-    }
-  }
   void recalibrate() {
     finished.clear();
     const auto before = document().last().run;
-    pressButton("Recalibrate");
+    QSignalSpy stages(&runner(), &JobRunner::stageStarted);
+    click("calibrate");
     QCOMPARE(waitForJob(), JobOutcome::Done);
     QVERIFY(document().last().run != before);
+    for (const QList<QVariant>& stage : stages) QVERIFY(stage.at(0).toString() != "detect");  // not repeated
     window.showScreen("detection");
     QTRY_VERIFY_WITH_TIMEOUT(list().model().rowCount() > 0, kPatience_ms);
   }
@@ -132,6 +128,46 @@ class TestMainWindowWindows : public QObject {
     QTRY_COMPARE_WITH_TIMEOUT(test.rejectedInList(), 0, kPatience_ms);
 
     clickOfABar_leadsToItsWindow(test);
+    QVERIFY(test.window.close());
+  }
+
+  // Windows belong to the document: each calibration excludes them, also one that detects the board again, and
+  // of sensors with other names.
+  void rejectedWindows_areExcludedByEveryCalibration() {
+    Story test(copyOfSimulatedSession(scratch_.path()));
+    test.rejectRows(20, 22);
+    const int rejected = test.rejectedInList();
+    auto* const count = test.child<QLabel>("rejected_windows");
+    QVERIFY2(count->text().contains(QString::number(rejected)), qPrintable(count->text()));
+    test.recalibrate();
+    const RejectedTimes times_s = test.document().rejections();
+
+    Session changed = test.document().session();
+    changed.cameras.front().name = "renamed";
+    test.document().edit(changed, "Rename");
+    QVERIFY(!test.document().runIsOutdated());
+    changed.options.front_end.edit().grid.least_circles += 1;
+    test.document().edit(changed, "Detect again");
+    QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
+    test.finished.clear();
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(std::any_of(stages.begin(), stages.end(),
+                        [](const QList<QVariant>& stage) { return stage.at(0).toString() == "detect"; }));
+    const auto& found = test.document().last().run->result.rejected_windows;
+    QCOMPARE(static_cast<int>(found.size()), rejected);
+    for (std::size_t k = 0; k < found.size(); ++k)
+      QVERIFY(std::abs(found[k].time_s - times_s[0].at(k)) < 0.05);
+
+    // Another run forgets nothing; the whole is undone.
+    test.finished.clear();
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QCOMPARE(test.rejectedInRun(), rejected);
+    test.document().undoStack().setIndex(0);
+    QVERIFY(!test.document().rejectionsArePending());
+    QVERIFY(count->text().isEmpty());
+    test.document().undoStack().setClean();
     QVERIFY(test.window.close());
   }
 

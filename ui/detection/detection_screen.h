@@ -104,7 +104,6 @@ class DetectionScreen : public QWidget {
  signals:
   void timeSelected(double time_s);  // by the user, or by playing
   void rejectionsWanted(const evical::RejectedTimes& rejections, const QString& what);
-  void recalibrationWanted();
   void recordingWanted(const QString& missing);  // path of a recording that the user wants to find
 
  protected:

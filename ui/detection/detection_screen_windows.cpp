@@ -46,7 +46,6 @@ void DetectionScreen::makeWindowList() {
             wanted[camera_] = times_s;
             emit rejectionsWanted(wanted, what);
           });
-  connect(list_, &WindowList::recalibrationWanted, this, &DetectionScreen::recalibrationWanted);
 }
 
 void DetectionScreen::addListButton(QHBoxLayout* row) {

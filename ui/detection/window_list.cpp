@@ -146,18 +146,15 @@ QWidget* WindowList::makeActions() {
   auto* const row = new QHBoxLayout;
   row->setSpacing(4);
   reject_ = addAction(row, "remove", tr("Reject"),
-                      tr("Exclude the selected windows from the next calibration (Delete)"));
+                      tr("Exclude the selected windows from all later calibrations (Delete)"));
   keep_ = addAction(row, "check", tr("Keep"), tr("Include the selected windows again (Shift+Delete)"));
-  recalibrate_ = addAction(
-      row, "calibrate", tr("Recalibrate"),
-      tr("Calibrate again from the existing detections without the rejected windows; undo with Ctrl+Z"));
   pending_ = new QLabel;
   pending_->setWordWrap(true);
+  pending_->setMinimumHeight(pending_->fontMetrics().height());  // rows must not move at the first rejection
   column->addWidget(pending_);
   column->addLayout(row);
   connect(reject_, &QPushButton::clicked, this, &WindowList::rejectSelected);
   connect(keep_, &QPushButton::clicked, this, &WindowList::keepSelected);
-  connect(recalibrate_, &QPushButton::clicked, this, &WindowList::recalibrationWanted);
   return bar;
 }
 
@@ -305,12 +302,10 @@ void WindowList::refresh() {
   filter_box_->setEnabled(all > 0);
   reject_->setEnabled(canChange(true));
   keep_->setEnabled(canChange(false));
-  recalibrate_->setEnabled(rejectable_ && !busy_ && to_reject_ + to_keep_ > 0);
   QStringList parts;
   if (to_reject_ > 0) parts << tr("%1 to be rejected").arg(to_reject_);
   if (to_keep_ > 0) parts << tr("%1 to be included again").arg(to_keep_);
-  pending_->setText(parts.isEmpty() ? QString() : tr("In the next run: %1").arg(parts.join(tr(", "))));
-  pending_->setVisible(!parts.isEmpty());
+  pending_->setText(parts.isEmpty() ? QString() : tr("Calibrate (F5): %1").arg(parts.join(tr(", "))));
 }
 
 void WindowList::resizeEvent(QResizeEvent* event) {

@@ -55,7 +55,6 @@ class WindowList : public QWidget {
   void windowChosen(double time_s);  // middle of the window
   void rejectionWanted(const std::vector<double>& times_s,
                        const QString& what);  // all rejections of this camera
-  void recalibrationWanted();
   void filled();
 
  protected:
@@ -88,7 +87,7 @@ class WindowList : public QWidget {
   QTreeView* table_ = nullptr;
   QComboBox* filter_box_ = nullptr;
   QLabel *note_ = nullptr, *count_ = nullptr, *pending_ = nullptr;
-  QPushButton *reject_ = nullptr, *keep_ = nullptr, *recalibrate_ = nullptr;
+  QPushButton *reject_ = nullptr, *keep_ = nullptr;
   LatestJob job_{OutdatedWork::Dropped};
 };
 

@@ -247,6 +247,24 @@ bool CalibrationDocument::rejectionsArePending() const {
   return rejections_ != rejectionsOf(last_);
 }
 
+int CalibrationDocument::rejectedCount() const {
+  std::size_t count = 0;
+  for (const std::vector<double>& times_s : rejections_) count += times_s.size();
+  return static_cast<int>(count);
+}
+
+RejectedTimes CalibrationDocument::forSessionsCameras(const RejectedTimes& rejected_s) const {
+  RejectedTimes by_camera(session_.cameras.size());
+  const std::vector<SessionCamera>& before = last_.session.cameras;
+  for (std::size_t k = 0; k < by_camera.size(); ++k) {
+    const SessionCamera& camera = session_.cameras[k];
+    for (std::size_t j = 0; j < std::min(before.size(), rejected_s.size()); ++j)
+      if (before[j].stream == camera.stream && before[j].recording == camera.recording)
+        by_camera[k] = rejected_s[j];
+  }
+  return by_camera;
+}
+
 void CalibrationDocument::setRejections(RejectedTimes rejected_s, const QString& what) {
   if (rejected_s == rejections_) return;
   undo_stack_.push(new RejectionCommand(*this, std::move(rejected_s), what));
@@ -266,7 +284,7 @@ void CalibrationDocument::addUndoableRun(const RunRecord& record, const QString&
 bool CalibrationDocument::runIsOutdated() const {
   if (!last_.run) return false;
   const std::filesystem::path folder = "/";
-  return sessionYaml(last_.session, folder) != sessionYaml(session_, folder);
+  return sessionYaml(withoutNames(last_.session), folder) != sessionYaml(withoutNames(session_), folder);
 }
 
 std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {

@@ -81,10 +81,13 @@ class CalibrationDocument : public QObject {
   // The session has changed since the last run.
   bool runIsOutdated() const;
 
-  // Times that the next calibration from the last run's detections excludes; initially those that the run
+  // Times that each later calibration excludes, by camera of the last run; initially those that the run
   // excluded.
   const RejectedTimes& rejections() const { return rejections_; }
   bool rejectionsArePending() const;  // they differ from the last run's
+  int rejectedCount() const;          // windows of all cameras
+  // Such times by camera of the session, which may have other names and cameras than the last run's.
+  RejectedTimes forSessionsCameras(const RejectedTimes& rejected_s) const;
   // One step of undo.
   void setRejections(RejectedTimes rejected_s, const QString& what);
 

@@ -2,7 +2,7 @@
 #include "ui/window/linked_pages.h"
 
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/rig/detected_recording.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"
@@ -29,12 +29,12 @@ std::shared_ptr<const CalibrationRun> withSamples(const std::shared_ptr<const Ca
   return run && run->pass.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
 }
 
-// Calibrates from the detections of the last run.
-void calibrateWithout(Workbench& workbench, const RejectedTimes& rejections) {
-  const RunRecord& last = workbench.document.last();
-  if (!last.run || rejections.size() != last.run->pass.cameras.size()) return;
-  workbench.calibration.startAgain(last.session, withRejected(last.run->pass, rejections),
-                                   last.run->intrinsics);
+// Detections of the last run for the present session, to calibrate without some windows.
+std::optional<DetectedRecording> lastDetectedFor(const Session& session, const RunRecord& last) {
+  if (!last.run || last.run->pass.cameras.size() != session.cameras.size() ||
+      last.run->pass.imus.size() != session.imus.size() || !detectsTheSame(last.session, session))
+    return std::nullopt;
+  return forSession({last.run->pass, last.run->intrinsics}, session);
 }
 
 void wireRejections(DetectionScreen& screen, Workbench& workbench) {
@@ -48,8 +48,6 @@ void wireRejections(DetectionScreen& screen, Workbench& workbench) {
   QObject::connect(&lens, &LensDocument::aimChanged, &screen, show);
   QObject::connect(&screen, &DetectionScreen::rejectionsWanted, &document,
                    &CalibrationDocument::setRejections);
-  QObject::connect(&screen, &DetectionScreen::recalibrationWanted, &screen,
-                   [&workbench] { calibrateWithout(workbench, workbench.document.rejections()); });
   QObject::connect(&workbench.runner, &JobRunner::started, &screen, [&screen] { screen.setBusy(true); });
   QObject::connect(&workbench.runner, &JobRunner::finished, &screen, [&screen] { screen.setBusy(false); });
 }
@@ -146,7 +144,7 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
         for (const int view : views)
           times_s.push_back(run->pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
         std::sort(times_s.begin(), times_s.end());
-        calibrateWithout(workbench, rejections);
+        calibrateRig(workbench, rejections);
       });
 }
 
@@ -172,6 +170,28 @@ void linkTime(From* from, To*... to) {
 }
 
 }  // namespace
+
+void calibrateRig(Workbench& workbench, const RejectedTimes& rejections) {
+  const CalibrationDocument& document = workbench.document;
+  const Session& session = document.session();
+  const RunRecord& last = document.last();
+  const RejectedTimes rejected = document.forSessionsCameras(rejections);
+  std::optional<DetectedRecording> detected;
+  if (last.run && rejections != rejectedTimes_s(last.run->pass)) detected = lastDetectedFor(session, last);
+  if (detected) {
+    workbench.calibration.startAgain(session, withRejected(detected->pass, rejected),
+                                     std::move(detected->intrinsics));
+    return;
+  }
+  detected = workbench.check.detectedFor(session);
+  if (!detected) {
+    workbench.calibration.start(session, rejected);
+    return;
+  }
+  if (std::ranges::any_of(rejected, [](const auto& times_s) { return !times_s.empty(); }))
+    detected->pass = withRejected(detected->pass, rejected);
+  workbench.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
+}
 
 void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireDetection(*pages.detection, workbench);

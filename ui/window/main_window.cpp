@@ -9,6 +9,7 @@
 #include "ui/jobs/window_how_to.h"
 #include "ui/plots/residuals_screen.h"
 #include "ui/scene/trajectory_screen.h"
+#include "ui/screens/recording/recording_screen.h"
 #include "ui/screens/result/result_screen.h"
 #include "ui/screens/result/runs_panel.h"
 #include "ui/window/after_turns.h"
@@ -17,6 +18,7 @@
 #include "ui/window/job_status.h"
 #include "ui/window/kept_runs.h"
 #include "ui/window/lens_files.h"
+#include "ui/window/linked_pages.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/page_stack.h"
 #include "ui/window/session_files.h"
@@ -28,7 +30,10 @@
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDropEvent>
+#include <QLabel>
+#include <QMessageBox>
 #include <QMimeData>
+#include <QPushButton>
 #include <QScreen>
 #include <QSettings>
 #include <QSplitter>
@@ -64,6 +69,8 @@ MainWindow::MainWindow(const QString& version)
   auto* const status = new JobStatus(workbench_.runner, this);
   statusBar()->addWidget(status, 1);
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, status, &JobStatus::reset);
+  connect(files_, &SessionFiles::reading, status, &JobStatus::setReading);
+  connect(files_, &SessionFiles::reading, this, &MainWindow::showReading);
   wirePages(pages_, workbench_, *files_, *lens_files_);
   wireRuns(*runs_, *pages_.result, workbench_);
   connect(runs_, &RunsPanel::comparisonRequested, this, [this] { showScreen("result"); });
@@ -82,7 +89,7 @@ MainWindow::~MainWindow() = default;
 
 void MainWindow::makeCentre() {
   stack_ = new PageStack(this);
-  stack_->setMinimumSize(700, 420);  // the largest screen would exceed small displays
+  stack_->setMinimumSize(700, 380);  // the largest screen would exceed small displays
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
@@ -160,6 +167,8 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionChanged, this, &MainWindow::showState);
   connect(&workbench_.document, &CalibrationDocument::fileChanged, this, &MainWindow::showState);
   connect(&workbench_.document, &CalibrationDocument::runsChanged, this, &MainWindow::showState);
+  connect(&workbench_.document, &CalibrationDocument::rejectionsChanged, this, &MainWindow::showRejections);
+  connect(&workbench_.lens, &LensDocument::aimChanged, this, &MainWindow::showRejections);
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
     error_->dismiss();
@@ -290,10 +299,8 @@ void MainWindow::calibrate() {
   const Session& session = workbench_.document.session();
   if (workbench_.lens.aim() == CalibrationAim::Camera)
     workbench_.intrinsics.start(session, workbench_.lens.camera());
-  else if (auto detected = workbench_.check.detectedFor(session))
-    workbench_.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
   else
-    workbench_.calibration.start(session);
+    calibrateRig(workbench_, workbench_.document.rejections());
 }
 
 void MainWindow::repair(const Repair& repair) {
@@ -318,6 +325,26 @@ void MainWindow::cancel() {
   showState();
 }
 
+// The old session leaves the view at once: a large recording takes seconds to read.
+void MainWindow::showReading(const QString& recording) {
+  reading_ = recording;
+  pages_.recording->setReading(recording);
+  if (!recording.isEmpty()) error_->dismiss();
+  showState();
+  if (!recording.isEmpty()) showScreen("recording");
+  if (recording.isEmpty() && !workbench_.document.hasSession()) showScreen("start");
+}
+
+void MainWindow::showRejections() {
+  const int count = workbench_.lens.aim() == CalibrationAim::Rig ? workbench_.document.rejectedCount() : 0;
+  rejected_->setText(count == 0   ? QString()
+                     : count == 1 ? tr("without 1 rejected window")
+                                  : tr("without %L1 rejected windows").arg(count));
+  rejected_->setToolTip(count == 0 ? QString()
+                                   : tr("Calibrations exclude the windows that were rejected on the pages "
+                                        "Detection and Residuals"));
+}
+
 void MainWindow::showProblem(const QString& what_was_tried, const JobError& error) {
   error_->showError(what_was_tried, error);
   log_->add({LogLevel::Warning, 0.0, what_was_tried + ": " + error.text()});
@@ -326,18 +353,22 @@ void MainWindow::showProblem(const QString& what_was_tried, const JobError& erro
 void MainWindow::showState() {
   const CalibrationDocument& document = workbench_.document;
   const bool running = workbench_.runner.running();
-  setWindowTitle(document.hasSession() ? document.title() + "[*] - Evical" : QString("Evical"));
-  setWindowModified(document.modified());
+  const bool reading = !reading_.isEmpty();
+  setWindowTitle(reading                 ? reading_ + " - Evical"
+                 : document.hasSession() ? document.title() + "[*] - Evical"
+                                         : QString("Evical"));
+  setWindowModified(!reading && document.modified());
   actions_.calibrate->setVisible(!running);
-  actions_.calibrate->setEnabled(!running && document.hasSession());
+  actions_.calibrate->setEnabled(!running && !reading && document.hasSession());
   actions_.cancel->setVisible(running);
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
   showPages();
-  actions_.save->setEnabled(document.modified() || (document.hasSession() && document.file().isEmpty()));
-  actions_.save_as->setEnabled(document.hasSession());
+  const bool unsaved = document.modified() || (document.hasSession() && document.file().isEmpty());
+  actions_.save->setEnabled(!reading && unsaved);
+  actions_.save_as->setEnabled(!reading && document.hasSession());
   const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
-  const bool has_result = workbench_.lastStatus().has_value();
+  const bool has_result = !reading && workbench_.lastStatus().has_value();
   actions_.export_result->setEnabled(!running && has_result);
   actions_.report->setEnabled(!running && has_result && !of_camera);
   actions_.report->setToolTip(of_camera
@@ -349,6 +380,7 @@ void MainWindow::showState() {
 // Why a page with this need has no content; empty: it has. A running calibration fills pages.
 QString MainWindow::whyGrey(PageNeed need) const {
   if (need == PageNeed::Nothing) return {};
+  if (!reading_.isEmpty()) return tr("Reading the recording");
   if (!workbench_.document.hasSession()) return tr("Open a recording first");
   if (need == PageNeed::RunOfRig && workbench_.lens.aim() == CalibrationAim::Camera)
     return tr("Grey pages are for rigs only");
@@ -359,11 +391,14 @@ QString MainWindow::whyGrey(PageNeed need) const {
 
 void MainWindow::showPages() {
   std::vector<QString> reasons;
-  for (const PageEntry& entry : entries_) reasons.push_back(whyGrey(entry.need));
+  for (const PageEntry& entry : entries_)
+    reasons.push_back(entry.name == "recording" && !reading_.isEmpty() ? QString() : whyGrey(entry.need));
   side_bar_->setReasons(reasons);
   for (std::size_t i = 0; i < entries_.size(); ++i) actions_.pages[i]->setEnabled(reasons[i].isEmpty());
-  side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")), workbench_.lastStatus());
-  steps_->setVisible(workbench_.document.hasSession());
+  const bool reading = !reading_.isEmpty();
+  side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")),
+                        reading ? std::nullopt : workbench_.lastStatus());
+  steps_->setVisible(!reading && workbench_.document.hasSession());
 }
 
 void MainWindow::restoreLayout() {
@@ -385,7 +420,22 @@ void MainWindow::saveLayout() {
   settings.setValue("window/state", saveState(kLayoutVersion));
 }
 
+bool MainWindow::mayInterrupt() {
+  QMessageBox question(QMessageBox::Question, tr("Quit"),
+                       tr("%1 is still running.").arg(workbench_.runner.title()),
+                       QMessageBox::Yes | QMessageBox::No, this);
+  question.setInformativeText(tr("If you quit now, it is cancelled and its result is lost."));
+  question.button(QMessageBox::Yes)->setText(tr("&Cancel it and quit"));
+  question.button(QMessageBox::No)->setText(tr("Continue &running"));
+  question.setDefaultButton(QMessageBox::No);
+  return question.exec() == QMessageBox::Yes;
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (workbench_.runner.running() && !close_when_idle_ && !mayInterrupt()) {
+    event->ignore();
+    return;
+  }
   if (workbench_.runner.running()) {
     close_when_idle_ = true;
     cancel();

@@ -12,6 +12,7 @@
 
 class QAction;
 class QDockWidget;
+class QLabel;
 class QStackedWidget;
 
 namespace evical::ui {
@@ -70,6 +71,9 @@ class MainWindow : public QMainWindow {
   void showResultSoon();
   void wireSteps();
   void showState();
+  void showRejections();
+  void showReading(const QString& recording);
+  bool mayInterrupt();
   QString whyGrey(PageNeed need) const;
   void showPages();
   void showProblem(const QString& what_was_tried, const JobError& error);
@@ -97,6 +101,8 @@ class MainWindow : public QMainWindow {
     QAction *calibrate, *cancel;
     QAction *guide, *keys, *about;
   } actions_{};
+  QLabel* rejected_ = nullptr;  // number of windows that calibrations exclude
+  QString reading_;             // recording that will replace the session
   bool close_when_idle_ = false;
   bool result_is_due_ = false;  // unless another screen is chosen
 };

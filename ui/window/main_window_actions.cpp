@@ -13,6 +13,7 @@
 #include <QActionGroup>
 #include <QApplication>
 #include <QDockWidget>
+#include <QLabel>
 #include <QMenu>
 #include <QMenuBar>
 #include <QSettings>
@@ -194,6 +195,11 @@ void MainWindow::makeToolBar() {
     button->setObjectName(action == actions_.calibrate ? "calibrate" : "cancel");
   }
   bar->addActions({actions_.report, actions_.export_result});
+  rejected_ = new QLabel(bar);
+  rejected_->setObjectName("rejected_windows");
+  rejected_->setProperty("role", "hint");
+  rejected_->setContentsMargins(8, 0, 8, 0);
+  bar->addWidget(rejected_);  // after the buttons: they must not move
   auto* const space = new QWidget(bar);
   space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   bar->addWidget(space);
