@@ -28,10 +28,15 @@ enum class ColumnKind {
 
 struct ColumnName {
   ColumnKind kind = ColumnKind::Other;
-  int axis = -1;          // of a vector: 0, 1, 2, or 1, 2, 3 if numbered from 1; -1 for all others
-  bool lettered = false;  // the axis is x, y or z
-  std::string group;      // the name without axis and unit: the three columns of a sensor share it
-  std::string unit;       // in lower case, as written in brackets; else as recognised; empty: none
+  int axis = -1;                // of a vector: 0, 1, 2, or 1, 2, 3 if numbered from 1; -1 for all others
+  bool lettered = false;        // the axis is x, y or z
+  std::string group;            // the name without axis and unit: the three columns of a sensor share it
+  std::string unit;             // in lower case, as written in brackets; else as recognised; empty: none
+  std::string imu;              // of a vector: the words that may name one of several IMUs
+  bool of_stage = false;        // of a vector: raw, filtered or calibrated values of a sensor
+  int bare_axis = -1;           // "x", "y", "z" of an unnamed sensor
+  bool other_quantity = false;  // known not to be one of an IMU's six
+  bool numbers_imus = false;    // contains the number of the row's IMU
 };
 
 ColumnName columnNamed(std::string_view name);
@@ -43,7 +48,11 @@ struct ScaledUnit {
   double factor = 1.0;
 };
 
-// "m/s^2", "g", "mg" and other spellings; "rad/s", "deg/s", "dps", "mdps". nullopt for others.
+// Sensor that a file's name names: "Gyroscope.csv". nullopt if none or both.
+std::optional<MeasuredBy> sensorNamed(std::string_view name);
+
+// "m/s^2", "g", "mg" and other spellings; "rad/s", "deg/s", "dps", "mdps"; also a number of these, "0.000488 g". nullopt for
+// others.
 std::optional<ScaledUnit<AccelerationUnit>> accelerationUnitOf(std::string_view unit);
 std::optional<ScaledUnit<AngularRateUnit>> angularRateUnitOf(std::string_view unit);
 

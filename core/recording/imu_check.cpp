@@ -1,6 +1,7 @@
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
 #include "core/data/second_clock.h"
+#include "core/data/stamp_batches.h"
 #include "core/data/unfit_samples.h"
 #include "core/recording/imu_statistics.h"
 #include "core/recording/inspection.h"
@@ -10,12 +11,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace evical {
 namespace {
 
 constexpr std::size_t kMostFirstSamples = 10;  // stamped before the driver's clock is set
 constexpr double kUnset_s = 3600.0;
+constexpr double kLeastRaw_m_s2 = 200.0;  // norms from here on are raw counts
+constexpr std::size_t kFewestEqual = 10;  // samples whose times are not equal by chance
 
 using Faults = std::vector<RecordingFault>;
 using Samples = std::vector<ImuSample>;
@@ -43,6 +47,12 @@ void checkTimes(const std::string& name, Samples samples, const InspectionOption
     return std::any_of(clocks.begin(), clocks.end(),
                        [i](const SecondClock& clock) { return i >= clock.begin && i <= clock.end; });
   };
+  std::vector<std::int64_t> times_ns;
+  for (const ImuSample& sample : samples) times_ns.push_back(sample.time_ns);
+  if (const std::optional<StampBatches> batches = findStampBatches(times_ns)) {
+    faults.push_back({name, FaultKind::Jitter, 0.0, fmt::format("The {}.", batches->text())});
+    return;  // the gaps are between batches
+  }
   const double period_s = medianInterval_s(samples);
   Faults gaps, backward;
   double square_sum_s2 = 0.0;
@@ -162,7 +172,13 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
     faults.push_back(
         {name, FaultKind::Unit, 0.0,
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
-                     in_g ? ": the file has it in g" : "; is gravity removed, or the unit different?")});
+                     in_g                           ? ": the file has it in g"
+                     : norm < kStandardGravity_m_s2 ? "; is gravity removed, or the unit different?"
+                     : norm < kLeastRaw_m_s2
+                         ? "; is the unit different?"
+                         : fmt::format("; are these raw counts? Give the size of a count "
+                                       "as acceleration_unit; {:.3g} g would give gravity",
+                                       1.0 / norm))});
   }
   const double fastest = largestRate(samples);
   if (fastest > options.largest_rate_rad_s) {
@@ -181,6 +197,15 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
     faults.push_back(
         {name, FaultKind::Empty, 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
     return faults;
+  }
+  const auto sameTime = [&](const ImuSample& sample) { return sample.time_ns == samples.front().time_ns; };
+  if (samples.size() >= kFewestEqual && std::all_of(samples.begin(), samples.end(), sameTime)) {
+    faults.push_back(
+        {name, FaultKind::Corrupt, 0.0,
+         fmt::format("All {} samples have the same time: it was rounded or never set. Export or record "
+                     "them again with their times.",
+                     samples.size())});
+    return faults;  // everything else follows from it
   }
   Samples good;
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(good), isMeasurable);

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
+#include "core/data/stamp_batches.h"
 #include "core/recording/event_statistics.h"
 #include "core/recording/imu_statistics.h"
 #include "core/recording/separate_reader.h"
@@ -29,7 +30,11 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
     summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
   }
-  const double period_s = medianInterval_s(si);
+  std::vector<std::int64_t> times_ns;
+  for (const RawImuSample& sample : samples) times_ns.push_back(sample.time_ns);
+  const double span_s = secondsSince(summary.first_ns, summary.last_ns);
+  const double period_s = findStampBatches(times_ns) ? span_s / static_cast<double>(samples.size() - 1)
+                                                     : medianInterval_s(si);
   if (period_s > 0.0) summary.rate_hz = 1.0 / period_s;
   summary.median_acceleration = medianForceNorm(samples);
   const double steady = steadyForceNorm(si).value_or(summary.median_acceleration);

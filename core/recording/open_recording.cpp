@@ -114,12 +114,14 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path, c
   requireFiles(path);
   if (isTextFolder(path))
     return withPictures(std::make_unique<TextTableReader>(path, names), pictures::findRpgPictures(path));
+  if (!names.empty() && hasImuTables(path, names)) return std::make_unique<TextTableReader>(path, names);
   requireNoNames(path, names);
   if (isTumVieFolder(path)) return withPictures(openHdf5(path), pictures::findTumViePictures(path));
   if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
   pictures::PictureFolder found = pictures::findPictures(path);
   if (isNumpyFolder(path)) return withPictures(std::make_unique<NumpyReader>(path), std::move(found));
   if (found.lists.empty()) {
+    if (hasImuTables(path, names)) return std::make_unique<TextTableReader>(path, names);
     throw badInput(path.string(), "the folder has no recording: no events, no IMU samples, no pictures",
                    kReadable);
   }

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,7 @@ constexpr Family kFamilies[] = {
     {"raw", "% "sv, "input.raw"},
     {"es", "Event Stream"sv, "input.es"},
     {"text", ""sv, "input.csv"},
+    {"tables", ""sv, "input.csv"},  // the bytes choose a table's names, units and cells
     {"pictures", ""sv, "data.csv"},
 };
 
@@ -68,6 +70,70 @@ void checkPacket(const evical::RecordingReader& reader, const evical::Packet& pa
   }
 }
 
+// A table whose header and cells the bytes choose from those of programs, and some without any meaning.
+std::string tableFrom(const std::uint8_t* data, std::size_t size) {
+  constexpr const char* kNames[] = {
+      "t",       "time",  "timestamp", "stamp_sec", "stamp_nsec", "T",       "ax",
+      "ay",      "az",    "gx",        "gy",        "gz",         "x",       "y",
+      "z",       "p",     "acc_x",     "gyro_y",    "imu0_az",    "imu1_az", "imu0_gx",
+      "imu1_gx", "I",     "imu_id",    "ang_x",     "alpha_x",    "w_x",     "q_w",
+      "t_x",     "point", "type",      "sigma",     "",           "\"a b\"", "seconds_elapsed",
+      "raw_ax",  "x0",    "\xC2\xB5",  "-",         "%"};
+  constexpr const char* kUnits[] = {
+      "",     "",         "",         "_s",       "_ns", " [us]",      "(ms)",
+      " [g]", " [m/s^2]", "_dps",     " [rad/s]", "[C]", " [0.001 g]", " [1/16.4 deg/s]",
+      " []",  "[",        " [1/0 g]", "_"};
+  constexpr const char* kCells[] = {"0",
+                                    "1",
+                                    "9.8",
+                                    "-0.5",
+                                    "1700000000.5",
+                                    "1700000000000000000",
+                                    "1.70000E+18",
+                                    "12:34:56.789",
+                                    "23:59:59",
+                                    "2026-03-01T10:00:00Z",
+                                    "",
+                                    "NaN",
+                                    "x",
+                                    "1.700.000",
+                                    "0x1F",
+                                    "true",
+                                    "1,5",
+                                    "-9223372036854775808",
+                                    "1e308",
+                                    "100.5000000",
+                                    "0.",
+                                    "."};
+  constexpr const char* kAbove[] = {"",
+                                    "GYROFLOW IMU LOG\n",
+                                    "tscale,1e-6\n",
+                                    "gscale,0.001\nascale,1e300\n",
+                                    "orientation,YxZ\n",
+                                    "# a comment\n",
+                                    "sep=;\n",
+                                    "%geometry:640,480\n",
+                                    "346 260\n"};
+  constexpr char kSeparators[] = {',', ';', '\t', ' '};
+  std::size_t at = 0;
+  const auto next = [&]() -> std::size_t { return at < size ? data[at++] : 0; };
+  const auto one = [&](const auto& of) { return std::string(of[next() % std::size(of)]); };
+  const char separator = kSeparators[next() % std::size(kSeparators)];
+  const std::size_t columns = 1 + next() % 16, distinct = 1 + next() % 6, rows = next() % 48;
+  std::string text = one(kAbove);
+  for (std::size_t i = 0; i < columns; ++i)
+    text += one(kNames) + one(kUnits) + (i + 1 < columns ? separator : '\n');
+  std::string lines;
+  for (std::size_t k = 0; k < distinct; ++k) {
+    const std::size_t width = next() % 8 == 1 ? next() % 20 : columns;  // some rows are ragged
+    for (std::size_t i = 0; i < width; ++i)
+      lines += one(kCells) + (i + 1 < width ? std::string(1, separator) : "");
+    lines += "\n";
+  }
+  for (std::size_t k = 0; k < rows; ++k) text += lines;
+  return text;
+}
+
 // The bytes are the list of images and also the content of one of them.
 std::unique_ptr<evical::RecordingReader> openPictures(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.parent_path();
@@ -89,6 +155,12 @@ std::unique_ptr<evical::RecordingReader> opened(const std::filesystem::path& pat
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const evical::fuzz::InputFile input(family().file);
   if (!std::string_view(reinterpret_cast<const char*>(data), size).starts_with(family().begin)) return -1;
+  std::string table;
+  if (family().name == "tables") {
+    table = tableFrom(data, size);
+    data = reinterpret_cast<const std::uint8_t*>(table.data());
+    size = table.size();
+  }
   try {
     const auto reader = opened(input.write(data, size));
     // Counting pixels takes ten times as long as reading a small file: only some inputs do it, selected by

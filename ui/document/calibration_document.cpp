@@ -177,7 +177,10 @@ void CalibrationDocument::moveRecording(const std::filesystem::path& from, const
     move(session.recording);
     for (std::filesystem::path& more : session.more_recordings) move(more);
     for (SessionCamera& camera : session.cameras) move(camera.recording);
-    for (SessionImu& imu : session.imus) move(imu.recording);
+    for (SessionImu& imu : session.imus) {
+      move(imu.recording);
+      move(imu.accelerometer_recording);
+    }
     return session;
   };
   last_.session = moved(last_.session);

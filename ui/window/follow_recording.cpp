@@ -21,7 +21,10 @@ Files filesOf(const Session& session) {
   };
   add(session.recording);
   for (const SessionCamera& camera : session.cameras) add(camera.recording);
-  for (const SessionImu& imu : session.imus) add(imu.recording);
+  for (const SessionImu& imu : session.imus) {
+    add(imu.recording);
+    add(imu.accelerometer_recording);
+  }
   return files;
 }
 

@@ -38,7 +38,8 @@ std::vector<std::filesystem::path> recordingsOf(const BatchJob& job) {
       recordings.insert(recordings.end(), session.more_recordings.begin(), session.more_recordings.end());
     }
     for (const SessionCamera& camera : session.cameras) recordings.push_back(camera.recording);
-    for (const SessionImu& imu : session.imus) recordings.push_back(imu.recording);
+    for (const SessionImu& imu : session.imus)
+      recordings.insert(recordings.end(), {imu.recording, imu.accelerometer_recording});
   } catch (const CalibrationError&) {
   }
   std::erase_if(recordings, [](const std::filesystem::path& path) { return path.empty(); });

@@ -238,8 +238,14 @@ const StreamInfo& ImuLogs::stream(std::size_t imu) const {
 SessionImu ImuLogs::readingOf(std::size_t imu) const {
   const auto found = readings_.find(before_.imus[imu].name);
   SessionImu reading = found == readings_.end() ? SessionImu{} : found->second;
-  if (settings_.acceleration_unit) reading.acceleration_unit = settings_.acceleration_unit;
-  if (settings_.angular_rate_unit) reading.angular_rate_unit = settings_.angular_rate_unit;
+  if (settings_.acceleration_unit) {
+    reading.acceleration_unit = settings_.acceleration_unit;
+    reading.acceleration_factor = 1.0;
+  }
+  if (settings_.angular_rate_unit) {
+    reading.angular_rate_unit = settings_.angular_rate_unit;
+    reading.angular_rate_factor = 1.0;
+  }
   reading.clock_offset_s = 0.0;
   reading.clock_scale = 1.0;
   return reading;

@@ -41,6 +41,8 @@ void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vecto
   toSi(raw, imu.acceleration_unit.value_or(info.acceleration_unit),
        imu.angular_rate_unit.value_or(info.angular_rate_unit), samples);
   for (ImuSample& sample : samples) {
+    sample.angular_rate_rad_s *= imu.angular_rate_factor;
+    sample.specific_force_m_s2 *= imu.acceleration_factor;
     // measured_by of a message is used only if the session names separate streams.
     if (imu.accelerometer_stream.empty()) sample.measured_by = MeasuredBy::Both;
     sample.angular_rate_rad_s = readAs(imu.gyroscope_axes, sample.angular_rate_rad_s);

@@ -4,6 +4,7 @@
 #include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frames/gray_image.h"
+#include "core/recording/joined_reader.h"
 #include "core/recording/separate_reader.h"
 
 #include <fmt/format.h>
@@ -40,6 +41,35 @@ void unmirrorFrame(Mirroring mirroring, Frame& frame) {
     }
 }
 
+std::filesystem::path fileAt(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::path whole = std::filesystem::canonical(path, ignored);
+  return ignored ? path : whole;
+}
+
+std::filesystem::path accelerometerFile(const SessionCamera&) {
+  return {};
+}
+std::filesystem::path accelerometerFile(const SessionImu& imu) {
+  return imu.accelerometer_recording.empty() ? std::filesystem::path() : fileAt(imu.accelerometer_recording);
+}
+
+// Two files as one recording.
+std::unique_ptr<RecordingReader> openBoth(const std::filesystem::path& first,
+                                          const std::filesystem::path& second, const ColumnNames& names) {
+  std::vector<JoinedReader::Part> parts;
+  const std::string second_name = accelerometerTable(first, second);
+  for (const auto& [file, name] :
+       {std::pair{first, first.filename().string()}, std::pair{second, second_name}}) {
+    const auto own = names.find(name);
+    const ColumnNames columns =
+        own == names.end() ? ColumnNames{} : ColumnNames{{file.filename().string(), own->second}};
+    parts.push_back(
+        {openRecording(file, columns), name == second_name && name != file.filename() ? name : ""});
+  }
+  return std::make_unique<JoinedReader>(std::move(parts));
+}
+
 }  // namespace
 
 SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
@@ -58,40 +88,54 @@ SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
   });
 }
 
-std::size_t SessionRecording::fileOf(const std::filesystem::path& path) {
-  std::vector<MergedStreams::File>& files = streams_.files();
-  const auto found = std::ranges::find_if(files, [&](const MergedStreams::File& file) {
-    std::error_code ignored;
-    return file.path == path || std::filesystem::equivalent(file.path, path, ignored);
-  });
-  if (found != files.end()) return static_cast<std::size_t>(found - files.begin());
-  files.push_back({path, withSeparateImus(openRecording(path, columnNames(path)), separateImus(path))});
-  return files.size() - 1;
+template <class Sensor>
+SessionRecording::Source SessionRecording::sourceOf(const Sensor& sensor) const {
+  Source source{fileAt(sensor.recording.empty() ? session_.recording : sensor.recording),
+                accelerometerFile(sensor),
+                {}};
+  const auto differs = [&](const auto& other) {
+    const std::filesystem::path& file = other.recording.empty() ? session_.recording : other.recording;
+    return other.stream == sensor.stream && other.columns != sensor.columns && fileAt(file) == source.file;
+  };
+  if (std::ranges::any_of(session_.cameras, differs) || std::ranges::any_of(session_.imus, differs))
+    source.columns = sensor.columns;
+  return source;
 }
 
 template <class Sensor>
-bool SessionRecording::isIn(const std::filesystem::path& path, const Sensor& sensor) const {
-  const std::filesystem::path& own = sensor.recording.empty() ? session_.recording : sensor.recording;
-  std::error_code ignored;
-  return own == path || std::filesystem::equivalent(own, path, ignored);
+std::size_t SessionRecording::fileOf(const Sensor& sensor) {
+  Source source = sourceOf(sensor);
+  const auto found = std::ranges::find(sources_, source);
+  if (found != sources_.end()) return static_cast<std::size_t>(found - sources_.begin());
+  const ColumnNames names = columnNames(source);
+  const std::filesystem::path& file = sensor.recording.empty() ? session_.recording : sensor.recording;
+  std::unique_ptr<RecordingReader> reader = source.accelerometer_file.empty()
+                                                ? openRecording(file, names)
+                                                : openBoth(source.file, source.accelerometer_file, names);
+  streams_.files().push_back({file, withSeparateImus(std::move(reader), separateImus(source))});
+  sources_.push_back(std::move(source));
+  return sources_.size() - 1;
 }
 
-// The session's column names for tables in this recording.
-ColumnNames SessionRecording::columnNames(const std::filesystem::path& path) const {
+// The session's column names for tables in this source.
+ColumnNames SessionRecording::columnNames(const Source& source) const {
   ColumnNames names;
-  const auto add = [&](const auto& sensor, const std::string& stream) {
-    if (!stream.empty() && !sensor.columns.empty() && isIn(path, sensor)) names[stream] = sensor.columns;
+  const auto add = [&](const auto& sensor, const std::string& stream, const std::string& columns) {
+    if (!stream.empty() && !columns.empty() && sourceOf(sensor) == source) names[stream] = columns;
   };
-  for (const SessionCamera& camera : session_.cameras) add(camera, camera.stream);
-  for (const SessionImu& imu : session_.imus)
-    for (const std::string& stream : {imu.stream, imu.accelerometer_stream}) add(imu, stream);
+  for (const SessionCamera& camera : session_.cameras) add(camera, camera.stream, camera.columns);
+  for (const SessionImu& imu : session_.imus) {
+    add(imu, imu.stream, imu.columns);
+    add(imu, imu.accelerometer_stream,
+        imu.accelerometer_columns.empty() ? imu.columns : imu.accelerometer_columns);
+  }
   return names;
 }
 
-std::vector<SeparateImu> SessionRecording::separateImus(const std::filesystem::path& path) const {
+std::vector<SeparateImu> SessionRecording::separateImus(const Source& source) const {
   std::vector<SeparateImu> imus;
   for (const SessionImu& imu : session_.imus)
-    if (!imu.accelerometer_stream.empty() && isIn(path, imu))
+    if (!imu.accelerometer_stream.empty() && sourceOf(imu) == source)
       imus.push_back({imu.stream, imu.accelerometer_stream});
   return imus;
 }
@@ -100,7 +144,7 @@ template <class Sensor>
 void SessionRecording::addSensor(const char* section, const Sensor& sensor, const std::string& stream,
                                  std::span<const StreamType> types) {
   const std::filesystem::path& path = sensor.recording.empty() ? session_.recording : sensor.recording;
-  const std::size_t place = fileOf(path);
+  const std::size_t place = fileOf(sensor);
   MergedStreams::File& file = streams_.files()[place];
   try {
     file.add(findStream(*file.reader, stream, types), places_.size(), sensor);

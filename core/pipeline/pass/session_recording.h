@@ -38,11 +38,19 @@ class SessionRecording {
   std::vector<RecordingFault> faults() const;
 
  private:
-  std::size_t fileOf(const std::filesystem::path& path);
+  // Files that one reader opens: two, if gyroscope and accelerometer have their own. Sensors that name the columns of
+  // one table differently have their own readers.
+  struct Source {
+    std::filesystem::path file, accelerometer_file;
+    std::string columns;
+    bool operator==(const Source&) const = default;
+  };
   template <class Sensor>
-  bool isIn(const std::filesystem::path& path, const Sensor& sensor) const;
-  ColumnNames columnNames(const std::filesystem::path& path) const;
-  std::vector<SeparateImu> separateImus(const std::filesystem::path& path) const;
+  Source sourceOf(const Sensor& sensor) const;
+  template <class Sensor>
+  std::size_t fileOf(const Sensor& sensor);
+  ColumnNames columnNames(const Source& source) const;
+  std::vector<SeparateImu> separateImus(const Source& source) const;
   template <class Sensor>
   void addSensor(const char* section, const Sensor& sensor, const std::string& stream,
                  std::span<const StreamType> types);
@@ -54,6 +62,7 @@ class SessionRecording {
 
   const Session& session_;
   MergedStreams streams_;
+  std::vector<Source> sources_;  // of the files
   std::vector<std::pair<std::size_t, std::size_t>>
       places_;  // by sensor: indices of the file, and of the stream in the file
   std::int64_t start_ns_ = 0;

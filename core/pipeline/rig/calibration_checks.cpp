@@ -51,8 +51,11 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
         : !unit.words.empty()
             ? fmt::format("Convert the accelerations to m/s^2: multiply them by {:.3g}",
                           options.gravity_m_s2 / norm * std::abs(metresPerSecond2(read_as)))
-            : "Check acceleration_unit (m/s^2, g, -g) of this IMU, and that gravity was not removed "
-              "from its accelerations")
+        : norm < options.least_acceleration_m_s2
+            ? "Record accelerations with gravity (not linear or user accelerations), or check acceleration_unit "
+              "(m/s^2, g, -g) of this IMU"
+            : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for raw counts the size of a count as its "
+              "data sheet states it, such as 1/16384 g")
         .repairedBy(unit.in_session
                         ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", *unit.in_session})
                         : std::nullopt);

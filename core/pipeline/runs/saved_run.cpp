@@ -36,7 +36,8 @@ void forEachRecording(Sessions& session, Visit&& visit) {
   for (auto& camera : session.cameras)
     if (!camera.recording.empty()) visit(camera.recording);
   for (auto& imu : session.imus)
-    if (!imu.recording.empty()) visit(imu.recording);
+    for (auto* const file : {&imu.recording, &imu.accelerometer_recording})
+      if (!file->empty()) visit(*file);
 }
 
 // Paths of recordings relative to the folder, which may be moved together with them.

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <numbers>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace evical {
@@ -37,23 +38,39 @@ std::string separateAccelerometer(const SessionImu& imu) {
   return imu.accelerometer_stream;
 }
 
+std::filesystem::path accelerometerRecording(const SessionCamera&) {
+  return {};
+}
+std::filesystem::path accelerometerRecording(const SessionImu& imu) {
+  return imu.accelerometer_recording;
+}
+std::string accelerometerColumns(const SessionCamera&) {
+  return {};
+}
+std::string accelerometerColumns(const SessionImu& imu) {
+  return imu.accelerometer_columns;
+}
+
 void checkDifferent(const Session& session, const std::string& place) {
   std::set<std::string> names;
-  std::set<std::pair<std::filesystem::path, std::string>> streams;
+  std::set<std::tuple<std::filesystem::path, std::string, std::string>> streams;
   const auto check = [&](const std::string& kind, const auto& sensor) {
     const std::string key = fmt::format("{}: {}.{}", place, kind, sensor.name);
     if (!names.insert(sensor.name).second)
       throw badInput(key, "this name is already used", "Give every sensor a different name");
-    const auto recording =
-        std::filesystem::weakly_canonical(sensor.recording.empty() ? session.recording : sensor.recording);
-    const auto take = [&](const char* what, const std::string& stream) {
-      if (!streams.insert({recording, stream}).second)
+    const std::filesystem::path& gyroscope = sensor.recording.empty() ? session.recording : sensor.recording;
+    const auto take = [&](const char* what, const std::string& stream,
+                          const std::filesystem::path& recording) {
+      // A table may have columns of several sensors.
+      if (!streams.insert({std::filesystem::weakly_canonical(recording), stream, sensor.columns}).second)
         throw badInput(key + what, fmt::format("'{}' is already another sensor's stream", stream),
                        "Give every sensor a different stream");
     };
     const std::string accelerometer = separateAccelerometer(sensor);
-    take(accelerometer.empty() ? ".stream" : ".gyroscope", sensor.stream);
-    if (!accelerometer.empty() && accelerometer != sensor.stream) take(".accelerometer", accelerometer);
+    const std::filesystem::path own = accelerometerRecording(sensor);
+    take(accelerometer.empty() ? ".stream" : ".gyroscope", sensor.stream, gyroscope);
+    if (!accelerometer.empty() && (accelerometer != sensor.stream || !own.empty()))
+      take(".accelerometer", accelerometer, own.empty() ? gyroscope : own);
   };
   for (const SessionCamera& camera : session.cameras) check("cameras", camera);
   for (const SessionImu& imu : session.imus) check("imus", imu);
@@ -131,7 +148,11 @@ std::string recordingsText(const Session& session, const std::filesystem::path& 
 template <class Sensor>
 std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder) {
   std::string text = fmt::format("  {}:\n", yamlText(sensor.name));
-  if (!sensor.recording.empty())
+  const std::filesystem::path second = accelerometerRecording(sensor);
+  if (!second.empty())
+    text += fmt::format("    recording: [{}, {}]\n", yamlText(recordingText(sensor.recording, folder)),
+                        yamlText(recordingText(second, folder)));
+  else if (!sensor.recording.empty())
     text += fmt::format("    recording: {}\n", yamlText(recordingText(sensor.recording, folder)));
   if (const std::string accelerometer = separateAccelerometer(sensor); accelerometer.empty())
     text += fmt::format("    stream: {}\n", yamlText(sensor.stream));
@@ -140,7 +161,11 @@ std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder
                         yamlText(accelerometer));
   if (sensor.clock_offset_s != 0.0) text += fmt::format("    clock_offset_s: {}\n", sensor.clock_offset_s);
   if (sensor.clock_scale != 1.0) text += fmt::format("    clock_scale: {}\n", sensor.clock_scale);
-  if (!sensor.columns.empty()) text += fmt::format("    columns: {}\n", yamlText(sensor.columns));
+  if (const std::string columns = accelerometerColumns(sensor); !columns.empty())
+    text += fmt::format("    columns: {{gyroscope: {}, accelerometer: {}}}\n", yamlText(sensor.columns),
+                        yamlText(columns));
+  else if (!sensor.columns.empty())
+    text += fmt::format("    columns: {}\n", yamlText(sensor.columns));
   return text;
 }
 
@@ -169,14 +194,15 @@ std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) 
     text += fmt::format("    accelerometer_random_walk: {}\n", imu.noise.accelerometer_random_walk);
   if (imu.noise.gyroscope_random_walk > 0.0)
     text += fmt::format("    gyroscope_random_walk: {}\n", imu.noise.gyroscope_random_walk);
-  if (imu.acceleration_unit) {
-    text += fmt::format("    acceleration_unit: {}\n",
-                        kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)));
-  }
-  if (imu.angular_rate_unit) {
-    text += fmt::format("    angular_rate_unit: {}\n",
-                        kAngularRateUnits.at(static_cast<std::size_t>(*imu.angular_rate_unit)));
-  }
+  const auto addUnit = [&](const char* key, const char* unit, double factor) {
+    text += fmt::format("    {}: {}{}\n", key, factor == 1.0 ? "" : fmt::format("{} ", factor), unit);
+  };
+  if (imu.acceleration_unit)
+    addUnit("acceleration_unit", kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)),
+            imu.acceleration_factor);
+  if (imu.angular_rate_unit)
+    addUnit("angular_rate_unit", kAngularRateUnits.at(static_cast<std::size_t>(*imu.angular_rate_unit)),
+            imu.angular_rate_factor);
   const auto addAxes = [&](const char* key, const AxesReading& axes) {
     if (axes != kIdentityAxes) text += fmt::format("    {}: {}\n", key, axesText(axes));
   };
@@ -212,6 +238,12 @@ std::vector<CameraLens> givenLenses(const Session& session) {
     lenses.push_back(givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty));
   }
   return lenses;
+}
+
+std::string accelerometerTable(const std::filesystem::path& gyroscope,
+                               const std::filesystem::path& accelerometer) {
+  const std::filesystem::path name = accelerometer.filename();
+  return (name == gyroscope.filename() ? accelerometer.parent_path().filename() / name : name).string();
 }
 
 std::string SessionImu::joinedStream() const {

@@ -50,6 +50,10 @@ struct SessionImu {
   double clock_scale = 1.0;         // seconds per second of its clock, counted from its first stamp
   std::string columns = {};         // of a text table: a header line that counts instead of the file's
   ImuPrior prior = {};              // the file's prior.imus.<name>
+  // The accelerometer's own file and columns; empty: those of `recording` and `columns`.
+  std::filesystem::path accelerometer_recording = {};
+  std::string accelerometer_columns = {};
+  double acceleration_factor = 1.0, angular_rate_factor = 1.0;  // of the units, for raw counts
 
   // The name of the joined stream in the opened recording.
   std::string joinedStream() const;
@@ -88,6 +92,10 @@ struct Session {
   std::size_t referenceImu() const;                              // index into imus; 0 if there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 if the reference is an IMU
 };
+
+// Stream of an accelerometer's own table: the file's name, with its folder if the gyroscope's is the same.
+std::string accelerometerTable(const std::filesystem::path& gyroscope,
+                               const std::filesystem::path& accelerometer);
 
 // Sets the length and the spacing with its sigma. Without a length the spacing stays, with the default sigma.
 void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session);

@@ -265,6 +265,46 @@ std::string possibleSensor(const SessionCamera& frames, const Session& session,
   return {};
 }
 
+// Joins a gyroscope and an accelerometer that have their own files. The most similar names belong together.
+void joinFiles(const std::vector<InspectedRecording>& recordings, Session& session) {
+  const auto kindOf = [&](const SessionImu& imu) {
+    const StreamSummary* const stream = streamOf(imu.stream, imu.recording, recordings);
+    return stream != nullptr && imu.accelerometer_stream.empty() ? imuStreamKind(*stream)
+                                                                 : ImuStreamKind::Whole;
+  };
+  const auto fileOf = [&](const SessionImu& imu) {
+    return imu.recording.empty() ? recordings.front().file : imu.recording;
+  };
+  const auto mostAlike = [&](const SessionImu& imu, ImuStreamKind kind) {
+    std::optional<std::size_t> best;
+    std::ptrdiff_t most = -1;
+    for (std::size_t i = 0; i < session.imus.size(); ++i) {
+      if (kindOf(session.imus[i]) != kind) continue;
+      const std::string own = fileOf(imu).string(), other = fileOf(session.imus[i]).string();
+      const std::ptrdiff_t alike = std::ranges::mismatch(own, other).in1 - own.begin();
+      if (alike <= most) continue;
+      best = i;
+      most = alike;
+    }
+    return best;
+  };
+  for (std::size_t k = 0; k < session.imus.size(); ++k) {
+    if (kindOf(session.imus[k]) != ImuStreamKind::Gyroscope) continue;
+    const auto other = mostAlike(session.imus[k], ImuStreamKind::Accelerometer);
+    if (!other || mostAlike(session.imus[*other], ImuStreamKind::Gyroscope) != k) continue;
+    const SessionImu accelerometer = session.imus[*other];
+    SessionImu& imu = session.imus[k];
+    imu.recording = fileOf(imu);
+    imu.accelerometer_recording = fileOf(accelerometer);
+    imu.accelerometer_stream = accelerometer.stream == imu.stream
+                                   ? accelerometerTable(imu.recording, imu.accelerometer_recording)
+                                   : accelerometer.stream;
+    imu.acceleration_unit = accelerometer.acceleration_unit;
+    session.imus.erase(session.imus.begin() + static_cast<std::ptrdiff_t>(*other));
+    if (*other < k) --k;
+  }
+}
+
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
@@ -335,6 +375,7 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
       if (first || (type == StreamType::Frames && hasFramesOnly(each))) addFrom(each, type);
   }
   for (const InspectedRecording& each : recordings) addFrom(each, StreamType::Imu);
+  joinFiles(recordings, session);
   if (session.cameras.empty())
     throw badInput(session.recording.string(),
                    "there are no events, frames or points to calibrate a camera from",

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
+#include "core/recording/column_names.h"
 
 #include <fmt/format.h>
 
@@ -23,6 +24,17 @@ Enum enumFrom(const Names& names, const std::string& key, const std::string& val
     throw badInput(key, fmt::format("'{}' is not a valid value", value),
                    nameAdvice(value, std::vector<std::string>(names.begin(), names.end())));
   return static_cast<Enum>(found - names.begin());
+}
+
+// A unit, or a number of units, as for raw counts: "0.000488 g".
+template <class Unit, class Names, class Read>
+void setUnit(const Names& names, const std::string& key, const std::string& value, Read read,
+             std::optional<Unit>& unit, double& factor) {
+  const bool number =
+      !value.empty() && (value.front() == '.' || (value.front() >= '0' && value.front() <= '9'));
+  const auto scaled = number ? read(value) : std::nullopt;
+  unit = scaled ? scaled->unit : enumFrom<Unit>(names, key, value);
+  factor = scaled ? scaled->factor : 1.0;
 }
 
 AxesReading axesOrThrow(const std::string& key, const std::string& value) {
@@ -47,9 +59,10 @@ std::array<double, 2> timeRangeFrom(const YamlNode& node) {
 
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value) {
   if (key == "acceleration_unit") {
-    imu.acceleration_unit = enumFrom<AccelerationUnit>(kAccelerationUnits, key, value);
+    setUnit(kAccelerationUnits, key, value, accelerationUnitOf, imu.acceleration_unit,
+            imu.acceleration_factor);
   } else if (key == "angular_rate_unit") {
-    imu.angular_rate_unit = enumFrom<AngularRateUnit>(kAngularRateUnits, key, value);
+    setUnit(kAngularRateUnits, key, value, angularRateUnitOf, imu.angular_rate_unit, imu.angular_rate_factor);
   } else if (key == "gyroscope_axes") {
     imu.gyroscope_axes = axesOrThrow(key, value);
   } else if (key == "accelerometer_axes") {

@@ -18,7 +18,8 @@ std::set<std::filesystem::path> filesOf(const Session& session) {
   };
   add(session.recording);
   for (const SessionCamera& camera : session.cameras) add(camera.recording);
-  for (const SessionImu& imu : session.imus) add(imu.recording);
+  for (const SessionImu& imu : session.imus)
+    for (const std::filesystem::path& file : {imu.recording, imu.accelerometer_recording}) add(file);
   return files;
 }
 

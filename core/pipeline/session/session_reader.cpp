@@ -36,6 +36,28 @@ Resolution readResolution(const YamlNode& node) {
 
 constexpr double kLargestOffset_s = 4.6e9;  // covers all times of recordings (kLatestTime_ns)
 
+std::string columnsFrom(const YamlNode& node) {
+  std::string columns = nameFrom(node);
+  if (columns.find('?') != std::string::npos)
+    throw node.error("has a ?", "Replace it by the column's name, or by - if the column is not used");
+  return columns;
+}
+
+void readColumns(const YamlNode& node, SessionCamera& camera) {
+  camera.columns = columnsFrom(node);
+}
+
+// One line, or one for each of the two sensors.
+void readColumns(const YamlNode& node, SessionImu& imu) {
+  if (!node.isMap()) {
+    imu.columns = columnsFrom(node);
+    return;
+  }
+  node.allowOnly({"gyroscope", "accelerometer"});
+  imu.columns = columnsFrom(node["gyroscope"]);
+  imu.accelerometer_columns = columnsFrom(node["accelerometer"]);
+}
+
 // Reads clock and columns of a stream.
 template <class Sensor>
 void readTable(const YamlNode& map, Sensor& sensor) {
@@ -43,11 +65,32 @@ void readTable(const YamlNode& map, Sensor& sensor) {
     sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
   if (const auto node = map.find("clock_scale"))
     sensor.clock_scale = node->real(kLeastClockScale, 1.0 / kLeastClockScale, "");
-  const auto columns = map.find("columns");
-  if (!columns) return;
-  sensor.columns = nameFrom(*columns);
-  if (sensor.columns.find('?') != std::string::npos)
-    throw columns->error("has a ?", "Replace it by the column's name, or by - if the column is not used");
+  if (const auto columns = map.find("columns")) readColumns(*columns, sensor);
+}
+
+// Files of the gyroscope and the accelerometer.
+std::vector<YamlNode> recordingsOfSensors(const YamlNode& node) {
+  std::vector<YamlNode> files = node.items();
+  if (files.size() != 2)
+    throw node.error("must name two files", "Give [gyroscope's file, accelerometer's file], or one file");
+  return files;
+}
+
+void readRecording(const YamlNode& node, const SessionFolder& folder, SessionCamera& camera) {
+  camera.recording = recordingBeside(node, folder);
+}
+
+void readRecording(const YamlNode& node, const SessionFolder& folder, SessionImu& imu) {
+  if (!node.isSequence()) {
+    imu.recording = recordingBeside(node, folder);
+    return;
+  }
+  const std::vector<YamlNode> files = recordingsOfSensors(node);
+  imu.recording = recordingBeside(files[0], folder);
+  imu.accelerometer_recording = recordingBeside(files[1], folder);
+  if (imu.accelerometer_stream.empty())
+    throw node.error("names two files, but only one stream",
+                     "Give gyroscope and accelerometer instead of stream");
 }
 
 void readStream(const YamlNode& map, SessionCamera& camera) {
@@ -57,6 +100,14 @@ void readStream(const YamlNode& map, SessionCamera& camera) {
 // One stream, or one for each of the two sensors.
 void readStream(const YamlNode& map, SessionImu& imu) {
   const auto gyroscope = map.find("gyroscope"), accelerometer = map.find("accelerometer");
+  const auto recording = map.find("recording");
+  if (!gyroscope && !accelerometer && recording && recording->isSequence() && !map.has("stream")) {
+    // Tables, whose only streams have the files' names.
+    const std::vector<YamlNode> files = recordingsOfSensors(*recording);
+    imu.stream = std::filesystem::path(nameFrom(files[0])).filename().string();
+    imu.accelerometer_stream = accelerometerTable(nameFrom(files[0]), nameFrom(files[1]));
+    return;
+  }
   if (!gyroscope && !accelerometer) {
     imu.stream = nameFrom(map["stream"]);
     return;
@@ -74,7 +125,7 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const Ses
   Sensor sensor;
   sensor.name = sensor_name;
   readStream(map, sensor);
-  if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
+  if (const auto node = map.find("recording")) readRecording(*node, folder, sensor);
   readTable(map, sensor);
   return sensor;
 }

@@ -2,15 +2,15 @@
 
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
-#include "core/base/time.h"
 #include "core/base/trimmed.h"
-#include "core/numerics/robust.h"
+#include "core/recording/text/table_times.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <tuple>
 
 namespace evical {
 namespace {
@@ -18,10 +18,7 @@ namespace {
 constexpr std::string_view kAroundName = " \t\r\"'";
 constexpr std::string_view kUnusedName = "-";
 constexpr std::size_t kMostListed = 8;
-constexpr std::size_t kFewestForRate = 10;
-constexpr double kSlowestImu_hz = 20.0, kFastestImu_hz = 20'000.0;
-constexpr double kSlowestPossible_hz = 2.0,
-                 kFastestPossible_hz = 50'000.0;  // above, a stated unit is doubtful
+constexpr std::size_t kMostImus = 8;
 
 using Axes = std::array<std::size_t, 3>;
 
@@ -63,8 +60,53 @@ std::vector<Axes> accelerationsOf(const TableHeader& header) {
   return named.empty() && header.has(ColumnKind::AngularRate) ? vectorsOf(header, ColumnKind::Alpha) : named;
 }
 
-// Proposed line for the session; '?' for names without a known meaning.
-std::string suggestion(const TableHeader& header) {
+// The three columns "x", "y" and "z" of a sensor that the header does not name.
+std::optional<Axes> bareAxesOf(const TableHeader& header) {
+  if (header.has(ColumnKind::Acceleration) || header.has(ColumnKind::AngularRate) ||
+      header.has(ColumnKind::Polarity) || header.has(ColumnKind::EventType) || header.has(ColumnKind::Point))
+    return std::nullopt;
+  Axes axes{};
+  std::array<int, 3> count{};
+  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+    const int axis = header.columns[i].bare_axis;
+    if (axis < 0) continue;
+    axes[static_cast<std::size_t>(axis)] = i;
+    ++count[static_cast<std::size_t>(axis)];
+  }
+  return count == std::array{1, 1, 1} ? std::optional(axes) : std::nullopt;
+}
+
+// Sensor of bare axes: by their unit, otherwise by the file's name.
+std::optional<MeasuredBy> sensorOf(const TableHeader& header, const Axes& axes,
+                                   std::optional<MeasuredBy> by_file) {
+  const std::string& unit = header.columns[axes[0]].unit;
+  if (accelerationUnitOf(unit)) return MeasuredBy::Accelerometer;
+  if (angularRateUnitOf(unit) && unit.find('s') != std::string::npos) return MeasuredBy::Gyroscope;
+  return by_file;
+}
+
+void nameBareAxes(std::optional<MeasuredBy> by_file, TableHeader& header) {
+  const std::optional<Axes> axes = bareAxesOf(header);
+  const auto sensor = axes ? sensorOf(header, *axes, by_file) : std::nullopt;
+  if (!sensor) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    ColumnName& column = header.columns[(*axes)[axis]];
+    column.kind = *sensor == MeasuredBy::Gyroscope ? ColumnKind::AngularRate : ColumnKind::Acceleration;
+    column.axis = static_cast<int>(axis);
+    column.lettered = true;
+    column.group.clear();
+  }
+}
+
+bool namesImu(const TableHeader& header) {
+  return header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
+}
+bool namesPlaces(const TableHeader& header) {
+  return header.has(ColumnKind::X) && header.has(ColumnKind::Y);
+}
+
+// Proposed line for the session; '?' for names without a known meaning. `sensor`: letter of a sensor for bare axes.
+std::string suggestion(const TableHeader& header, std::span<const TableColumn> table, char sensor = '?') {
   std::string text;
   const auto add = [&](const std::string& name) { text += (text.empty() ? "" : ",") + name; };
   const std::vector<Axes> accelerations = accelerationsOf(header),
@@ -75,9 +117,14 @@ std::string suggestion(const TableHeader& header) {
       return axes != vectors.front() && std::find(axes.begin(), axes.end(), i) != axes.end();
     });
   };
+  const bool bare = bareAxesOf(header).has_value(), imu = namesImu(header) || bare;
+  const std::vector<std::size_t> time = chooseTime(header, table).columns;
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const ColumnName& column = header.columns[i];
-    if (isFurther(i, accelerations) || isFurther(i, rates)) {
+    const bool other_time =
+        column.kind == ColumnKind::Time && std::find(time.begin(), time.end(), i) == time.end();
+    if (isFurther(i, accelerations) || isFurther(i, rates) || other_time || (imu && column.other_quantity) ||
+        (bare && sensor != '?' && column.kind != ColumnKind::Time && column.bare_axis < 0)) {
       add(std::string(kUnusedName));
       continue;
     }
@@ -85,134 +132,54 @@ std::string suggestion(const TableHeader& header) {
     switch (column.kind) {
       case ColumnKind::Time:
         add(timeUnitNamed(column.unit) ? "t" + unit : "t");
-        break;
+        continue;
       case ColumnKind::Acceleration:
       case ColumnKind::AngularRate:
         add(fmt::format("{}{}{}", column.kind == ColumnKind::Acceleration ? 'a' : 'g',
                         column.lettered ? "xyz"[column.axis] : '?', unit));
-        break;
-      case ColumnKind::X:
-        add("x");
-        break;
-      case ColumnKind::Y:
-        add("y");
-        break;
-      case ColumnKind::Polarity:
-        add("p");
-        break;
-      case ColumnKind::EventType:
-        add("type");
-        break;
-      case ColumnKind::Point:
-        add("point");
-        break;
+        continue;
       default:
-        add("?");
+        break;
     }
+    if (bare && column.bare_axis >= 0)
+      add(fmt::format("{}{}", sensor, "xyz"[column.bare_axis]));
+    else if (imu)
+      add("?");
+    else
+      add(column.kind == ColumnKind::X           ? "x"
+          : column.kind == ColumnKind::Y         ? "y"
+          : column.kind == ColumnKind::Polarity  ? "p"
+          : column.kind == ColumnKind::EventType ? "type"
+          : column.kind == ColumnKind::Point     ? "point"
+                                                 : "?");
   }
   return text;
 }
 
-void refuse(const TableHeader& header, std::string problem, TextColumns& columns) {
+// A header and the rows below it.
+struct NamedTable {
+  const TableHeader& header;
+  std::span<const TableColumn> table;
+};
+
+void refuse(const NamedTable& named, std::string problem, TextColumns& columns) {
+  const bool imu = namesImu(named.header) || bareAxesOf(named.header);
   columns.type = StreamType::Other;
   columns.problem = std::move(problem);
-  columns.advice = columnsAdvice(suggestion(header));
-}
-
-// Suitability of a group of columns as the time; more is better.
-int timeRank(const std::vector<std::size_t>& members, const TableHeader& header) {
-  const std::string& group = header.columns[members.front()].group;
-  const bool stamp = group.find("header_stamp") != std::string::npos;
-  const bool late = group.find("log") != std::string::npos || group.find("receive") != std::string::npos ||
-                    group.find("host") != std::string::npos || group.find("arrival") != std::string::npos;
-  return (stamp ? 4 : 0) + (members.size() > 1 ? 2 : 0) - (late ? 1 : 0);
-}
-
-std::optional<std::int64_t> unitOfTime(const ColumnName& column) {
-  return timeUnitNamed(column.unit);
-}
-
-// Seconds and their fractions: each finer column is less than one unit of the next coarser one.
-bool areParts(const std::vector<std::size_t>& members, const TableHeader& header,
-              std::span<const TableColumn> table) {
-  for (std::size_t k = 0; k < members.size(); ++k) {
-    if (!unitOfTime(header.columns[members[k]]) || members[k] >= table.size()) return false;
-    const ColumnNumbers& numbers = table[members[k]].numbers;
-    if (k == 0) continue;
-    const auto ratio = static_cast<double>(*unitOfTime(header.columns[members[k - 1]])) /
-                       static_cast<double>(*unitOfTime(header.columns[members[k]]));
-    if (ratio <= 1.0 || !numbers.whole || numbers.largest >= ratio) return false;
-  }
-  return true;
-}
-
-// Chooses the columns whose sum is the time.
-void chooseTime(const TableHeader& header, std::span<const TableColumn> table, TextColumns& columns) {
-  std::vector<std::string> order;
-  std::map<std::string, std::vector<std::size_t>> groups;
-  for (const std::size_t i : columnsOfKind(header, ColumnKind::Time)) {
-    const std::string& group = header.columns[i].group;
-    if (!groups.contains(group)) order.push_back(group);
-    groups[group].push_back(i);
-  }
-  for (auto& [group, members] : groups) {
-    std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
-      return unitOfTime(header.columns[a]).value_or(0) > unitOfTime(header.columns[b]).value_or(0);
-    });
-    if (members.size() > 1 && !areParts(members, header, table)) members = {members.front()};
-  }
-  const std::string best = *std::max_element(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-    return timeRank(groups[a], header) < timeRank(groups[b], header);
-  });
-  columns.time.clear();
-  for (const std::size_t i : groups[best])
-    columns.time.push_back({i, unitOfTime(header.columns[i]).value_or(0)});
-  const bool doubtful = std::any_of(order.begin(), order.end(), [&](const std::string& group) {
-    return group != best && timeRank(groups[group], header) == timeRank(groups[best], header);
-  });
-  if (doubtful)
-    columns.notes.push_back(fmt::format("Several columns are times; {} is used. If this is wrong, {}.",
-                                        header.names[groups[best].front()],
-                                        "name the columns in the session (columns)"));
-}
-
-void chooseTimeUnit(std::span<const TableColumn> table, std::size_t rows, TextColumns& columns) {
-  TimeColumn& time = columns.time.front();
-  const bool known = time.column < table.size() && rows > 0;
-  if (time.unit_ns != 0) {
-    if (columns.type != StreamType::Imu || columns.time.size() > 1 || !known || rows < kFewestForRate) return;
-    const std::int64_t likely_ns = guessUnit_ns(table[time.column], columns.type);
-    const std::vector<double>& values = table[time.column].values;
-    const double rate_hz =
-        static_cast<double>(values.size() - 1) /
-        (1e-9 * static_cast<double>(time.unit_ns) * std::max(values.back() - values.front(), 1e-9));
-    const bool possible = rate_hz >= kSlowestPossible_hz && rate_hz <= kFastestPossible_hz;
-    if (possible || likely_ns == time.unit_ns) return;
-    columns.notes.push_back(
-        fmt::format("The header states times in {}, which gives {:.4g} samples a second; {} would "
-                    "give {:.4g}. Check the header, or name the columns in the session (columns).",
-                    timeUnitName(time.unit_ns), rate_hz, timeUnitName(likely_ns),
-                    rate_hz * static_cast<double>(time.unit_ns) / static_cast<double>(likely_ns)));
-    return;
-  }
-  time.unit_ns = known ? guessUnit_ns(table[time.column], columns.type) : kSecond_ns;
-  const bool obvious =
-      known && (time.unit_ns == kSecond_ns ? !table[time.column].numbers.whole
-                                           : table[time.column].numbers.largest >= kEpoch_ns);
-  if (!obvious)
-    columns.notes.push_back(fmt::format("The header does not state the unit of time; {} is assumed.",
-                                        timeUnitName(time.unit_ns)));
+  columns.advice =
+      columnsAdvice(suggestion(named.header, named.table), imu ? StreamType::Imu : StreamType::Other);
 }
 
 // False, with the reason, if the three columns have no known unit, or different ones.
 template <class Unit, class Read>
-bool takeUnit(const TableHeader& header, const Axes& axes, Read read, const char* sensor, Unit& unit,
-              double& factor, TextColumns& columns) {
+bool takeUnit(const NamedTable& named, const Axes& axes, Read read, const char* sensor, Unit& unit,
+              std::array<double, 3>& factor, TextColumns& columns) {
+  const TableHeader& header = named.header;
   const std::string& first = header.columns[axes[0]].unit;
   for (const std::size_t i : axes) {
     const std::string& own = header.columns[i].unit;
     if (own == first) continue;
-    refuse(header,
+    refuse(named,
            fmt::format("its header gives the {}'s axes different units: {} and {}", sensor, first, own),
            columns);
     return false;
@@ -220,44 +187,146 @@ bool takeUnit(const TableHeader& header, const Axes& axes, Read read, const char
   if (first.empty()) return true;
   const auto known = read(first);
   if (!known) {
-    refuse(header, fmt::format("its header has an unknown unit of the {}: {}", sensor, first), columns);
+    refuse(named, fmt::format("its header has an unknown unit of the {}: {}", sensor, first), columns);
     return false;
   }
   unit = known->unit;
-  factor = known->factor;
+  factor.fill(known->factor);
   return true;
 }
 
-void applyImu(const TableHeader& header, TextColumns& columns) {
+// The sensors of one IMU in a table; one of the two may be missing.
+struct NamedImu {
+  std::string name;
+  std::optional<Axes> acceleration, rate;
+};
+
+void applyImu(const NamedTable& named, const NamedImu& imu, TextColumns& columns) {
+  columns.type = StreamType::Imu;
+  columns.part = imu.name;
+  columns.measured_by = !imu.rate           ? MeasuredBy::Accelerometer
+                        : !imu.acceleration ? MeasuredBy::Gyroscope
+                                            : MeasuredBy::Both;
+  if (imu.acceleration) {
+    columns.acceleration = *imu.acceleration;
+    if (!takeUnit(named, columns.acceleration, accelerationUnitOf, "accelerometer", columns.acceleration_unit,
+                  columns.acceleration_factor, columns))
+      return;
+  }
+  if (!imu.rate) return;
+  columns.rate = *imu.rate;
+  takeUnit(named, columns.rate, angularRateUnitOf, "gyroscope", columns.angular_rate_unit,
+           columns.rate_factor, columns);
+}
+
+// IMUs by the names of their columns: "imu0_ax", ..., "imu1_gz". Empty if the names do not pair the sensors.
+std::vector<NamedImu> pairedImus(const TableHeader& header, const std::vector<Axes>& accelerations,
+                                 const std::vector<Axes>& rates) {
+  std::map<std::string, NamedImu> imus;
+  const auto add = [&](const std::vector<Axes>& vectors, std::optional<Axes> NamedImu::*sensor) {
+    return std::all_of(vectors.begin(), vectors.end(), [&](const Axes& axes) {
+      const ColumnName& column = header.columns[axes[0]];
+      NamedImu& imu = imus[column.imu];
+      imu.name = column.imu;
+      const bool first = !(imu.*sensor);
+      imu.*sensor = axes;
+      return first && !column.of_stage;
+    });
+  };
+  if (!add(accelerations, &NamedImu::acceleration) || !add(rates, &NamedImu::rate)) return {};
+  std::vector<NamedImu> found;
+  for (const auto& [name, imu] : imus) {
+    if (!imu.acceleration || !imu.rate || found.size() == kMostImus) return {};
+    found.push_back(imu);
+  }
+  return found;
+}
+
+// One sensor is enough if no other columns may be the other one.
+bool mayLack(const NamedTable& named) {
+  std::size_t unknown = 0;
+  for (std::size_t i = 0; i < named.header.columns.size() && i < named.table.size(); ++i) {
+    const ColumnName& column = named.header.columns[i];
+    unknown += column.kind == ColumnKind::Other && !column.other_quantity && !column.numbers_imus &&
+               !named.table[i].values.empty() && named.header.names[i] != kUnusedName;
+  }
+  return unknown < 3;
+}
+
+void applyImus(const NamedTable& named, TextColumns& columns) {
+  const TableHeader& header = named.header;
   const std::vector<Axes> accelerations = accelerationsOf(header),
                           rates = vectorsOf(header, ColumnKind::AngularRate);
-  for (const auto& [vectors, sensor] :
-       {std::pair{&accelerations, "accelerometer"}, std::pair{&rates, "gyroscope"}}) {
+  const bool no_rate = !header.has(ColumnKind::AngularRate),
+             no_force = !header.has(ColumnKind::Acceleration) && !header.has(ColumnKind::Alpha);
+  if (accelerations.size() > 1 && rates.size() > 1) {
+    const std::vector<NamedImu> imus = pairedImus(header, accelerations, rates);
+    for (std::size_t k = 1; k < imus.size(); ++k) {
+      applyImu(named, imus[k], columns.further.emplace_back());
+      if (!columns.further.back().problem.empty()) columns = columns.further.back();
+    }
+    if (!columns.problem.empty()) return;
+    if (!imus.empty()) return applyImu(named, imus.front(), columns);
+  }
+  for (const auto& [vectors, sensor, may_lack] :
+       {std::tuple{&accelerations, "accelerometer", no_force}, std::tuple{&rates, "gyroscope", no_rate}}) {
+    if (vectors->empty() && may_lack && mayLack(named)) continue;
     if (vectors->empty())
-      return refuse(header,
-                    fmt::format("its header does not name three columns x, y and z of the {}", sensor),
+      return refuse(named,
+                    may_lack
+                        ? fmt::format("its header names no {}", sensor)
+                        : fmt::format("its header does not name three columns x, y and z of the {}", sensor),
                     columns);
     if (vectors->size() == 1) continue;
     std::vector<std::string> names;
     for (const Axes& axes : *vectors) names.push_back(header.names[axes[0]]);
-    return refuse(header, fmt::format("its header names more than one {}: {}", sensor, joined(names)),
+    return refuse(named, fmt::format("its header names more than one {}: {}", sensor, joined(names)),
                   columns);
   }
-  columns.type = StreamType::Imu;
-  columns.acceleration = accelerations.front();
-  columns.rate = rates.front();
-  if (takeUnit(header, columns.acceleration, accelerationUnitOf, "accelerometer", columns.acceleration_unit,
-               columns.acceleration_factor, columns))
-    takeUnit(header, columns.rate, angularRateUnitOf, "gyroscope", columns.angular_rate_unit,
-             columns.rate_factor, columns);
+  const auto only = [](const std::vector<Axes>& vectors) {
+    return vectors.empty() ? std::nullopt : std::optional(vectors.front());
+  };
+  applyImu(named, {"", only(accelerations), only(rates)}, columns);
 }
 
-void applyEventsOrPoints(const TableHeader& header, TextColumns& columns) {
+// Texts of a column that occur about equally often: numbers of IMUs whose rows alternate. Empty for other columns.
+std::vector<std::string> imuNumbers(const TableColumn& column) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::string_view cell : column.cells) {
+    ++counts[std::string(cell)];
+    if (counts.size() > kMostImus) return {};
+  }
+  std::vector<std::string> numbers;
+  for (const auto& [text, count] : counts) {
+    if (text.empty() || 4 * count * counts.size() < column.cells.size()) return {};
+    numbers.push_back(text);
+  }
+  return numbers.size() > 1 && column.cells.size() >= 2 * numbers.size() ? numbers
+                                                                         : std::vector<std::string>{};
+}
+
+// Rows of several IMUs, distinguished by a column with their numbers.
+void separateRows(const NamedTable& named, TextColumns& columns) {
+  for (std::size_t i = 0; i < named.header.columns.size() && i < named.table.size(); ++i) {
+    if (!named.header.columns[i].numbers_imus || columns.only || !columns.further.empty()) continue;
+    const std::vector<std::string> numbers = imuNumbers(named.table[i]);
+    if (numbers.empty()) continue;
+    const TextColumns all = columns;
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      TextColumns& own = k == 0 ? columns : columns.further.emplace_back(all);
+      own.only = RowSelection{i, numbers[k]};
+      own.part = named.header.names[i] + " " + numbers[k];
+    }
+  }
+}
+
+void applyEventsOrPoints(const NamedTable& named, TextColumns& columns) {
+  const TableHeader& header = named.header;
   const auto only = [&](ColumnKind kind, std::size_t& column) {
     const std::vector<std::size_t> found = columnsOfKind(header, kind);
     if (!found.empty()) column = found.front();
     if (found.size() > 1)
-      refuse(header,
+      refuse(named,
              fmt::format("its header has two columns with the same meaning: {} and {}",
                          header.names[found[0]], header.names[found[1]]),
              columns);
@@ -279,12 +348,6 @@ std::string firstOf(const std::vector<std::string>& names) {
          (first.size() < all.size() ? fmt::format(" and {} more", all.size() - first.size()) : "");
 }
 
-bool namesImu(const TableHeader& header) {
-  return header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
-}
-bool namesPlaces(const TableHeader& header) {
-  return header.has(ColumnKind::X) && header.has(ColumnKind::Y);
-}
 bool lacksTimes(const TableHeader& header) {
   return !header.has(ColumnKind::Time) && (namesImu(header) || namesPlaces(header));
 }
@@ -296,6 +359,10 @@ std::string whatIsMissing(const TableHeader& header) {
   if (imu)
     return fmt::format("its header names no {}",
                        header.has(ColumnKind::AngularRate) ? "accelerometer" : "gyroscope");
+  if (bareAxesOf(header))
+    return "its header names x, y and z, but neither polarity (events) nor point (measured points) nor the "
+           "sensor of "
+           "these axes";
   if (places)
     return "its header names columns x and y, but neither polarity (events) nor point (measured points)";
   return fmt::format("its header names neither events, IMU samples nor measured points: {}",
@@ -306,8 +373,11 @@ std::string unusedNames(const TableHeader& header, const TextColumns& columns) {
   std::vector<std::size_t> used;
   for (const TimeColumn& part : columns.time) used.push_back(part.column);
   if (columns.type == StreamType::Imu) {
-    used.insert(used.end(), columns.acceleration.begin(), columns.acceleration.end());
-    used.insert(used.end(), columns.rate.begin(), columns.rate.end());
+    if (columns.measures(MeasuredBy::Accelerometer))
+      used.insert(used.end(), columns.acceleration.begin(), columns.acceleration.end());
+    if (columns.measures(MeasuredBy::Gyroscope))
+      used.insert(used.end(), columns.rate.begin(), columns.rate.end());
+    if (columns.only) used.push_back(columns.only->column);
   } else {
     used.insert(used.end(), {columns.x, columns.y});
     used.push_back(columns.type == StreamType::Events ? columns.polarity : columns.point);
@@ -329,7 +399,9 @@ bool TableHeader::has(ColumnKind kind) const {
 
 bool TableHeader::namesTable() const {
   if (!has(ColumnKind::Time)) return false;
-  const bool imu = has(ColumnKind::AngularRate) && (has(ColumnKind::Acceleration) || has(ColumnKind::Alpha));
+  const bool both = has(ColumnKind::AngularRate) && (has(ColumnKind::Acceleration) || has(ColumnKind::Alpha));
+  const bool imu = both || !vectorsOf(*this, ColumnKind::AngularRate).empty() ||
+                   !vectorsOf(*this, ColumnKind::Acceleration).empty();
   const bool place = has(ColumnKind::X) && has(ColumnKind::Y);
   return imu ||
          (place && (has(ColumnKind::Polarity) || has(ColumnKind::EventType) || has(ColumnKind::Point)));
@@ -360,57 +432,78 @@ TableHeader readTableHeader(std::string_view line, bool comment) {
   return header;
 }
 
-void applyHeader(const TableHeader& header, std::span<const TableColumn> table, std::size_t rows,
-                 TextColumns& columns) {
+namespace {
+
+// Time of each IMU, and what is not used.
+void finishHeader(const NamedTable& named, TextColumns& columns) {
+  const TimeChoice time = chooseTime(named.header, named.table, columns.part);
+  columns.time.clear();
+  for (const std::size_t i : time.columns)
+    columns.time.push_back({i, timeUnitNamed(named.header.columns[i].unit).value_or(0)});
+  if (time.doubtful)
+    columns.notes.push_back(fmt::format("Several columns are times; {} is used. If this is wrong, {}.",
+                                        named.header.names[time.columns.front()],
+                                        "name the columns in the session (columns)"));
+  chooseTimeUnit(named.table, columns);
+  columns.unused = unusedNames(named.header, columns);
+}
+
+void refuseBareAxes(const NamedTable& named, TextColumns& columns) {
+  columns.type = StreamType::Other;
+  columns.problem = whatIsMissing(named.header);
+  columns.advice = fmt::format(
+      "If the table is of a gyroscope or an accelerometer, name it in the file's name, or name the columns "
+      "{}, with the "
+      "sensor: columns: \"{}\" or columns: \"{}\"; or put such a line at the top of the file",
+      howTo(HowTo::EditSession), suggestion(named.header, named.table, 'g'),
+      suggestion(named.header, named.table, 'a'));
+}
+
+}  // namespace
+
+void applyHeader(TableHeader header, std::span<const TableColumn> table, std::size_t rows,
+                 std::optional<MeasuredBy> sensor, TextColumns& columns) {
+  nameBareAxes(sensor, header);
+  const NamedTable named{header, table};
   if (rows > 0 && header.names.size() != table.size())
-    return refuse(header,
+    return refuse(named,
                   fmt::format("its header has {} names, but its lines have {} columns", header.names.size(),
                               table.size()),
                   columns);
-  if (!header.namesTable()) {
-    refuse(header, whatIsMissing(header), columns);
+  if (!header.namesTable() && header.has(ColumnKind::Time) && bareAxesOf(header))
+    return refuseBareAxes(named, columns);
+  if (!header.namesTable() && !(header.has(ColumnKind::Time) && namesImu(header))) {
+    refuse(named, whatIsMissing(header), columns);
     if (lacksTimes(header))
       columns.advice =
           "Add a column of times (t_s, t_ms, t_us or t_ns), preferably the sensor's. Row numbers divided by "
           "the rate of samples are only valid without missing rows";
     return;
   }
-  if (header.has(ColumnKind::AngularRate)) {
-    applyImu(header, columns);
+  if (namesImu(header)) {
+    applyImus(named, columns);
+    if (columns.problem.empty()) separateRows(named, columns);
   } else {
-    applyEventsOrPoints(header, columns);
+    applyEventsOrPoints(named, columns);
   }
-  if (!columns.problem.empty()) return;
-  chooseTime(header, table, columns);
-  chooseTimeUnit(table, rows, columns);
-  columns.unused = unusedNames(header, columns);
+  if (!columns.problem.empty()) {
+    columns.further.clear();
+    return;
+  }
+  finishHeader(named, columns);
+  for (TextColumns& further : columns.further) finishHeader(named, further);
 }
 
-std::string columnsAdvice(const std::string& names) {
-  const bool open = names.find('?') != std::string::npos;
+std::string columnsAdvice(const std::string& names, StreamType type) {
+  const bool open = names.find('?') != std::string::npos, imu = type == StreamType::Imu;
   return fmt::format(
       "Name the columns {}, with the sensor: columns: \"{}\"{}; or put such a line at the top of the "
       "file",
       howTo(HowTo::EditSession), names,
-      open ? " (for each ? one of t_s, t_ms, t_us, t_ns, ax, ay, az, gx, gy, gz, x, y, p, or - if it is not "
-             "used)"
+      open ? fmt::format(" (for each ? one of t_s, t_ms, t_us, t_ns, ax, ay, az, gx, gy, gz{}, or - if it is "
+                         "not used)",
+                         imu ? "" : ", x, y, p")
            : "");
-}
-
-std::int64_t guessUnit_ns(const TableColumn& time, StreamType type) {
-  const std::vector<double>& values = time.values;
-  if (type != StreamType::Imu || values.size() < kFewestForRate)
-    return guessTimeUnit_ns(time.numbers, values.size());
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if (values[i] > values[i - 1]) steps.push_back(values[i] - values[i - 1]);
-  if (steps.empty()) return guessTimeUnit_ns(time.numbers, values.size());
-  const double step = medianOf(std::move(steps));
-  for (const std::int64_t unit_ns : {std::int64_t{1}, kMicrosecond_ns, std::int64_t{1'000'000}, kSecond_ns}) {
-    const double rate_hz = 1e9 / (step * static_cast<double>(unit_ns));
-    if (rate_hz >= kSlowestImu_hz && rate_hz < kFastestImu_hz) return unit_ns;
-  }
-  return guessTimeUnit_ns(time.numbers, values.size());
 }
 
 }  // namespace evical

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,11 +15,11 @@
 
 namespace evical {
 
-// Column of numbers in the first rows.
+// Column in the first rows.
 struct TableColumn {
   ColumnNumbers numbers;
-  std::vector<double> values;
-  std::size_t texts = 0;  // cells without a number
+  std::vector<double> values;           // of cells with a number
+  std::vector<std::string_view> cells;  // all
 };
 
 struct TableHeader {
@@ -33,15 +34,11 @@ struct TableHeader {
 
 TableHeader readTableHeader(std::string_view line, bool comment);
 
-// Fills in `columns`, or sets `problem` and `advice` if the names are ambiguous.
-void applyHeader(const TableHeader& header, std::span<const TableColumn> table, std::size_t rows,
-                 TextColumns& columns);
+// Fills in `columns`, or sets `problem` and `advice` if the names are ambiguous. `sensor`: named by the file's name.
+void applyHeader(TableHeader header, std::span<const TableColumn> table, std::size_t rows,
+                 std::optional<MeasuredBy> sensor, TextColumns& columns);
 
 // Proposed line for the session, and its place there.
-std::string columnsAdvice(const std::string& names);
-
-// Unit of whole or fractional times: IMUs give 20 to 20 000 samples a second; for events see
-// guessTimeUnit_ns.
-std::int64_t guessUnit_ns(const TableColumn& time, StreamType type);
+std::string columnsAdvice(const std::string& names, StreamType type = StreamType::Other);
 
 }  // namespace evical

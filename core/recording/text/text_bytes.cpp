@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 
 namespace evical {
 namespace {
@@ -28,14 +29,53 @@ void TextBytes::Closing::operator()(gzFile_s* file) const {
   gzclose(file);
 }
 
-// Files that are not packed are read unchanged.
+// Files that are not packed are read unchanged. A byte order mark identifies UTF-16.
 TextBytes::TextBytes(const std::filesystem::path& path) : file_(gzopen(path.c_str(), "rb")) {
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   gzbuffer(file_.get(), kBuffer_bytes);
   size_ = std::filesystem::file_size(path);
+  std::array<char, 2> mark{};
+  const bool marked = readUnpacked(mark.data(), mark.size()) == mark.size();
+  high_byte_ = marked && mark == std::array{'\xFF', '\xFE'}   ? 1
+               : marked && mark == std::array{'\xFE', '\xFF'} ? 0
+                                                              : -1;
+  if (high_byte_ < 0) gzrewind(file_.get());
+  damaged_ = false;
 }
 
 std::size_t TextBytes::read(char* bytes, std::size_t count) {
+  if (high_byte_ < 0) return readUnpacked(bytes, count);
+  while (utf8_.size() < count && addUtf16()) {
+  }
+  const std::size_t got = utf8_.copy(bytes, count);
+  utf8_.erase(0, got);
+  return got;
+}
+
+// Converts the next piece to UTF-8; false at the end.
+bool TextBytes::addUtf16() {
+  constexpr std::size_t kPiece_bytes = std::size_t{1} << 16;
+  std::string piece(kPiece_bytes, '\0');
+  piece.resize(readUnpacked(piece.data(), piece.size()));
+  for (std::size_t i = 0; i + 1 < piece.size(); i += 2) {
+    const auto high = static_cast<unsigned char>(piece[i + static_cast<std::size_t>(high_byte_)]),
+               low = static_cast<unsigned char>(piece[i + 1 - static_cast<std::size_t>(high_byte_)]);
+    const auto unit = static_cast<unsigned>(high << 8 | low);
+    if (unit < 0x80) {
+      utf8_ += static_cast<char>(unit);
+    } else if (unit < 0x800) {
+      utf8_ += {static_cast<char>(0xC0 | unit >> 6), static_cast<char>(0x80 | (unit & 0x3F))};
+    } else if (unit < 0xD800 || unit > 0xDFFF) {
+      utf8_ += {static_cast<char>(0xE0 | unit >> 12), static_cast<char>(0x80 | (unit >> 6 & 0x3F)),
+                static_cast<char>(0x80 | (unit & 0x3F))};
+    } else {
+      utf8_ += '?';  // a character beyond those of numbers and names
+    }
+  }
+  return !piece.empty();
+}
+
+std::size_t TextBytes::readUnpacked(char* bytes, std::size_t count) {
   std::size_t got = 0;
   while (got < count && !damaged_) {
     const int more =

@@ -1,4 +1,5 @@
-// Bytes of a text file from begin to end, unpacked if it is packed with gzip.
+// Bytes of a text file from begin to end, unpacked if it is packed with gzip. UTF-16, as PowerShell and Excel write it,
+// becomes UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +35,12 @@ class TextBytes {
   struct Closing {
     void operator()(gzFile_s* file) const;
   };
+  std::size_t readUnpacked(char* bytes, std::size_t count);
+  bool addUtf16();
+
   std::unique_ptr<gzFile_s, Closing> file_;
+  int high_byte_ = -1;  // of UTF-16: place of a unit's high byte; -1: not UTF-16
+  std::string utf8_;    // converted, not yet read
   std::uint64_t size_ = 0;
   bool damaged_ = false;
 };

@@ -4,7 +4,7 @@
 #include "core/base/trimmed.h"
 #include "core/numerics/robust.h"
 #include "core/recording/column_guess.h"
-#include "core/recording/text/table_header.h"
+#include "core/recording/text/table_times.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -33,119 +33,6 @@ bool withPoint(std::string_view text, Parse parse) {
   return parse(std::string_view(copy.data(), text.size()));
 }
 
-bool cellNumber(std::string_view text, const TextStyle& style, double& number) {
-  if (text == "true" || text == "True") return number = 1.0, true;
-  if (text == "false" || text == "False") return number = 0.0, true;
-  std::int64_t date_ns = 0;
-  if (parseDate(text, date_ns)) return number = 1e-9 * static_cast<double>(date_ns), true;
-  return parseCell(text, style, number);
-}
-
-// "1,5" with digits on both sides.
-bool hasDecimalComma(std::string_view cell) {
-  const std::size_t comma = cell.find(',');
-  const auto isDigit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  return comma != std::string_view::npos && comma > 0 && comma + 1 < cell.size() &&
-         isDigit(cell[comma - 1]) && isDigit(cell[comma + 1]) &&
-         cell.find(',', comma + 1) == std::string_view::npos;
-}
-
-TextStyle styleOf(std::string_view line) {
-  TextStyle style;
-  if (line.find_first_of(",;\t") == std::string_view::npos) style.blanks = true;
-  if (line.find_first_of(";\t") == std::string_view::npos) return style;
-  TextStyle comma = style;
-  comma.decimal_comma = true;
-  std::vector<std::string_view> cells;
-  splitColumns(line, comma, cells);
-  double number = 0.0;
-  const bool all = std::all_of(cells.begin(), cells.end(), [&](std::string_view cell) {
-    return cell.find(',') == std::string_view::npos ||
-           (hasDecimalComma(cell) && parseCell(cell, comma, number));
-  });
-  return all && std::any_of(cells.begin(), cells.end(), hasDecimalComma) ? comma : style;
-}
-
-// First lines of a table: rows of numbers, and the lines above them.
-class TableHead {
- public:
-  // `line` has its number in the file. False if the text is not a table.
-  bool add(std::string_view line, std::uint64_t number) {
-    if (rows == 0) first_row = number + 1;
-    if (line.substr(0, 4) == "sep=" || readGeometry(line)) return true;
-    const bool comment = line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
-    if (comment && rows > 0) return true;
-    if (!comment && rows == 0) style = styleOf(line);
-    if (!comment && addRow(line)) {
-      if (rows++ == 0) first_row = number;
-      return true;
-    }
-    if (rows > 0) return true;  // the reader reports a bad line among rows
-    if (!comment && number == 1 && readSize(line)) return true;
-    const bool is_text =
-        std::none_of(line.begin(), line.end(), [](unsigned char c) { return c < ' ' && c != '\t'; });
-    const bool named = comment || std::isalpha(static_cast<unsigned char>(line.front())) != 0 ||
-                       std::string_view("_,;\"'").find(line.front()) != std::string_view::npos;
-    if (!is_text || !named) return false;
-    headers.push_back(readTableHeader(line, comment));
-    return true;
-  }
-
-  TextStyle style;
-  std::vector<TableColumn> columns;
-  std::vector<TableHeader> headers;               // lines above the rows that may name columns
-  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, if these exist
-  std::size_t rows = 0;
-  std::uint64_t first_row = 1;
-  Resolution size_px;
-  bool has_geometry = false;
-
- private:
-  bool readGeometry(std::string_view line) {
-    constexpr std::string_view kGeometry = "%geometry:";
-    if (!line.starts_with(kGeometry)) return false;
-    has_geometry = true;
-    readSize(line.substr(kGeometry.size()));
-    return true;
-  }
-
-  // Two whole numbers: width and height, as in e2vid's first line.
-  bool readSize(std::string_view line) {
-    std::vector<std::string_view> sides;
-    splitColumns(line, sides);
-    std::uint16_t width = 0, height = 0;
-    if (sides.size() != 2 || !parseNumber(sides[0], width) || !parseNumber(sides[1], height)) return false;
-    size_px = {width, height};
-    return true;
-  }
-
-  bool addRow(std::string_view line) {
-    splitColumns(line, style, cells_);
-    numbers_.assign(cells_.size(), 0.0);
-    std::vector<bool> is_number(cells_.size());
-    for (std::size_t i = 0; i < cells_.size(); ++i) is_number[i] = cellNumber(cells_[i], style, numbers_[i]);
-    const auto count = static_cast<std::size_t>(std::count(is_number.begin(), is_number.end(), true));
-    if (count < 3 || 2 * count < cells_.size() || (rows > 0 && cells_.size() != columns.size())) return false;
-    columns.resize(cells_.size());
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (!is_number[i]) {
-        ++columns[i].texts;
-        continue;
-      }
-      columns[i].numbers.add(numbers_[i], columns[i].values.empty());
-      columns[i].values.push_back(numbers_[i]);
-    }
-    if (cells_.size() >= kImuColumns) {
-      first_norms.push_back(std::hypot(numbers_[1], numbers_[2], numbers_[3]));
-      second_norms.push_back(std::hypot(numbers_[4], numbers_[5], numbers_[6]));
-    }
-    return true;
-  }
-
-  std::vector<std::string_view> cells_;
-  std::vector<double> numbers_;
-};
-
 bool isGravity(double norm) {
   return std::abs(norm - kStandardGravity_m_s2) < 0.8 || std::abs(norm - 1.0) < 0.08;
 }
@@ -154,6 +41,23 @@ std::vector<ColumnNumbers> numbersOf(const TableHead& head) {
   std::vector<ColumnNumbers> numbers;
   for (const TableColumn& column : head.columns) numbers.push_back(column.numbers);
   return numbers;
+}
+
+// Coordinates with decimals are of undistorted or rectified events.
+bool refuseDecimalPixels(const TableHead& head, TextColumns& columns) {
+  std::vector<ColumnNumbers> numbers = numbersOf(head);
+  for (ColumnNumbers& column : numbers)
+    if (column.pixels == 0 && column.first >= 0.0 && column.largest <= 65535.0)
+      std::swap(column.pixels, column.others);
+  const std::optional<EventColumns> events = guessEventColumns(numbers);
+  if (!events) return false;
+  columns.problem = fmt::format(
+      "no header names the columns; as events, line {} has the coordinates {} and {}, which are not whole "
+      "pixels",
+      head.lines.front(), head.columns[events->x].cells.front(), head.columns[events->y].cells.front());
+  columns.advice =
+      "Give the raw events of the sensor: undistorted or averaged coordinates cannot be calibrated";
+  return true;
 }
 
 bool guessEvents(const TableHead& head, TextColumns& columns) {
@@ -172,7 +76,7 @@ bool guessEvents(const TableHead& head, TextColumns& columns) {
 bool recogniseEcho(const TableHead& head, TextColumns& columns) {
   if (head.columns.size() != kEchoedImuColumns || head.columns[2].numbers.isPixel()) return false;
   const auto whole = [&](std::size_t i) {
-    return head.columns[i].texts == 0 && head.columns[i].numbers.whole;
+    return head.columns[i].values.size() == head.rows && head.columns[i].numbers.whole;
   };
   if (!whole(0) || !whole(1) || head.columns[1].numbers.largest >= 1e9) return false;
   columns.type = StreamType::Imu;
@@ -189,7 +93,7 @@ bool guessImu(const TableHead& head, TextColumns& columns) {
   if (first == second) {
     columns.problem =
         "no header names the columns, and the numbers do not show which ones are the accelerometer's";
-    columns.advice = columnsAdvice("t_s,ax,ay,az,gx,gy,gz");
+    columns.advice = columnsAdvice("t_s,ax,ay,az,gx,gy,gz", StreamType::Imu);
     return false;
   }
   columns.type = StreamType::Imu;
@@ -248,32 +152,188 @@ bool followConvention(const TableHead& head, StreamType convention, TextColumns&
       imu && isGravity(medianOf(head.second_norms)) && !isGravity(medianOf(head.first_norms));
   if (head.rows > 0 && ((!events && !imu) || rate_first)) return false;
   columns.type = convention;
-  return convention != StreamType::Other;
+  if (convention == StreamType::Other || head.rows == 0) return convention != StreamType::Other;
+  std::int64_t& unit_ns = columns.time.front().unit_ns;
+  unit_ns = guessUnit_ns(head.columns.front(), convention);
+  if (unit_ns != kSecond_ns)
+    columns.notes.push_back(fmt::format(
+        "There is no header. Files of this name have times in s, but these fit {}, which is assumed. If "
+        "this is wrong, add a line such as \"t_s,{}\" at the top.",
+        timeUnitName(unit_ns), events ? "x,y,p" : "ax,ay,az,gx,gy,gz"));
+  return true;
 }
 
-TextColumns columnsOf(const TableHead& head, std::string_view names, StreamType convention) {
+StreamType conventionOf(const std::string& file) {
+  return file == "events.txt" ? StreamType::Events : file == "imu.txt" ? StreamType::Imu : StreamType::Other;
+}
+
+// Columns that a row must have as numbers, with the names for messages.
+std::vector<std::pair<std::size_t, std::string>> neededColumns(const TextColumns& columns) {
+  std::vector<std::pair<std::size_t, std::string>> needed;
+  for (const TimeColumn& part : columns.time) needed.emplace_back(part.column, "time");
+  if (columns.type == StreamType::Imu) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (columns.measures(MeasuredBy::Accelerometer))
+        needed.emplace_back(columns.acceleration[axis], fmt::format("acceleration {}", "xyz"[axis]));
+      if (columns.measures(MeasuredBy::Gyroscope))
+        needed.emplace_back(columns.rate[axis], fmt::format("angular rate {}", "xyz"[axis]));
+    }
+    return needed;
+  }
+  needed.insert(needed.end(), {{columns.x, "x"}, {columns.y, "y"}});
+  needed.emplace_back(columns.type == StreamType::Events ? columns.polarity : columns.point,
+                      columns.type == StreamType::Events ? "polarity" : "point");
+  return needed;
+}
+
+void refuseCell(TextColumns& columns, std::uint64_t line, const std::string& what, std::string_view cell) {
+  constexpr std::size_t kMostShown = 40;
+  const bool time = what == "time";
+  const bool thousands =
+      std::count(cell.begin(), cell.end(), '.') > 1 || std::count(cell.begin(), cell.end(), ',') > 1;
+  columns.type = StreamType::Other;
+  columns.problem = cell.empty()
+                        ? fmt::format("line {} has no {}, nor have the lines below", line, what)
+                        : fmt::format("line {} has \"{}\" as {}, and no line below has one that can be read",
+                                      line, cell.substr(0, kMostShown), what);
+  columns.advice = !time       ? "Write numbers with a decimal point, or check the names of the columns"
+                   : thousands ? "Write times without thousands separators, such as 1700000000000000000"
+                               : "Write times as numbers, as 2026-03-01T10:00:00.25Z, or as 12:34:56.789";
+}
+
+// No row can be read if a column has no readable cell.
+void checkReadable(const TableHead& head, TextColumns& columns) {
+  if (columns.type == StreamType::Other || head.rows == 0) return;
+  for (const auto& [column, what] : neededColumns(columns)) {
+    if (column >= head.columns.size() || head.columns[column].values.empty())
+      return refuseCell(columns, head.lines.front(), what,
+                        column < head.columns.size() ? head.columns[column].cells.front() : "");
+    const bool place = columns.type == StreamType::Events && (what == "x" || what == "y");
+    if (!place || head.columns[column].numbers.pixels > 0) continue;
+    refuseCell(columns, head.lines.front(), what, head.columns[column].cells.front());
+    columns.advice =
+        "Give the raw events of the sensor, in whole pixels: undistorted or averaged coordinates cannot be "
+        "calibrated";
+    return;
+  }
+}
+
+// The header is that of a table, but no line below has numbers.
+void checkUnread(const TableHead& head, TextColumns& columns) {
+  if (columns.type == StreamType::Other || head.rows > 0 || head.unread_line == 0) return;
+  if (head.unread_cells.size() < columns.count()) {
+    columns.type = StreamType::Other;
+    columns.problem = fmt::format("line {} has {} columns, but its header names {} that are needed",
+                                  head.unread_line, head.unread_cells.size(), columns.count());
+    columns.advice = "Check the lines of the table";
+    return;
+  }
+  for (const auto& [column, what] : neededColumns(columns))
+    if (!cellNumber(head.unread_cells[column], head.style))
+      return refuseCell(columns, head.unread_line, what, head.unread_cells[column]);
+}
+
+// Reads the axes in the order that a line above the header states: "yxZ". An upper case letter is the channel, a lower
+// case one its negative. Lower case letters only have signs if the axes are right-handed with them.
+bool turnAxes(const std::string& orientation, TextColumns& columns) {
+  std::array<std::size_t, 3> channel{};
+  std::array<double, 3> sign{};
+  bool lower = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto letter = static_cast<unsigned char>(orientation[i]);
+    channel[i] = static_cast<std::size_t>(std::tolower(letter) - 'x');
+    sign[i] = std::isupper(letter) != 0 ? 1.0 : -1.0;
+    lower = lower && sign[i] < 0.0;
+  }
+  const bool even = (channel[1] + 3 - channel[0]) % 3 == 1;
+  const bool right_handed = even == (sign[0] * sign[1] * sign[2] > 0.0);
+  if (!right_handed && !(lower && even)) return false;
+  if (!right_handed) sign = {1.0, 1.0, 1.0};
+  const auto turn = [&](auto& values) {
+    const auto before = values;
+    for (std::size_t i = 0; i < 3; ++i) values[i] = before[channel[i]];
+  };
+  turn(columns.acceleration);
+  turn(columns.acceleration_factor);
+  turn(columns.rate);
+  turn(columns.rate_factor);
+  for (std::size_t i = 0; i < 3; ++i) {
+    columns.acceleration_factor[i] *= sign[i];
+    columns.rate_factor[i] *= sign[i];
+  }
+  return true;
+}
+
+// Scales above the header are for columns whose units it does not state.
+void applyScales(const TableHead& head, const TableHeader& header, TextColumns& columns) {
+  const TableScales& scales = head.scales;
+  if (columns.type != StreamType::Imu || !scales.any()) return;
+  const auto hasNoUnit = [&](std::size_t column) { return header.columns[column].unit.empty(); };
+  std::string applied;
+  const auto state = [&](const std::string& text) { applied += (applied.empty() ? "" : ", ") + text; };
+  if (scales.time_s && *scales.time_s < 1e6 && columns.time.size() == 1 &&
+      hasNoUnit(columns.time[0].column)) {
+    const double unit_ns = *scales.time_s * kNanosecondsPerSecond,
+                 power_ns = std::pow(10.0, std::round(std::log10(unit_ns)));
+    const bool exact = unit_ns > 0.5 && std::abs(unit_ns - power_ns) < 1e-9 * power_ns;
+    columns.time[0].unit_ns = exact ? std::llround(power_ns) : kSecond_ns;
+    columns.time[0].scale = exact ? 1.0 : *scales.time_s;
+    columns.notes.clear();  // the unit is not guessed
+    state(fmt::format("tscale {}", *scales.time_s));
+  }
+  if (scales.rate_rad_s && hasNoUnit(columns.rate[0])) {
+    columns.rate_factor.fill(*scales.rate_rad_s);
+    state(fmt::format("gscale {} rad/s", *scales.rate_rad_s));
+  }
+  if (scales.acceleration_g && hasNoUnit(columns.acceleration[0])) {
+    columns.acceleration_unit = AccelerationUnit::Gravity;
+    columns.acceleration_factor.fill(*scales.acceleration_g);
+    state(fmt::format("ascale {} g", *scales.acceleration_g));
+  }
+  if (!scales.orientation.empty()) {
+    if (turnAxes(scales.orientation, columns))
+      state("orientation " + scales.orientation);
+    else
+      columns.notes.push_back(fmt::format(
+          "The orientation {} above the header is left-handed, and is not applied.", scales.orientation));
+  }
+  if (!applied.empty()) columns.scales = "scaled as stated above the header: " + applied;
+}
+
+TextColumns columnsOf(const TableHead& head, std::string_view names, const std::string& file) {
   TextColumns columns;
+  const auto apply = [&](const TableHeader& header) {
+    applyHeader(header, head.columns, head.rows, sensorNamed(file.substr(0, file.find('.'))), columns);
+    applyScales(head, header, columns);
+  };
   if (!names.empty()) {
-    const TableHeader header = readTableHeader(names, false);
-    applyHeader(header, head.columns, head.rows, columns);
+    apply(readTableHeader(names, false));
   } else if (const TableHeader* const header = headerOf(head)) {
-    applyHeader(*header, head.columns, head.rows, columns);
+    apply(*header);
   } else if (head.has_geometry && head.columns.size() == 4) {
     columns.type = StreamType::Events;  // Metavision's viewer
     columns.x = 0;
     columns.y = 1;
     columns.polarity = 2;
     columns.time = {{3, kMicrosecond_ns}};
-  } else if (!followConvention(head, convention, columns) && !recogniseEcho(head, columns) &&
-             (guessEvents(head, columns) || guessImu(head, columns))) {
+  } else if (!followConvention(head, conventionOf(file), columns) && !recogniseEcho(head, columns) &&
+             (guessEvents(head, columns) ||
+              (!refuseDecimalPixels(head, columns) && guessImu(head, columns)))) {
     std::int64_t& unit_ns = columns.time.front().unit_ns;
     unit_ns = guessUnit_ns(head.columns[columns.time.front().column], columns.type);
     describeGuess(columns);
   }
+  return columns;
+}
+
+// Checks what the columns contain, and adds what is common to all.
+void complete(const TableHead& head, TextColumns& columns) {
+  checkUnread(head, columns);
+  checkReadable(head, columns);
+  checkTimes(head, columns);
   columns.style = head.style;
   columns.first_row = head.first_row;
   if (head.size_px.known()) columns.resolution_px = head.size_px;
-  return columns;
 }
 
 }  // namespace
@@ -283,9 +343,11 @@ std::size_t TextColumns::count() const {
   for (const TimeColumn& part : time) last = std::max(last, part.column);
   if (type == StreamType::Events) return std::max({last, x, y, polarity}) + 1;
   if (type == StreamType::Points) return std::max({last, x, y, point, sigma.value_or(0)}) + 1;
-  return std::max({last, *std::max_element(acceleration.begin(), acceleration.end()),
-                   *std::max_element(rate.begin(), rate.end())}) +
-         1;
+  if (only) last = std::max(last, only->column);
+  if (measures(MeasuredBy::Accelerometer))
+    last = std::max(last, *std::max_element(acceleration.begin(), acceleration.end()));
+  if (measures(MeasuredBy::Gyroscope)) last = std::max(last, *std::max_element(rate.begin(), rate.end()));
+  return last + 1;
 }
 
 void splitColumns(std::string_view line, std::vector<std::string_view>& columns) {
@@ -313,24 +375,45 @@ bool parseCell(std::string_view text, const TextStyle& style, double& number) {
   return withPoint(text, [&](std::string_view plain) { return parseNumber(plain, number); });
 }
 
+// Seconds, and a fraction without leading zeros.
+bool parseWithoutZeros(std::string_view text, int digits, std::int64_t& time_ns) {
+  const std::size_t point = std::min(text.find('.'), text.size());
+  std::int64_t fraction_ns = 0;
+  if (!parseSeconds(text.substr(0, point), time_ns)) return false;
+  if (point + 1 >= text.size()) return true;
+  if (!parseTime(text.substr(point + 1), 9 - digits, fraction_ns) || fraction_ns < 0) return false;
+  return !__builtin_add_overflow(time_ns, fraction_ns, &time_ns);
+}
+
+bool parseTimePart(std::string_view text, const TimeColumn& part, std::int64_t& time_ns) {
+  if (part.fraction_digits > 0) return parseWithoutZeros(text, part.fraction_digits, time_ns);
+  if (part.scale == 1.0) return parseTime(text, digitsOf(part.unit_ns), time_ns);
+  double number = 0.0;
+  if (!parseNumber(text, number)) return false;
+  const double scaled_ns = number * part.scale * static_cast<double>(part.unit_ns);
+  if (std::abs(scaled_ns) >= static_cast<double>(kLatestTime_ns)) return false;
+  time_ns = std::llround(scaled_ns);
+  return true;
+}
+
 bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& columns,
                 std::int64_t& time_ns) {
   time_ns = 0;
   for (const TimeColumn& part : columns.time) {
     std::int64_t part_ns = 0;
     const std::string_view cell = cells[part.column];
-    const int digits = digitsOf(part.unit_ns);
-    const auto parse = [&](std::string_view plain) { return parseTime(plain, digits, part_ns); };
+    const auto parse = [&](std::string_view plain) { return parseTimePart(plain, part, part_ns); };
     const bool good = columns.style.decimal_comma ? withPoint(cell, parse) : parse(cell);
-    if ((!good && !parseDate(cell, part_ns)) || __builtin_add_overflow(time_ns, part_ns, &time_ns))
+    if ((!good && !parseDate(cell, part_ns) && !parseClock(cell, part_ns)) ||
+        __builtin_add_overflow(time_ns, part_ns, &time_ns))
       return false;
   }
   return isTime(time_ns);
 }
 
 TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view names,
-                        StreamType convention) {
-  TableHead head;
+                        const std::string& file) {
+  TableHead head(!names.empty());
   const char line_end = lineEndOf(first_bytes);
   if (first_bytes.starts_with(kByteOrderMark)) first_bytes.remove_prefix(kByteOrderMark.size());
   for (std::uint64_t number = 1; !first_bytes.empty() && head.rows < kMostRows; ++number) {
@@ -340,7 +423,15 @@ TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view
     first_bytes.remove_prefix(end == std::string_view::npos ? first_bytes.size() : end + 1);
     if (!line.empty() && !head.add(line, number)) return {};
   }
-  return columnsOf(head, names, convention);
+  TextColumns columns = columnsOf(head, names, file);
+  complete(head, columns);
+  for (TextColumns& further : columns.further) {
+    complete(head, further);
+    if (further.problem.empty() || !columns.problem.empty()) continue;
+    columns.problem = further.problem;
+    columns.advice = further.advice;
+  }
+  return columns;
 }
 
 }  // namespace evical

@@ -19,6 +19,14 @@ namespace evical {
 struct TimeColumn {
   std::size_t column = 0;
   std::int64_t unit_ns = 1'000'000'000;
+  int fraction_digits = 0;  // if not 0: "12.5" is 12 s and 5 units of 10^-digits s, without leading zeros
+  double scale = 1.0;       // of a table that states one: what its numbers are multiplied by
+};
+
+// Rows of one of several IMUs in a table: those with this text in this column.
+struct RowSelection {
+  std::size_t column = 0;
+  std::string text;
 };
 
 // Notation of a table's lines.
@@ -38,21 +46,29 @@ struct TextColumns {
   std::array<std::size_t, 3> acceleration = {1, 2, 3}, rate = {4, 5, 6};  // of IMU samples: x, y, z
   AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
   AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
-  double acceleration_factor = 1.0, rate_factor = 1.0;  // to SI units
-  Resolution resolution_px;                             // from a line %geometry:w,h, or e2vid's "w h"
-  std::uint64_t first_row = 1;                          // its line; earlier lines are not rows
-  std::vector<std::string> notes;                       // for people: guesses and unused columns
-  std::string unused;                                   // names of columns that are not read
-  std::string problem, advice;                          // for unidentified columns: reason and advice
+  std::array<double, 3> acceleration_factor = {1.0, 1.0, 1.0},
+                        rate_factor = {1.0, 1.0, 1.0};  // to these units
+  MeasuredBy measured_by = MeasuredBy::Both;            // of IMU samples
+  bool clock_times = false;                             // times of day without a date
+  std::optional<RowSelection> only = {};
+  std::string part = {};             // name of the IMU, if the table has several
+  std::vector<TextColumns> further;  // of the other IMUs
+  Resolution resolution_px;          // from a line %geometry:w,h, or e2vid's "w h"
+  std::uint64_t first_row = 1;       // its line; earlier lines are not rows
+  std::vector<std::string> notes;    // for people: guesses and unused columns
+  std::string unused;                // names of columns that are not read
+  std::string scales;                // what was multiplied, for people
+  std::string problem, advice;       // for unidentified columns: reason and advice
 
   std::size_t count() const;  // columns that a line must have
+  bool measures(MeasuredBy sensor) const { return measured_by == MeasuredBy::Both || measured_by == sensor; }
   bool isTable() const { return type != StreamType::Other || !problem.empty(); }
 };
 
 // From a file's first bytes, whose last line may be cut off if `cut`. `names`: a header line that
-// replaces the file's own; "-" for an unused column. `convention`: type by the file's name.
+// replaces the file's own; "-" for an unused column. `file`: its name, which may tell its type or sensor.
 TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view names = {},
-                        StreamType convention = StreamType::Other);
+                        const std::string& file = {});
 
 // A line's columns; separated by commas, semicolons or tabs if it has any, otherwise by blanks.
 void splitColumns(std::string_view line, std::vector<std::string_view>& columns);

@@ -126,8 +126,8 @@ int digitsOf(std::int64_t unit_ns) {
 bool parseDate(std::string_view text, std::int64_t& time_ns) {
   // "2026-03-01T10:00:00"
   constexpr std::size_t kSeconds = 17;
-  if (text.size() < kSeconds + 2 || text[4] != '-' || text[7] != '-' ||
-      (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':')
+  if (text.size() < kSeconds + 2 || (text[4] != '-' && text[4] != '/' && text[4] != '.') ||
+      text[7] != text[4] || (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':')
     return false;
   const auto number = [&](std::size_t at, std::size_t length, int least, int most) {
     int value = -1;
@@ -157,6 +157,44 @@ bool parseDate(std::string_view text, std::int64_t& time_ns) {
   if (!date.ok()) return false;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   time_ns = (((days * 24 + hour) * 60 + minute - zone_minutes) * 60) * kSecond_ns + seconds_ns;
+  return true;
+}
+
+bool parseClock(std::string_view text, std::int64_t& time_ns) {
+  std::string_view rest = text;
+  const auto number = [&](int most, char end) {
+    int value = -1;
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    const auto length = static_cast<std::size_t>(stop - rest.data());
+    if (error != std::errc{} || length > 2 || value < 0 || value > most || length >= rest.size() ||
+        rest[length] != end)
+      return -1;
+    rest.remove_prefix(length + 1);
+    return value;
+  };
+  const auto takeEnd = [&](std::string_view upper, std::string_view lower) {
+    const bool has = rest.ends_with(upper) || rest.ends_with(lower);
+    if (has) rest.remove_suffix(upper.size());
+    while (has && rest.ends_with(' ')) rest.remove_suffix(1);
+    return has;
+  };
+  const bool evening = takeEnd("PM", "pm"), morning = !evening && takeEnd("AM", "am");
+  int hours = number(23, ':');
+  const int minutes = number(59, ':');
+  if (hours < 0 || minutes < 0 || rest.empty() || rest.size() > 16 || !isDigit(rest.front())) return false;
+  if (evening || morning) {
+    if (hours == 0 || hours > 12) return false;
+    hours = hours % 12 + (evening ? 12 : 0);
+  }
+  std::array<char, 16> seconds{};  // "56,789" and "56:789" become "56.789"
+  std::replace_copy_if(
+      rest.begin(), rest.end(), seconds.begin(), [](char c) { return c == ',' || c == ':'; }, '.');
+  const std::string_view plain(seconds.data(), rest.size());
+  std::int64_t seconds_ns = 0;
+  const bool digits = plain.find_first_not_of("0123456789.") == std::string_view::npos &&
+                      std::min(plain.find('.'), plain.size()) <= 2;
+  if (!digits || !parseSeconds(plain, seconds_ns) || seconds_ns > 61 * kSecond_ns) return false;
+  time_ns = (hours * 60 + minutes) * 60 * kSecond_ns + seconds_ns;
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/column_names.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +16,9 @@ namespace {
 constexpr std::size_t kTextPacketEvents = 10'000;
 constexpr std::int64_t kTextPacketSpan_ns = 10'000'000;
 constexpr std::size_t kTextPacketSamples = 10;
-constexpr int kMostBadLines = 10;  // reported individually
-constexpr std::size_t kHead_bytes = std::size_t{1} << 16;
+constexpr int kMostBadLines = 10;                          // reported individually
+constexpr std::size_t kHead_bytes = std::size_t{1} << 18;  // a second of any IMU's samples
+constexpr std::int64_t kDay_ns = 86'400 * kSecond_ns;
 constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
 
 bool parsePixel(std::string_view text, std::uint16_t& value) {
@@ -42,17 +44,51 @@ bool isComment(std::string_view line) {
 }
 
 bool parseVector(const std::vector<std::string_view>& cells, const std::array<std::size_t, 3>& axes,
-                 const TextStyle& style, double factor, Eigen::Vector3d& vector) {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!parseCell(cells[axes[i]], style, vector[static_cast<Eigen::Index>(i)])) return false;
-  if (factor != 1.0) vector *= factor;
+                 const TextStyle& style, const std::array<double, 3>& factor, Eigen::Vector3d& vector) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    double& value = vector[static_cast<Eigen::Index>(i)];
+    if (!parseCell(cells[axes[i]], style, value)) return false;
+    value *= factor[i];
+  }
   return true;
 }
 
-const char* rowOf(StreamType type) {
-  return type == StreamType::Events   ? "t x y p"
-         : type == StreamType::Points ? "t point x y"
-                                      : "t ax ay az gx gy gz";
+const char* rowOf(const TextColumns& columns) {
+  if (columns.type == StreamType::Events) return "t x y p";
+  if (columns.type == StreamType::Points) return "t point x y";
+  return columns.measured_by == MeasuredBy::Gyroscope       ? "t gx gy gz"
+         : columns.measured_by == MeasuredBy::Accelerometer ? "t ax ay az"
+                                                            : "t ax ay az gx gy gz";
+}
+
+TextColumns columnsIn(const std::filesystem::path& file) {
+  const std::string head = firstTextBytes(file, kHead_bytes);
+  return findColumns(head, head.size() == kHead_bytes, {}, file.filename().string());
+}
+
+std::vector<std::filesystem::path> textFiles(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path& file = entry.path();
+    const std::filesystem::path extension =
+        file.extension() == ".gz" ? file.stem().extension() : file.extension();
+    if (entry.is_regular_file() && (extension == ".csv" || extension == ".txt" || extension == ".gcsv"))
+      files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Tables of IMUs, or of one of their sensors, in a folder; also those whose columns the session names.
+std::vector<std::filesystem::path> imuTables(const std::filesystem::path& folder, const ColumnNames& names) {
+  std::vector<std::filesystem::path> files = textFiles(folder);
+  std::erase_if(files, [&](const std::filesystem::path& file) {
+    const std::string name = file.filename().string();
+    const bool known =
+        std::any_of(std::begin(kFiles), std::end(kFiles), [&](const char* each) { return name == each; });
+    return known || (!names.contains(name) && columnsIn(file).type != StreamType::Imu);
+  });
+  return files;
 }
 
 }  // namespace
@@ -60,6 +96,10 @@ const char* rowOf(StreamType type) {
 bool isTextTable(const std::filesystem::path& file) {
   const std::string head = firstTextBytes(file, kHead_bytes);
   return findColumns(head, head.size() == kHead_bytes).isTable();
+}
+
+bool hasImuTables(const std::filesystem::path& folder, const ColumnNames& names) {
+  return !imuTables(folder, names).empty();
 }
 
 bool isTextFolder(const std::filesystem::path& folder) {
@@ -73,37 +113,57 @@ TextTableReader::TextTableReader(const std::filesystem::path& path, const Column
     return found == names.end() ? std::string() : found->second;
   };
   if (!std::filesystem::is_directory(path)) {
-    addSource(path, namesOf(path.filename().string()));
+    addTable(path, namesOf(path.filename().string()));
     return;
   }
   for (const char* name : kFiles)
-    if (std::filesystem::exists(path / name)) addSource(path / name, namesOf(name));
+    if (std::filesystem::exists(path / name)) addTable(path / name, namesOf(name));
+  const auto isImu = [](const StreamInfo& stream) { return stream.type == StreamType::Imu; };
+  if (std::any_of(streams_.begin(), streams_.end(), isImu)) return;
+  for (const std::filesystem::path& file : imuTables(path, names))
+    addTable(file, namesOf(file.filename().string()));
+  addUnreadSensors(path, names);
 }
 
-void TextTableReader::addSource(const std::filesystem::path& path, const std::string& names) {
+// Reports tables that a sensor's name leads to expect, but that cannot be read.
+void TextTableReader::addUnreadSensors(const std::filesystem::path& folder, const ColumnNames& names) {
+  for (const std::filesystem::path& file : textFiles(folder)) {
+    const std::string name = file.filename().string();
+    const TextColumns columns = columnsIn(file);
+    if (names.contains(name) || columns.problem.empty() || !sensorNamed(file.stem().string())) continue;
+    faults_.push_back(
+        {name, FaultKind::Corrupt, 0.0, fmt::format("{} is not read: {}.", name, columns.problem)});
+  }
+}
+
+void TextTableReader::addTable(const std::filesystem::path& path, const std::string& names) {
   const std::string head = firstTextBytes(path, kHead_bytes);
-  const std::string name = path.filename().string();
-  const StreamType convention = name == kFiles[0]   ? StreamType::Events
-                                : name == kFiles[1] ? StreamType::Imu
-                                                    : StreamType::Other;
-  TextColumns columns = findColumns(head, head.size() == kHead_bytes, names, convention);
+  TextColumns columns = findColumns(head, head.size() == kHead_bytes, names, path.filename().string());
   if (!columns.problem.empty()) throw badInput(path.string(), columns.problem, columns.advice);
   if (columns.type == StreamType::Other)
     throw badInput(path.string(),
                    "the lines are neither events nor IMU samples, and no header names the columns",
                    "Add a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" at the top");
   if (path.extension() == ".csv" || path.stem().extension() == ".csv") format_ = "csv";
+  const std::vector<TextColumns> further = std::move(columns.further);
+  addSource(path, std::move(columns));
+  for (const TextColumns& other : further) addSource(path, other);
+}
+
+// A stream of a file. One of several IMUs has its own name.
+void TextTableReader::addSource(const std::filesystem::path& path, TextColumns columns) {
   StreamInfo stream;
-  stream.name = name;
+  stream.name = path.filename().string() + (columns.part.empty() ? "" : ":" + columns.part);
   stream.type = columns.type;
-  stream.message = rowOf(columns.type);
+  stream.message = rowOf(columns);
+  if (!columns.scales.empty()) stream.message += "; " + columns.scales;
   if (!columns.unused.empty()) stream.message += "; not used: " + columns.unused;
   stream.resolution_px = columns.resolution_px;
   stream.time_unit_ns = columns.time.back().unit_ns == kMicrosecond_ns ? kMicrosecond_ns : 1;
   stream.acceleration_unit = columns.acceleration_unit;
   stream.angular_rate_unit = columns.angular_rate_unit;
   streams_.push_back(stream);
-  for (const std::string& note : columns.notes) faults_.push_back({name, FaultKind::Guess, 0.0, note});
+  for (const std::string& note : columns.notes) faults_.push_back({stream.name, FaultKind::Guess, 0.0, note});
   const std::size_t width = columns.count();
   sources_.push_back(
       {TextLines(path), std::move(columns), width, true, false, std::numeric_limits<std::int64_t>::min()});
@@ -151,6 +211,7 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
         addBadLine(source, stream);
       continue;
     }
+    addDay(source, event.time_ns);
     if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kTextPacketEvents ||
                             event.time_ns - events.front().time_ns >= kTextPacketSpan_ns)) {
       source.next_event = event;
@@ -169,6 +230,7 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Ra
   while (samples.size() < kTextPacketSamples) {
     if (!source.lines.next(line)) return finish(source, stream);
     if (parseImu(source, line, sample)) {
+      addDay(source, sample.time_ns);
       samples.push_back(sample);
       source.last_ns = sample.time_ns;
     } else if (!isNoRow(source, line)) {
@@ -188,6 +250,7 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
       if (!isNoRow(source, line)) addBadLine(source, stream);
       continue;
     }
+    addDay(source, point.time_ns);
     source.last_ns = point.time_ns;
     if (!points.empty() && point.time_ns != points.back().time_ns) {
       source.next_point = point;
@@ -211,8 +274,23 @@ void TextTableReader::finish(Source& source, std::size_t stream) {
        fmt::format("The packed file is damaged after line {}; the rest is lost.", source.lines.number())});
 }
 
-bool TextTableReader::isNoRow(const Source& source, std::string_view line) {
-  return source.lines.number() < source.columns.first_row || isComment(line);
+// Times of day start again at midnight.
+void TextTableReader::addDay(Source& source, std::int64_t& time_ns) {
+  if (!source.columns.clock_times) return;
+  const std::int64_t since_ns = source.clock_ns ? time_ns - *source.clock_ns : 0;
+  if (since_ns > kDay_ns / 2) {  // a late sample from before midnight
+    time_ns += source.days_ns - kDay_ns;
+    return;
+  }
+  if (since_ns < -kDay_ns / 2) source.days_ns += kDay_ns;
+  source.clock_ns = time_ns;
+  time_ns += source.days_ns;
+}
+
+bool TextTableReader::isNoRow(const Source& source, std::string_view line) const {
+  const std::optional<RowSelection>& only = source.columns.only;
+  return source.lines.number() < source.columns.first_row || isComment(line) ||
+         (only && parts_.size() > only->column && parts_[only->column] != only->text);  // of another IMU
 }
 
 // A trigger or a reset among events.
@@ -252,10 +330,15 @@ bool TextTableReader::parsePoint(const Source& source, std::string_view line, Me
 bool TextTableReader::parseImu(const Source& source, std::string_view line, RawImuSample& sample) {
   const TextColumns& columns = source.columns;
   splitColumns(line, columns.style, parts_);
-  return parts_.size() >= source.width && parseTimes(parts_, columns, sample.time_ns) &&
-         parseVector(parts_, columns.acceleration, columns.style, columns.acceleration_factor,
-                     sample.specific_force) &&
-         parseVector(parts_, columns.rate, columns.style, columns.rate_factor, sample.angular_rate);
+  sample.measured_by = columns.measured_by;
+  const bool own =
+      parts_.size() >= source.width && (!columns.only || parts_[columns.only->column] == columns.only->text);
+  return own && parseTimes(parts_, columns, sample.time_ns) &&
+         (!columns.measures(MeasuredBy::Accelerometer) ||
+          parseVector(parts_, columns.acceleration, columns.style, columns.acceleration_factor,
+                      sample.specific_force)) &&
+         (!columns.measures(MeasuredBy::Gyroscope) ||
+          parseVector(parts_, columns.rate, columns.style, columns.rate_factor, sample.angular_rate));
 }
 
 void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
@@ -265,9 +348,9 @@ void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
   };
   if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
   const bool last = source.lines.atEnd();
-  faults_.push_back({name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
-                     fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(),
-                                 rowOf(source.columns.type))});
+  faults_.push_back(
+      {name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
+       fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(), rowOf(source.columns))});
 }
 
 double TextTableReader::fractionRead() const {

@@ -42,9 +42,14 @@ class TextTableReader : public RecordingReader {
     bool has_next_event = false;
     std::optional<MeasuredPoint> next_point = {};  // as next_event
     std::uint64_t other_types = 0;                 // lines of other types than events
+    std::optional<std::int64_t> clock_ns = {};     // the last time of day
+    std::int64_t days_ns = 0;                      // whole days since the first one
   };
 
-  void addSource(const std::filesystem::path& path, const std::string& names);
+  void addTable(const std::filesystem::path& path, const std::string& names);
+  void addSource(const std::filesystem::path& path, TextColumns columns);
+  void addUnreadSensors(const std::filesystem::path& folder, const ColumnNames& names);
+  static void addDay(Source& source, std::int64_t& time_ns);
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
   void fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples);
   void fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points);
@@ -53,7 +58,7 @@ class TextTableReader : public RecordingReader {
   bool parseEvent(const Source& source, std::string_view line, Event& event);
   bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);
   bool isOtherType(const Source& source) const;
-  static bool isNoRow(const Source& source, std::string_view line);
+  bool isNoRow(const Source& source, std::string_view line) const;
   void addBadLine(const Source& source, std::size_t stream);
 
   std::vector<Source> sources_;  // one per stream
@@ -69,5 +74,8 @@ bool isTextTable(const std::filesystem::path& file);
 
 // True if a folder has files that this reader recognises by name.
 bool isTextFolder(const std::filesystem::path& folder);
+
+// True if a folder has other tables of IMUs, or of a gyroscope or an accelerometer, or tables with these names.
+bool hasImuTables(const std::filesystem::path& folder, const ColumnNames& names);
 
 }  // namespace evical

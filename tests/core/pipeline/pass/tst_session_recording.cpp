@@ -11,6 +11,7 @@
 
 #include <QTemporaryDir>
 
+#include <array>
 #include <cmath>
 
 using namespace evical;
@@ -51,6 +52,8 @@ class TestSessionRecording : public QObject {
   void mirroredFrames_areReversed();
   void columns_areThoseOfTheSession();
   void units_areThoseOfTheSession();
+  void twoFilesOfOneImu_areJoined();
+  void twoImusOfOneTable_areRead();
   void clocksWithoutRelation_areRefused();
   void missingStream_namesFileAndStreams();
   void intrinsicsOfAnotherResolution_areRefused();
@@ -250,6 +253,74 @@ void TestSessionRecording::columns_areThoseOfTheSession() {
   QVERIFY(!packet.imu_samples.empty());
   QVERIFY((packet.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(3, 2, 1)));
   QVERIFY((packet.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(7, 8, 9.8)));
+}
+
+// Gyroscope and accelerometer with their own files and stamps, as raw counts.
+void TestSessionRecording::twoFilesOfOneImu_areJoined() {
+  std::string gyroscope = "time_us,z,y,x\n", accelerometer = gyroscope;
+  for (int i = 0; i < 100; ++i) {
+    gyroscope += std::to_string(1200 + 5000 * i) + ",300,200,100\n";
+    accelerometer += std::to_string(10'000 * i) + ",1000,20,10\n";
+  }
+  writeFile(path("phone_a.csv"), gyroscope);
+  writeFile(path("phone_b.csv"), accelerometer);
+  Session session = session_;
+  session.cameras.clear();
+  SessionImu imu;
+  imu.name = "phone";
+  imu.recording = path("phone_a.csv");
+  imu.accelerometer_recording = path("phone_b.csv");
+  imu.stream = "phone_a.csv";
+  imu.accelerometer_stream = "phone_b.csv";
+  imu.columns = "t_us,gz,gy,gx";
+  imu.accelerometer_columns = "t_us,az,ay,ax";
+  imu.acceleration_unit = AccelerationUnit::Gravity;
+  imu.acceleration_factor = 0.001;
+  imu.angular_rate_factor = 0.01;
+  session.imus = {imu};
+  SessionRecording recording(session);
+  std::size_t rates = 0, forces = 0;
+  for (SensorPacket packet; recording.read(packet);)
+    for (const ImuSample& sample : packet.imu_samples) {
+      if (measuresRate(sample)) {
+        QVERIFY((sample.angular_rate_rad_s - Eigen::Vector3d(1.0, 2.0, 3.0)).norm() < 1e-12);
+        QCOMPARE(qlonglong((sample.time_ns - 1'200'000) % 5'000'000), qlonglong(0));
+        ++rates;
+      } else {
+        QVERIFY(
+            (sample.specific_force_m_s2 / kStandardGravity_m_s2 - Eigen::Vector3d(0.01, 0.02, 1.0)).norm() <
+            1e-12);
+        ++forces;
+      }
+    }
+  QVERIFY(rates == 100 && forces == 100);
+}
+
+// Two IMUs in one table, whose columns the session names.
+void TestSessionRecording::twoImusOfOneTable_areRead() {
+  std::string table = "time_us,a,b,c,d,e,f,g,h,i,j,k,l\n";
+  for (int i = 0; i < 50; ++i) table += std::to_string(5000 * i) + ",1,2,9,4,5,6,7,8,9,10,11,12\n";
+  writeFile(path("both.csv"), table);
+  Session session = session_;
+  session.cameras.clear();
+  session.imus.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    session.imus[i].name = "imu" + std::to_string(i);
+    session.imus[i].stream = "both.csv";
+    session.imus[i].recording = path("both.csv");
+  }
+  session.imus[0].columns = "t_us,ax,ay,az,gx,gy,gz,-,-,-,-,-,-";
+  session.imus[1].columns = "t_us,-,-,-,-,-,-,ax,ay,az,gx,gy,gz";
+  SessionRecording recording(session);
+  std::array<std::size_t, 2> counts{};
+  for (SensorPacket packet; recording.read(packet);)
+    for (const ImuSample& sample : packet.imu_samples) {
+      const std::size_t imu = packet.sensor == recording.imuSensor(0) ? 0 : 1;
+      QVERIFY(
+          (sample.angular_rate_rad_s == (imu == 0 ? Eigen::Vector3d(4, 5, 6) : Eigen::Vector3d(10, 11, 12))));
+      ++counts[imu];
+    }
+  QVERIFY(counts[0] == 50 && counts[1] == 50);
 }
 
 void TestSessionRecording::units_areThoseOfTheSession() {

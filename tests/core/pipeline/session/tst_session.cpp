@@ -488,6 +488,62 @@ correlation:
     QVERIFY((axesFrom("-x, -y, -z") == AxesReading{-1, -2, -3}));
   }
 
+  // Raw counts have the size of a count as their unit.
+  void imusUnits_mayHaveAFactor() {
+    for (const auto& [text, factor] :
+         {std::pair{"0.000488 g", 0.000488}, std::pair{"1/16384 g", 1.0 / 16384.0},
+          std::pair{"0.061 mg", 0.000061}, std::pair{"g", 1.0}}) {
+      Session session = sessionWith("acceleration_unit: -g", QString("acceleration_unit: %1").arg(text));
+      QVERIFY(session.imus[0].acceleration_unit == AccelerationUnit::Gravity);
+      QVERIFY(std::abs(session.imus[0].acceleration_factor / factor - 1.0) < 1e-12);
+      setInSession(session, "imus.left_imu.angular_rate_unit", "0.061 deg/s");
+      const Session again = readSession(write("again.yaml", sessionYaml(session, folder())));
+      QCOMPARE(again.imus[0].acceleration_factor, session.imus[0].acceleration_factor);
+      QVERIFY(again.imus[0].angular_rate_unit == AngularRateUnit::DegreesPerSecond);
+      QCOMPARE(again.imus[0].angular_rate_factor, 0.061);
+    }
+    for (const char* const none : {"0 g", "-0.1 g", "1/0 g", "3", "0.1 lsb", "1e999 g"})
+      QVERIFY_THROWS_EXCEPTION(
+          CalibrationError, sessionWith("acceleration_unit: -g", QString("acceleration_unit: %1").arg(none)));
+  }
+
+  // Gyroscope and accelerometer of a phone.
+  void imu_mayHaveTwoFiles() {
+    for (const char* const file : {"Gyroscope.csv", "Accelerometer.csv"}) write(file, "x");
+    const QString two = "recording: [Gyroscope.csv, Accelerometer.csv]\n";
+    const Session session =
+        sessionWith("stream: /left/imu\n",
+                    two + "    columns: {gyroscope: \"t_ns,gz,gy,gx\", accelerometer: \"t_ns,az,ay,ax\"}\n");
+    const Session again = readSession(write("again.yaml", sessionYaml(session, folder())));
+    for (const SessionImu& imu : {session.imus[0], again.imus[0]}) {
+      QCOMPARE(imu.recording.filename().string(), std::string("Gyroscope.csv"));
+      QCOMPARE(imu.accelerometer_recording.filename().string(), std::string("Accelerometer.csv"));
+      QCOMPARE(imu.joinedStream(), std::string("Gyroscope.csv + Accelerometer.csv"));
+      QCOMPARE(imu.columns, std::string("t_ns,gz,gy,gx"));
+      QCOMPARE(imu.accelerometer_columns, std::string("t_ns,az,ay,ax"));
+    }
+    for (const char* const bad : {"recording: [Gyroscope.csv]\n", "recording: [Gyroscope.csv, none.csv]\n",
+                                  "recording: [Gyroscope.csv, Accelerometer.csv]\n    stream: imu\n"})
+      QVERIFY_THROWS_EXCEPTION(CalibrationError, sessionWith("stream: /left/imu\n", bad));
+  }
+
+  // A table may have columns of several IMUs.
+  void sensorsOfOneTable_differInTheirColumns() {
+    const auto with = [&](const char* columns) {
+      return sessionWith("reference: left_imu\n",
+                         QString("  right_imu:\n    stream: /left/imu\n    columns: \"%1\"\n"
+                                 "    accelerometer_noise_density: 1e-3\n    gyroscope_noise_density: 1e-4\n"
+                                 "reference: left_imu\n")
+                             .arg(columns));
+    };
+    QCOMPARE(with("t_s,ax,ay,az,gx,gy,gz").imus.size(), std::size_t{2});
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, sessionWith("reference: left_imu\n",
+                                                           "  right_imu:\n    stream: /left/imu\n"
+                                                           "    accelerometer_noise_density: 1e-3\n"
+                                                           "    gyroscope_noise_density: 1e-4\n"
+                                                           "reference: left_imu\n"));
+  }
+
   void oneKey_isSet() {
     Session session = sessionWith("", "");
     setInSession(session, "imus.left_imu.acceleration_unit", "g");

@@ -255,6 +255,29 @@ class TestSessionGuess : public QObject {
     QVERIFY(draft.yaml.find("    # clock_offset_s: ") != std::string::npos);
   }
 
+  // The sensors of a phone: the nearest names belong together.
+  void draft_joinsFilesOfOneImu() {
+    const auto half = [](const std::string& file, bool gyroscope) {
+      StreamSummary stream = imuStream(file);
+      (gyroscope ? stream.without_force : stream.without_rate) = stream.count;
+      return holding({stream});
+    };
+    const SessionDraft draft = draftSession({{"right/Accelerometer.csv", half("Accelerometer.csv", false)},
+                                             {"left/Gyroscope.csv", half("Gyroscope.csv", true)},
+                                             {"camera.raw", holding({eventStream("events")})},
+                                             {"left/Accelerometer.csv", half("Accelerometer.csv", false)},
+                                             {"right/Gyroscope.csv", half("Gyroscope.csv", true)}},
+                                            ".");
+    QCOMPARE(draft.session.imus.size(), std::size_t{2});
+    for (const SessionImu& imu : draft.session.imus) {
+      QCOMPARE(imu.stream, std::string("Gyroscope.csv"));
+      QCOMPARE(imu.accelerometer_stream, std::string("Accelerometer.csv"));
+      QVERIFY(imu.recording.parent_path() == imu.accelerometer_recording.parent_path());
+    }
+    QVERIFY2(draft.yaml.find("recording: [left/Gyroscope.csv, left/Accelerometer.csv]") != std::string::npos,
+             draft.yaml.c_str());
+  }
+
   void draft_ofFramesAlone_hasFrameCameras() {
     const SessionDraft draft = draftSession(
         {{"r.bag", holding({frameStream("/cam0/image_raw", {752, 480}), imuStream("/imu0")})}}, ".");
