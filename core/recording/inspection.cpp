@@ -33,8 +33,8 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
   std::vector<std::int64_t> times_ns;
   for (const RawImuSample& sample : samples) times_ns.push_back(sample.time_ns);
   const double span_s = secondsSince(summary.first_ns, summary.last_ns);
-  const double period_s = findStampBatches(times_ns) ? span_s / static_cast<double>(samples.size() - 1)
-                                                     : medianInterval_s(si);
+  const double period_s =
+      findStampBatches(times_ns) ? span_s / static_cast<double>(samples.size() - 1) : medianInterval_s(si);
   if (period_s > 0.0) summary.rate_hz = 1.0 / period_s;
   summary.median_acceleration = medianForceNorm(samples);
   const double steady = steadyForceNorm(si).value_or(summary.median_acceleration);

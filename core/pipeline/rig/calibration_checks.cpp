@@ -47,15 +47,15 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,
                     unit.words.empty() ? "" : ": the unit seems to be ", unit.words),
-        unit.in_session ? fmt::format("Set acceleration_unit: {} for this IMU", *unit.in_session)
-        : !unit.words.empty()
-            ? fmt::format("Convert the accelerations to m/s^2: multiply them by {:.3g}",
-                          options.gravity_m_s2 / norm * std::abs(metresPerSecond2(read_as)))
-        : norm < options.least_acceleration_m_s2
-            ? "Record accelerations with gravity (not linear or user accelerations), or check acceleration_unit "
-              "(m/s^2, g, -g) of this IMU"
-            : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for raw counts the size of a count as its "
-              "data sheet states it, such as 1/16384 g")
+        unit.in_session       ? fmt::format("Set acceleration_unit: {} for this IMU", *unit.in_session)
+        : !unit.words.empty() ? fmt::format("Convert the accelerations to m/s^2: multiply them by {:.3g}",
+                                            options.gravity_m_s2 / norm * std::abs(metresPerSecond2(read_as)))
+        : norm < options.least_acceleration_m_s2 ? "Record accelerations with gravity (not linear or user "
+                                                   "accelerations), or check acceleration_unit "
+                                                   "(m/s^2, g, -g) of this IMU"
+                                                 : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for "
+                                                   "raw counts the size of a count as its "
+                                                   "data sheet states it, such as 1/16384 g")
         .repairedBy(unit.in_session
                         ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", *unit.in_session})
                         : std::nullopt);
