@@ -39,10 +39,13 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
   const double norm = medianOf(std::move(norms));
   if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
     constexpr double kShaken = 0.3;  // of the norm, by motion
-    const AccelerationUnit read_as = session != nullptr && session->acceleration_unit
-                                         ? *session->acceleration_unit
-                                         : AccelerationUnit::MetresPerSecond2;
-    const LikelyUnit unit = likelyUnit(read_as, norm / options.gravity_m_s2, kShaken);
+    const std::optional<AccelerationUnit> stated =
+        session != nullptr ? session->acceleration_unit : std::nullopt;
+    const AccelerationUnit read_as = stated.value_or(AccelerationUnit::MetresPerSecond2);
+    const double times = norm / options.gravity_m_s2;
+    LikelyUnit unit = likelyUnit(read_as, times, kShaken);
+    if (unit.words.empty() && !stated)  // by the recording's format
+      unit = likelyUnit(AccelerationUnit::Gravity, times, kShaken);
     throw badInput(
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,

@@ -444,7 +444,7 @@ class Calibration {
         flagDoubtful(noise, result);
     }
     rankReasons(result);
-    // What a reason states, or what follows from it.
+    // Notes that a reason states, or that follow from it.
     const auto named = [&](const char* cause) {
       return std::ranges::any_of(result.causes,
                                  [&](const QualityWarning& each) { return each.name == cause; });

@@ -5,6 +5,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/rotation_rates.h"
+#include "core/intrinsics/estimate_intrinsics.h"
 #include "core/numerics/robust.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
@@ -50,9 +51,11 @@ std::optional<WrongRates> wrongRates(const Session& session, const CalibrationIn
     if (!found ||
         std::abs(std::log(found->ratio)) < std::log(session.options.initialisation->wrong_rate_ratio))
       continue;
-    const AngularRateUnit read_as =
-        session.imus[k].angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond);
-    const LikelyUnit unit = likelyUnit(read_as, found->ratio, kUnitTolerance);
+    const std::optional<AngularRateUnit>& stated = session.imus[k].angular_rate_unit;
+    const AngularRateUnit read_as = stated.value_or(AngularRateUnit::RadiansPerSecond);
+    LikelyUnit unit = likelyUnit(read_as, found->ratio, kUnitTolerance);
+    if (unit.words.empty() && !stated)  // by the recording's format
+      unit = likelyUnit(AngularRateUnit::DegreesPerSecond, found->ratio, kUnitTolerance);
     std::string problem = fmt::format("the gyroscope's rates are {} compared with the rotation of {}",
                                       timesWords(found->ratio), camera.name);
     if (!unit.words.empty()) problem += ": their unit seems to be " + unit.words;
@@ -99,9 +102,11 @@ std::optional<CalibrationError> wrongForces(const Session& session, const Calibr
   return std::nullopt;
 }
 
+const char* const kCorrectLens =
+    "Remove intrinsics of this camera from the session, or give those of this lens at this resolution";
+
 // Words for a given lens that differs from the recording's; empty if the difference is small.
-std::string wrongLensWords(const std::string& camera, const CameraIntrinsics& given,
-                           const CameraIntrinsics& found, double sigma_px,
+std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics& found, double sigma_px,
                            const InitialisationOptions& options) {
   constexpr double kCertain_sigmas = 6.0;
   const double diagonal_px = std::hypot(found.resolution_px.width_px, found.resolution_px.height_px);
@@ -115,38 +120,51 @@ std::string wrongLensWords(const std::string& camera, const CameraIntrinsics& gi
   const double centre_times = given.principal_point_px.norm() / std::max(centre_px.norm(), 1.0);
   constexpr double kNoticeable = 1.05, kAlike = 0.1;
   std::string text = fmt::format(
-      "{}: the given lens differs from that of the recording by {:.2g} px (RMS over the image): focal "
-      "lengths of "
+      "the given lens differs from that of the recording by {:.2g} px (RMS over the image): focal lengths of "
       "{:.4g} and {:.4g} px agree, the given ones ({:.4g} and {:.4g} px) are {}",
-      camera, off_px, found.focal_length_px.x(), found.focal_length_px.y(), given.focal_length_px.x(),
+      off_px, found.focal_length_px.x(), found.focal_length_px.y(), given.focal_length_px.x(),
       given.focal_length_px.y(),
       std::abs(std::log(times)) > std::log(kNoticeable)
           ? timesWords(times)
           : std::string("similar, so the distortion, its model or the principal point is wrong"));
   if (std::abs(std::log(times)) > std::log(kNoticeable) && std::abs(centre_times / times - 1.0) < kAlike)
     text += ", and the principal point alike: the lens seems to be that of another resolution";
-  return text +
-         ". Remove intrinsics of this camera from the session, or give those of this lens at this resolution";
+  return text;
 }
 
-// The lens as calibrated from the recording alone.
-std::optional<CalibrationError> wrongLens(const Session& session, const RunContext& context) {
+// The lens from the views alone; if these do not determine it, from the recording.
+std::optional<IntrinsicsResult> lensAlone(const Session& session, const CalibrationInput& input,
+                                          std::size_t camera, bool recording_is_there,
+                                          const RunContext& context) {
+  const RunContext quiet{silentProgress(), context.stop};
+  try {
+    if (camera < input.cameras.size()) {
+      const CameraData& data = input.cameras[camera];
+      return estimateIntrinsics({input.boardAt(data.board), data.lens.detection_intrinsics->resolution_px,
+                                 data.observations, data.lens.detection_intrinsics, std::nullopt},
+                                *session.options.intrinsics, quiet);
+    }
+  } catch (const CalibrationError&) {
+    if (!recording_is_there) return std::nullopt;  // the views do not determine this lens
+  }
+  if (!recording_is_there) return std::nullopt;
+  try {
+    return calibrateIntrinsics(session, camera, quiet).result;
+  } catch (const CalibrationError&) {
+    return std::nullopt;  // nor does the recording
+  }
+}
+
+std::optional<CalibrationError> wrongLens(const Session& session, const CalibrationInput& input,
+                                          bool recording_is_there, const RunContext& context) {
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     if (!session.cameras[k].intrinsics || session.sensorOf(k) != k) continue;
-    try {
-      const IntrinsicsResult found =
-          calibrateIntrinsics(session, k, RunContext{silentProgress(), context.stop}).result;
-      CameraIntrinsics given = *session.cameras[k].intrinsics;
-      if (!given.resolution_px.known()) given.resolution_px = found.intrinsics.resolution_px;
-      const std::string words = wrongLensWords(session.cameras[k].name, given, found.intrinsics,
-                                               found.image.rms_px, *session.options.initialisation);
-      if (words.empty()) continue;
-      const std::size_t place = words.find(": ") + 2, advice = words.find(". Remove");
-      return calibrationFailed(session.cameras[k].name, words.substr(place, advice - place),
-                               words.substr(advice + 2));
-    } catch (const CalibrationError&) {
-      continue;  // the recording does not determine this lens
-    }
+    const std::optional<IntrinsicsResult> found = lensAlone(session, input, k, recording_is_there, context);
+    if (!found) continue;
+    const std::string& name = session.cameras[k].name;
+    const std::string problem = wrongLensWords(*session.cameras[k].intrinsics, found->intrinsics,
+                                               found->image.rms_px, *session.options.initialisation);
+    if (!problem.empty()) return calibrationFailed(name, problem, kCorrectLens);
   }
   return std::nullopt;
 }
@@ -214,21 +232,28 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
       kWrongBoard};
 }
 
-// White noise of samples: their third differences contain hardly any motion.
-double whiteDensity(const ImuData& imu, bool of_gyroscope) {
+// Noise density of samples: their third differences contain hardly any motion. Filters correlate neighbours, so the
+// largest figure of several distances counts.
+double sampleDensity(const ImuData& imu, bool of_gyroscope) {
+  constexpr double kLongest_s = 4e-3;
   std::vector<Eigen::Vector3d> values;
   for (const ImuSample& sample : imu.samples) {
     if (of_gyroscope ? !measuresRate(sample) : !measuresForce(sample)) continue;
     values.push_back(of_gyroscope ? sample.angular_rate_rad_s : sample.specific_force_m_s2);
   }
-  std::vector<double> differences;
-  for (std::size_t i = 3; i < values.size(); ++i) {
-    const Eigen::Vector3d difference = values[i] - 3.0 * values[i - 1] + 3.0 * values[i - 2] - values[i - 3];
-    for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(difference[axis]));
-  }
-  const double of_differences = std::sqrt(20.0);  // squares of 1, 3, 3, 1
   const double rate_hz = of_gyroscope ? imu.rate_hz() : imu.accelerometerRate_hz();
-  return kMadToSigma * medianOf(std::move(differences)) / of_differences / std::sqrt(std::max(rate_hz, 1e-9));
+  const double of_differences = std::sqrt(20.0 * std::max(rate_hz, 1e-9));  // squares of 1, 3, 3, 1
+  double largest = 0.0;
+  for (std::size_t step = 1; step == 1 || static_cast<double>(step) <= kLongest_s * rate_hz; step *= 2) {
+    std::vector<double> differences;
+    for (std::size_t i = 3 * step; i < values.size(); ++i) {
+      const Eigen::Vector3d difference =
+          values[i] - 3.0 * values[i - step] + 3.0 * values[i - 2 * step] - values[i - 3 * step];
+      for (int axis = 0; axis < 3; ++axis) differences.push_back(std::abs(difference[axis]));
+    }
+    largest = std::max(largest, kMadToSigma * medianOf(std::move(differences)) / of_differences);
+  }
+  return largest;
 }
 
 struct NoiseInput {
@@ -269,15 +294,14 @@ bool isWrongInput(const QualityWarning& reason) {
 CalibrationError withWrongInput(const CalibrationError& error, const Session& session,
                                 const CalibrationInput& input, const Initialisation& initial,
                                 bool recording_is_there, const RunContext& context) {
-  if (error.kind() != ErrorKind::CalibrationFailed || error.repair()) return error;
+  if (error.kind() != ErrorKind::CalibrationFailed) return error;
+  if (const std::optional<CalibrationError> forces = wrongForces(session, input)) return *forces;
+  if (error.repair()) return error;
   std::optional<WrongRates> rates;
-  if (!input.cameras.empty() && !input.imus.empty()) {
-    if (const std::optional<CalibrationError> forces = wrongForces(session, input)) return *forces;
-    rates = wrongRates(session, input, context);
-    if (rates && rates->certain) return rates->error;
-  }
-  if (recording_is_there)
-    if (const std::optional<CalibrationError> lens = wrongLens(session, context)) return *lens;
+  if (!input.cameras.empty() && !input.imus.empty()) rates = wrongRates(session, input, context);
+  if (rates && rates->certain) return rates->error;
+  if (const std::optional<CalibrationError> lens = wrongLens(session, input, recording_is_there, context))
+    return *lens;
   if (const std::optional<QualityWarning> board = wrongBoard(input, initial, *session.options.initialisation))
     return calibrationFailed(session.source.string(), board->text, "Correct the board in the session");
   return rates ? rates->error : error;
@@ -290,9 +314,10 @@ std::vector<QualityWarning> wrongInputs(const Session& session, const Calibratio
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const CameraLens& lens = solution.state.cameras[k].lens;
     if (!lens.given || !lens.solved || input.sensorOf(k) != k) continue;
-    QualityWarning warning{
-        wrongLensWords(input.cameras[k].name, *lens.given, *lens.solved, 0.0, options), {}, kWrongLens};
-    if (!warning.text.empty()) wrong.push_back(std::move(warning));
+    const std::string words = wrongLensWords(*lens.given, *lens.solved, 0.0, options);
+    if (!words.empty())
+      wrong.push_back(
+          {fmt::format("{}: {}. {}", input.cameras[k].name, words, kCorrectLens), {}, kWrongLens});
   }
   if (std::optional<QualityWarning> board = wrongBoard(input, initial, options))
     wrong.push_back(std::move(*board));
@@ -319,11 +344,11 @@ std::vector<QualityWarning> wrongNoise(const Session& session, const Calibration
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     const ImuData& imu = input.imus[k];
     const auto test = [&](const NoiseInput& noise, bool of_gyroscope, double given, double residual_times) {
-      const double white = whiteDensity(imu, of_gyroscope) / given;
-      const double least = std::max(white, residual_times);
-      if (least > 0.0 && least * ratio < 1.0)
-        wrong.push_back(noiseWarning(imu.name, noise, given, given * least));
-      if (white > ratio && residual_times > misfit && !isFar(white / residual_times, kAlike))
+      const double white = sampleDensity(imu, of_gyroscope) / given;
+      const bool too_large = std::max(white, residual_times) * ratio < 1.0;
+      const bool too_small =
+          white > ratio && residual_times > misfit && !isFar(white / residual_times, kAlike);
+      if (white > 0.0 && (too_large || too_small))
         wrong.push_back(noiseWarning(imu.name, noise, given, given * white));
     };
     const ImuFit& fit = solution.imus[k];
