@@ -47,7 +47,7 @@ class BoardFinder {
 
   // Contradiction between the pictures and the board's parameters, as a sentence; empty if there is none.
   std::string doubt() const;
-  // What is unusual about the printed board and was recognised, as a sentence; empty if nothing is.
+  // Unusual properties of the printed board that were recognised, as a sentence; empty if there are none.
   std::string remark() const;
 
  private:

@@ -163,7 +163,7 @@ void findStream(const ImportRequest& request, SessionCamera& camera, ImportedSes
       fmt::format("{}: its camchain has no rostopic; the stream {} is used", camera.name, camera.stream));
 }
 
-// Whether the chosen streams suit the board.
+// Notes on streams that do not suit the board.
 void checkStreams(const ImportRequest& request, ImportedSession& imported) {
   Session& session = imported.session;
   const std::vector<std::string> frames = freeStreams(request, {}, StreamType::Frames),
