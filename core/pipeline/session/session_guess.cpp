@@ -308,9 +308,9 @@ void joinFiles(const std::vector<InspectedRecording>& recordings, Session& sessi
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
-      "The board: remove the '#', and give type and dimensions. With an IMU, asymmetric circles need an odd "
-      "number of rows. "
-      "Measure over as many circles as possible: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005} "
+      "The board: remove the '#' of its lines, and give type and dimensions.\n"
+      "With an IMU, asymmetric circles need an odd number of rows.\n"
+      "Measure over as many circles as possible: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005}\n"
       "replaces spacing_m and has the length over ten spacings and the ruler's sigma.";
   for (const SessionCamera& camera : session.cameras) {
     std::vector<std::string>& own = remarks.sensors[camera.name];
