@@ -14,43 +14,44 @@ bool isNothing(const Eigen::Vector3d& values) {
 }
 
 struct NamedUnit {
-  const char* name;
+  const char *name, *setting;
   double si;
-  bool in_sessions;
 };
-constexpr std::array<NamedUnit, 7> kRateUnits = {{{"rad/s", 1.0, true},
-                                                  {"deg/s", kRadPerDeg, true},
-                                                  {"mrad/s", 1e-3, false},
-                                                  {"mdeg/s", 1e-3 * kRadPerDeg, false},
-                                                  {"deg/min", kRadPerDeg / 60.0, false},
-                                                  {"deg/ms", 1e3 * kRadPerDeg, false},
-                                                  {"turns/min", 6.0 * kRadPerDeg, false}}};
-constexpr std::array<NamedUnit, 6> kForceUnits = {{{"m/s^2", 1.0, true},
-                                                   {"g", kStandardGravity_m_s2, true},
-                                                   {"mg", 1e-3 * kStandardGravity_m_s2, false},
-                                                   {"mm/s^2", 1e-3, false},
-                                                   {"cm/s^2", 1e-2, false},
-                                                   {"ft/s^2", 0.3048, false}}};
+constexpr std::array<NamedUnit, 7> kRateUnits = {{{"rad/s", "rad/s", 1.0},
+                                                  {"deg/s", "deg/s", kRadPerDeg},
+                                                  {"mrad/s", "0.001 rad/s", 1e-3},
+                                                  {"mdeg/s", "0.001 deg/s", 1e-3 * kRadPerDeg},
+                                                  {"deg/min", "0.0166667 deg/s", kRadPerDeg / 60.0},
+                                                  {"deg/ms", "1000 deg/s", 1e3 * kRadPerDeg},
+                                                  {"turns/min", "6 deg/s", 6.0 * kRadPerDeg}}};
+constexpr std::array<NamedUnit, 6> kForceUnits = {{{"m/s^2", "m/s^2", 1.0},
+                                                   {"g", "g", kStandardGravity_m_s2},
+                                                   {"mg", "0.001 g", 1e-3 * kStandardGravity_m_s2},
+                                                   {"mm/s^2", "0.001 m/s^2", 1e-3},
+                                                   {"cm/s^2", "0.01 m/s^2", 1e-2},
+                                                   {"ft/s^2", "0.3048 m/s^2", 0.3048}}};
 
 LikelyUnit likelyUnit(std::span<const NamedUnit> units, double read_as_si, double times, double tolerance) {
+  constexpr double kSame = 1e-6;
   LikelyUnit likely;
   for (const NamedUnit& unit : units) {
-    const double error = std::abs(std::log(unit.si * times / read_as_si));
-    if (unit.si == read_as_si || !(error < std::log1p(tolerance))) continue;
-    if (likely.words.empty() && unit.in_sessions) likely.in_session = unit.name;
-    likely.words += (likely.words.empty() ? "" : " or ") + std::string(unit.name);
+    if (std::abs(std::log(unit.si / read_as_si)) < kSame) continue;
+    if (!(std::abs(std::log(unit.si * times / read_as_si)) < std::log1p(tolerance))) continue;
+    likely.only = likely.words.empty();
+    if (likely.only) likely.setting = unit.setting;
+    likely.words += (likely.only ? "" : " or ") + std::string(unit.name);
   }
   return likely;
 }
 
 }  // namespace
 
-LikelyUnit likelyUnit(AngularRateUnit read_as, double times, double tolerance) {
-  return likelyUnit(kRateUnits, radiansPerSecond(read_as), times, tolerance);
+LikelyUnit likelyRateUnit(double read_as_rad_s, double times, double tolerance) {
+  return likelyUnit(kRateUnits, read_as_rad_s, times, tolerance);
 }
 
-LikelyUnit likelyUnit(AccelerationUnit read_as, double times, double tolerance) {
-  return likelyUnit(kForceUnits, std::abs(metresPerSecond2(read_as)), times, tolerance);
+LikelyUnit likelyAccelerationUnit(double read_as_m_s2, double times, double tolerance) {
+  return likelyUnit(kForceUnits, read_as_m_s2, times, tolerance);
 }
 
 bool lacksRate(const RawImuSample& sample) {

@@ -1,20 +1,19 @@
 // Guesses of a wrong unit from the ratio of an IMU's numbers to the right ones.
 #pragma once
 
-#include "core/data/imu_units.h"
-
-#include <optional>
 #include <string>
 
 namespace evical {
 
-// Units that explain numbers which are `times` too large: "deg/s", or several joined by "or". A session's name for it,
-// if it has one. Empty if no unit explains them within `tolerance` (relative).
+// Units that explain numbers which are `times` too large within `tolerance` (relative): "deg/s", or several joined by "or".
+// Empty if there is none.
 struct LikelyUnit {
   std::string words;
-  std::optional<std::string> in_session;
+  std::string setting;  // of the first, as a session has it: "0.001 g"
+  bool only = false;    // no other unit explains the numbers
 };
-LikelyUnit likelyUnit(AngularRateUnit read_as, double times, double tolerance);
-LikelyUnit likelyUnit(AccelerationUnit read_as, double times, double tolerance);
+// `read_as`: what the number 1 was taken for, in rad/s or m/s^2.
+LikelyUnit likelyRateUnit(double read_as_rad_s, double times, double tolerance);
+LikelyUnit likelyAccelerationUnit(double read_as_m_s2, double times, double tolerance);
 
 }  // namespace evical

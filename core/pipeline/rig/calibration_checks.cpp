@@ -12,6 +12,7 @@
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/rig/detected_recording.h"
+#include "core/pipeline/rig/wrong_inputs.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
@@ -39,29 +40,20 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
   const double norm = medianOf(std::move(norms));
   if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
     constexpr double kShaken = 0.3;  // of the norm, by motion
-    const std::optional<AccelerationUnit> stated =
-        session != nullptr ? session->acceleration_unit : std::nullopt;
-    const AccelerationUnit read_as = stated.value_or(AccelerationUnit::MetresPerSecond2);
-    const double times = norm / options.gravity_m_s2;
-    LikelyUnit unit = likelyUnit(read_as, times, kShaken);
-    if (unit.words.empty() && !stated)  // by the recording's format
-      unit = likelyUnit(AccelerationUnit::Gravity, times, kShaken);
+    const LikelyUnit unit = likelyUnitOfForces(session, norm / options.gravity_m_s2, kShaken);
     throw badInput(
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,
                     unit.words.empty() ? "" : ": the unit seems to be ", unit.words),
-        unit.in_session       ? fmt::format("Set acceleration_unit: {} for this IMU", *unit.in_session)
-        : !unit.words.empty() ? fmt::format("Convert the accelerations to m/s^2: multiply them by {:.3g}",
-                                            options.gravity_m_s2 / norm * std::abs(metresPerSecond2(read_as)))
+        !unit.words.empty() ? fmt::format("Set acceleration_unit: {} for this IMU", unit.setting)
         : norm < options.least_acceleration_m_s2 ? "Record accelerations with gravity (not linear or user "
                                                    "accelerations), or check acceleration_unit "
                                                    "(m/s^2, g, -g) of this IMU"
                                                  : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for "
                                                    "raw counts the size of a count as its "
                                                    "data sheet states it, such as 1/16384 g")
-        .repairedBy(unit.in_session
-                        ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", *unit.in_session})
-                        : std::nullopt);
+        .repairedBy(unit.only ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", unit.setting})
+                              : std::nullopt);
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
   if (rms > options.largest_rotation_rate_rad_s) {

@@ -144,8 +144,9 @@ class Calibration {
   // Replaces the error by the wrong input that caused it.
   void tellCause(CalibrationOutcome& outcome) {
     try {
-      outcome.error =
-          withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);
+      if (!mirrored_)
+        outcome.error =
+            withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);
       if (const std::optional<Repair> repair = outcome.error->repair())
         outcome.error = CalibrationError(*outcome.error).repairedBy(ofRawAxes(*repair, session_));
     } catch (const Cancelled&) {
@@ -192,6 +193,9 @@ class Calibration {
   void initialiseState() {
     try {
       initial_ = initialise(input_, *session_.options.initialisation, context_, statedSigns(session_));
+    } catch (const MirrorError&) {
+      mirrored_ = true;
+      throw;
     } catch (const CalibrationError& error) {
       if (input_.cameras.empty()) throw;
       throw withClockRate(error, session_, input_.cameras.front().observations, input_.imus);
@@ -514,6 +518,7 @@ class Calibration {
   std::vector<std::string> notes_;  // of the batch
   std::vector<QualityWarning> wrong_noise_;
   bool recording_is_there_ = false;
+  bool mirrored_ = false;  // the error is a MirrorError
   std::vector<std::optional<std::vector<BoardView>>>
       whole_views_;                           // by camera, if views were removed or changed
   std::vector<std::vector<int>> kept_views_;  // by camera: indices in whole_views_, empty if none was removed

@@ -109,7 +109,8 @@ struct RankedReason {
   Reason is = Reason::Symptom;
 };
 // In the order in which they are reported. Unlisted ones come between causes and symptoms.
-constexpr std::array kRanks = {RankedReason{kWrongUnit, Explains::Symptoms, Reason::Independent},
+constexpr std::array kRanks = {RankedReason{"mirrored_image", Explains::Itself, Reason::Independent},
+                               RankedReason{kWrongUnit, Explains::Symptoms, Reason::Independent},
                                RankedReason{kWrongLens, Explains::Symptoms},
                                RankedReason{kWrongBoard, Explains::Symptoms},
                                RankedReason{"first_look_at_lens"},

@@ -1,6 +1,5 @@
 #include "core/pipeline/rig/wrong_inputs.h"
 
-#include "core/data/likely_unit.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialisation_options.h"
@@ -25,6 +24,20 @@
 
 namespace evical {
 namespace {
+
+double readAsRate_rad_s(const SessionImu* imu) {
+  return imu == nullptr
+             ? 1.0
+             : imu->angular_rate_factor *
+                   radiansPerSecond(imu->angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond));
+}
+
+double readAsForce_m_s2(const SessionImu* imu) {
+  return imu == nullptr
+             ? 1.0
+             : imu->acceleration_factor * std::abs(metresPerSecond2(imu->acceleration_unit.value_or(
+                                              AccelerationUnit::MetresPerSecond2)));
+}
 
 constexpr double kUnitTolerance = 0.1;  // of ratios of rates, which a slightly wrong lens changes, too
 
@@ -51,29 +64,21 @@ std::optional<WrongRates> wrongRates(const Session& session, const CalibrationIn
     if (!found ||
         std::abs(std::log(found->ratio)) < std::log(session.options.initialisation->wrong_rate_ratio))
       continue;
-    const std::optional<AngularRateUnit>& stated = session.imus[k].angular_rate_unit;
-    const AngularRateUnit read_as = stated.value_or(AngularRateUnit::RadiansPerSecond);
-    LikelyUnit unit = likelyUnit(read_as, found->ratio, kUnitTolerance);
-    if (unit.words.empty() && !stated)  // by the recording's format
-      unit = likelyUnit(AngularRateUnit::DegreesPerSecond, found->ratio, kUnitTolerance);
+    const LikelyUnit unit = likelyUnitOfRates(&session.imus[k], found->ratio, kUnitTolerance);
     std::string problem = fmt::format("the gyroscope's rates are {} compared with the rotation of {}",
                                       timesWords(found->ratio), camera.name);
     if (!unit.words.empty()) problem += ": their unit seems to be " + unit.words;
-    const std::string factor = fmt::format("{:.4g}", radiansPerSecond(read_as) / found->ratio);
-    const CalibrationError error = calibrationFailed(
+    const double read_as = readAsRate_rad_s(&session.imus[k]);
+    CalibrationError error = calibrationFailed(
         imu.name, problem,
-        unit.in_session ? fmt::format("Set angular_rate_unit: {} for this IMU", *unit.in_session)
-        : !unit.words.empty()
-            ? fmt::format("Convert the rates to rad/s: multiply them by {}", factor)
-            : fmt::format("Check the gyroscope's scale (its measuring range), the lens's focal "
-                          "lengths, and that both sensors are of one rig: rates multiplied by {} "
-                          "would agree",
-                          factor));
-    return WrongRates{CalibrationError(error).repairedBy(
-                          unit.in_session ? std::optional(Repair{"imus." + imu.name + ".angular_rate_unit",
-                                                                 *unit.in_session})
-                                          : std::nullopt),
-                      !unit.words.empty()};
+        unit.words.empty()
+            ? fmt::format("Check the gyroscope's scale (its measuring range), and the lens's focal lengths; "
+                          "angular_rate_unit: {:.4g} rad/s would agree",
+                          read_as / found->ratio)
+            : fmt::format("Set angular_rate_unit: {} for this IMU", unit.setting));
+    if (unit.only)
+      error = std::move(error).repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", unit.setting});
+    return WrongRates{error, !unit.words.empty()};
   }
   return std::nullopt;
 }
@@ -90,9 +95,7 @@ std::optional<CalibrationError> wrongForces(const Session& session, const Calibr
     if (forces.empty() || isGravity(norm, options) ||
         isGravity(steadyForceNorm(forces).value_or(norm), options))
       continue;
-    const double times = norm / input.gravity_norm_m_s2;
-    const LikelyUnit unit = likelyUnit(
-        session.imus[k].acceleration_unit.value_or(AccelerationUnit::MetresPerSecond2), times, kShaken);
+    const LikelyUnit unit = likelyUnitOfForces(&session.imus[k], norm / input.gravity_norm_m_s2, kShaken);
     return calibrationFailed(
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about {:.3g}{}{}", norm,
@@ -285,6 +288,20 @@ QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, dou
 }
 
 }  // namespace
+
+LikelyUnit likelyUnitOfRates(const SessionImu* imu, double times, double tolerance) {
+  LikelyUnit unit = likelyRateUnit(readAsRate_rad_s(imu), times, tolerance);
+  if (unit.words.empty() && (imu == nullptr || !imu->angular_rate_unit))
+    unit = likelyRateUnit(radiansPerSecond(AngularRateUnit::DegreesPerSecond), times, tolerance);
+  return unit;
+}
+
+LikelyUnit likelyUnitOfForces(const SessionImu* imu, double times, double tolerance) {
+  LikelyUnit unit = likelyAccelerationUnit(readAsForce_m_s2(imu), times, tolerance);
+  if (unit.words.empty() && (imu == nullptr || !imu->acceleration_unit))
+    unit = likelyAccelerationUnit(metresPerSecond2(AccelerationUnit::Gravity), times, tolerance);
+  return unit;
+}
 
 bool isWrongInput(const QualityWarning& reason) {
   constexpr std::array kNames = {kWrongUnit, kWrongLens, kWrongBoard, kWrongNoise};

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/progress.h"
+#include "core/data/likely_unit.h"
 #include "core/data/quality_warning.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
@@ -19,6 +20,10 @@ inline constexpr const char* kWrongUnit = "unit";
 inline constexpr const char* kWrongLens = "given_lens";
 inline constexpr const char* kWrongBoard = "board_dimensions";
 inline constexpr const char* kWrongNoise = "noise_density";
+
+// Units of an IMU's numbers that are `times` too large. If the session states no unit, the recording's format has one.
+LikelyUnit likelyUnitOfRates(const SessionImu* imu, double times, double tolerance);
+LikelyUnit likelyUnitOfForces(const SessionImu* imu, double times, double tolerance);
 
 bool isWrongInput(const QualityWarning& reason);
 

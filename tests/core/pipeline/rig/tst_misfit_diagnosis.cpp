@@ -94,13 +94,13 @@ class TestCauses : public QObject {
     };
     row("rates times", 57.29578, "57.* times too large.*unit seems to be deg/s.*angular_rate_unit: deg/s");
     row("rates times", 1.0 / 57.29578, "57.* times too small.*seems to be rad/s.*angular_rate_unit: rad/s");
-    row("rates times", 1e3, "mrad/s.*multiply them by 0.001|seems to be deg/s");
-    row("rates times", 0.0572958, "17.* times too small.*deg/ms");
+    row("rates times", 1e3, "mrad/s.*0.001 rad/s|seems to be deg/s");
+    row("rates times", 0.0572958, "17.* times too small.*deg/ms.*angular_rate_unit: 1000 deg/s");
     row("rates times", 2.0, "(2|1.9\\d|2.0\\d) times too large.*measuring range.*0.5");
     row("rates times", 0.5, "(2|1.9\\d|2.0\\d) times too small.*measuring range");
     row("forces times", 9.80665, "norm .* is 9\\d.*unit seems to be m/s\\^2");
-    row("forces times", 1e3, "unit seems to be mm/s\\^2.*multiply them by 0.001");
-    row("forces times", 1e3 / 9.80665, "unit seems to be mg or cm/s\\^2.*0.0098");
+    row("forces times", 1e3, "unit seems to be mm/s\\^2.*acceleration_unit: 0.001 m/s\\^2");
+    row("forces times", 1e3 / 9.80665, "unit seems to be mg or cm/s\\^2.*acceleration_unit: 0.001 g");
     row("forces times", 1.0 / 9.80665, "unit seems to be g.*acceleration_unit: g");
     row("forces times", 2.0, "norm of the accelerations is (19|20).*measuring range");
     row("stated noise", 1e4,
