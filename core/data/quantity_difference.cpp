@@ -108,7 +108,7 @@ void addSensors(const Rows& rows, std::vector<Uncertainty>& sums, const std::vec
   for (std::size_t i = 0; i < sums.size() && i < others.size(); ++i) addSigmas(rows, sums[i], others[i]);
 }
 
-// Of the only sensor of a kind; the reference keeps referring to it.
+// Renames the only sensor of a kind; the reference keeps referring to it.
 void matchOnly(const char* kind, const std::vector<std::string>& names,
                const std::vector<std::string>& others, std::vector<std::string>& renamed,
                MatchedEstimate& matched) {

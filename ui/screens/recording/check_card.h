@@ -34,7 +34,7 @@ class CheckCard : public QFrame {
   void offerFollowing(bool offered);
   // While followed, an assessment concerns part of the recording: no alarm, and it stays until the next one.
   void setFollowing(bool following);
-  // What is missing for a calibration, by line; empty: nothing.
+  // Problems that prevent a calibration, one per line; empty: none.
   void setMissing(const QString& text);
   // Unconfirmed board that was guessed: "11 x 4, 50 mm". Empty: confirmed.
   void setUnconfirmedBoard(const QString& board);
