@@ -123,7 +123,7 @@ void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& s
     throw calibrationFailed(imu.name, cause->problem, cause->advice).repairedBy(cause->repair);
   if (!cause && !negative) return;
   if (const auto mirror = findMirror(input, stated, cameras, gyro, true, options, context))
-    throw CalibrationError(*mirror);
+    throw MirrorError(*mirror);
 }
 
 }  // namespace evical

@@ -96,9 +96,13 @@ AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, co
   const auto readGyroscopeAs = [&](const Eigen::Matrix3d& as) {
     return Repair{"imus." + imu + ".gyroscope_axes", axesText(axesOf(as))};
   };
+  const auto setGyroscope = [&](const Eigen::Matrix3d& as, const char* otherwise) {
+    return fmt::format("Set gyroscope_axes: {} for this IMU, or {}", axesText(axesOf(as)), otherwise);
+  };
   if (left_handed_gyroscope && as_is)
     return {"the angular rates seem negated: " + proof,
-            "Change the sign of all three axes in the recording software", false, readGyroscopeAs(-identity)};
+            setGyroscope(-identity, "change the sign of all three axes in the recording software"), false,
+            readGyroscopeAs(-identity)};
   if (left_handed_gyroscope && negated)
     return {
         "the IMU's axes seem left-handed (one axis mirrored, or two swapped) in both gyroscope and "
@@ -118,11 +122,12 @@ AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, co
   if (left_handed_gyroscope)
     return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: if read as {}, {}",
                         axesWords(gyroscope), proof),
-            "Record them in the accelerometer's frame", false, readGyroscopeAs(gyroscope)};
+            setGyroscope(gyroscope, "record them in the accelerometer's frame"), false,
+            readGyroscopeAs(gyroscope)};
   return {fmt::format("the axes of accelerometer and gyroscope seem permuted relative to each other: if the "
-                      "accelerometer's are read as {}, or the gyroscope's as {}, {}",
-                      axesWords(reading), axesWords(gyroscope), proof),
-          "Record both sensors in one frame", false, readGyroscopeAs(gyroscope)};
+                      "gyroscope's are read as {}, {}",
+                      axesWords(gyroscope), proof),
+          setGyroscope(gyroscope, "record both sensors in one frame"), false, readGyroscopeAs(gyroscope)};
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ class CamerasAlone {
       result_.warnings.resize(warnings);
       if (input_.cameras[k].board > 0 || !bridge(k)) throw;
     }
-    if (mirrored) throw CalibrationError(*mirrored);
+    if (mirrored) throw MirrorError(*mirrored);
   }
 
   bool bridge(std::size_t k) {

@@ -301,7 +301,7 @@ void checkHandedness(const CalibrationInput& input, const StatedSigns& stated,
         all, [&](const AlignedCamera& each) { return input.cameras[each.camera].board == board; });
     if (!contradictsHandedness(first, *camera, gyro, options)) continue;
     const auto cause = findMirror(input, stated, all, gyro, false, options, context);
-    throw CalibrationError(cause ? *cause : mirroredOfTwo(input, stated, first, *camera));
+    throw MirrorError(cause ? *cause : mirroredOfTwo(input, stated, first, *camera));
   }
 }
 
@@ -316,7 +316,7 @@ void alignFurther(const CalibrationInput& input, const StatedSigns& stated,
   } catch (const CalibrationError&) {
     const auto mirror =
         findMirror(input, stated, withFurther(cameras, further), gyro, false, options, context);
-    if (mirror) throw CalibrationError(*mirror);
+    if (mirror) throw MirrorError(*mirror);
     throw;
   }
 }

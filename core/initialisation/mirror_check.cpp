@@ -313,14 +313,14 @@ void checkGivenRotation(const CalibrationInput& input, const AlignedCamera& came
   const Eigen::Quaterniond turn = data.prior.rotation->value.conjugate() * found->reference_from_sensor;
   const auto axis = halfTurnInImage(turn);
   if (!axis) return;
-  throw calibrationFailed(
+  throw MirrorError(calibrationFailed(
       data.name,
       fmt::format("the image seems mirrored{}, or the given rotation is wrong: it differs by {:.0f} deg from "
                   "that of the images",
                   directionWords(mirroringOf(*axis)),
                   kDegPerRad * rotationAngleBetween_rad(turn, Eigen::Quaterniond::Identity())),
       std::string("Check whether writing is readable in the camera's picture. If not: ") + kReverse +
-          ". Otherwise correct prior.cameras." + data.name + ".rotation");
+          ". Otherwise correct prior.cameras." + data.name + ".rotation"));
 }
 
 std::string mirrorDoubt(const CalibrationInput& input, const StatedSigns& stated,

@@ -26,6 +26,11 @@ struct StatedSigns {
   bool invertsForces(std::size_t imu) const { return imu < inverted_forces.size() && inverted_forces[imu]; }
 };
 
+// An error whose cause is a mirrored image or negated accelerations, and not another input.
+struct MirrorError : CalibrationError {
+  explicit MirrorError(const CalibrationError& error) : CalibrationError(error) {}
+};
+
 // The error of accelerations that have the opposite sign of what cameras see: a mirrored image, negated
 // accelerations, or one of both, if nothing distinguishes them; with a repair only if nothing else explains
 // the data. `gyro` without its bias; `negated`: all cameras together show the opposite sign. Empty if no

@@ -245,13 +245,14 @@ std::vector<OptionRow> detectionOptions(const Session& session) {
 // have no effect before the initialisation. The recordings may have been moved.
 std::vector<DetectionKey> detectionKeys(const SessionCamera& camera) {
   const auto& [name, stream, resolution_px, intrinsics, recording, clock_offset_s, clock_scale, columns,
-               prior, intrinsics_uncertainty, shutter, same_sensor_as, board] = camera;
+               prior, intrinsics_uncertainty, shutter, same_sensor_as, board, mirrored] = camera;
   static_cast<void>(std::tie(name, resolution_px, intrinsics, recording, prior, intrinsics_uncertainty,
                              shutter, same_sensor_as, board));
   return {{"stream", stream},
           {"clock_offset_s", fmt::format("{}", clock_offset_s)},
           {"clock_scale", fmt::format("{}", clock_scale)},
-          {"columns", columns}};
+          {"columns", columns},
+          {"mirrored", kMirroringNames.at(static_cast<std::size_t>(mirrored.value_or(Mirroring::None)))}};
 }
 
 bool isOfImu(const RecordingFault& fault, const Session& session) {

@@ -141,6 +141,19 @@ class Calibration {
     return outcome;
   }
 
+  // The error's axes as those of the recording, which the session may already have changed.
+  CalibrationError ofRawAxes(const CalibrationError& error, const Repair& repair) const {
+    const Repair raw = evical::ofRawAxes(repair, session_);
+    const auto replaced = [&](std::string text) {
+      const std::size_t at = text.find(repair.value);
+      return raw.value == repair.value || at == std::string::npos
+                 ? text
+                 : text.replace(at, repair.value.size(), raw.value);
+    };
+    return CalibrationError(error.kind(), error.place(), replaced(error.problem()), replaced(error.advice()))
+        .repairedBy(raw);
+  }
+
   // Replaces the error by the wrong input that caused it.
   void tellCause(CalibrationOutcome& outcome) {
     try {
@@ -148,7 +161,7 @@ class Calibration {
         outcome.error =
             withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);
       if (const std::optional<Repair> repair = outcome.error->repair())
-        outcome.error = CalibrationError(*outcome.error).repairedBy(ofRawAxes(*repair, session_));
+        outcome.error = ofRawAxes(*outcome.error, *repair);
     } catch (const Cancelled&) {
       outcome = {};
       outcome.status = RunStatus::Cancelled;
