@@ -233,6 +233,8 @@ class TestSavedDetections : public QObject {
     row(
         "columns", [](Session& s) { s.cameras[0].columns = "t,y,x,p"; }, "cameras.events.columns");
     row(
+        "mirroring", [](Session& s) { s.cameras[0].mirrored = Mirroring::X; }, "cameras.events.mirrored");
+    row(
         "the other camera's clock", [](Session& s) { s.cameras[1].clock_scale = 1.0001; },
         "cameras.frames.clock_scale");
     row(
