@@ -102,6 +102,15 @@ const std::vector<Mistake>& mistakes() {
       {"13 rad/s called deg/s", Stage::Imu, inImu("angular_rate_unit: deg/s"),
        "left_imu: the gyroscope's rates are 5\\d.* times too small.*: their unit seems to be rad/s",
        "Set angular_rate_unit: rad/s.*Try:.*angular_rate_unit=rad/s"},
+      {"26 gyroscope turned by half a turn", Stage::Imu, inImu("gyroscope_axes: x,-y,-z"),
+       "left_imu: the axes of accelerometer and gyroscope seem permuted.*if the gyroscope's are read as "
+       ".x,y,z.",
+       "Set gyroscope_axes: x,y,z for this IMU.*Try:.*gyroscope_axes=x,y,z"},
+      {"28 gyroscope left-handed", Stage::Imu, inImu("gyroscope_axes: y,x,z"),
+       "left_imu: the gyroscope's axes seem left-handed.*if read as .x,y,z.",
+       "Set gyroscope_axes: x,y,z for this IMU.*Try:.*gyroscope_axes=x,y,z"},
+      {"angular rates negated", Stage::Imu, inImu("gyroscope_axes: -x,-y,-z"),
+       "left_imu: the angular rates seem negated", "Set gyroscope_axes: x,y,z for this IMU"},
       // Noise
       {"23 noise 10^4 times too large", Stage::Imu, multiplied("gyroscope_noise_density", 1e4),
        "left_imu: gyroscope_noise_density .1.87 rad/s/sqrt.Hz.. is .*e.0?[34] times too large: the samples "
