@@ -70,7 +70,7 @@ void Console::announceReplacement(const std::filesystem::path& folder,
     if (isThere(folder / name))
       log(LogLevel::Warning,
           fmt::format(
-              "{} exists: this run replaces it when it has a new one. To keep it, give another folder",
+              "{} exists: this run replaces it when it has a new one. To keep it, give another output",
               (folder / name).string()));
 }
 

@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 namespace evical {
 namespace {
@@ -63,6 +65,10 @@ void addConvertCommand(Command& app, int& exit_code) {
     if (!arguments->resolution.empty())
       arguments->request.resolution_px = resolutionIn(arguments->resolution);
     Console console(arguments->quiet);
+    const std::filesystem::path& output = arguments->request.output;
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(output, ignored))
+      console.announceReplacement(output.parent_path(), {output.filename().c_str()});
     const ConversionSummary made = convertRecording(arguments->request, {console, stopOnSignals()});
     console.stageStarted("done");
     printSummary(arguments->request, made);

@@ -41,6 +41,7 @@ void addSimulateCommand(Command& app, int& exit_code) {
     const Scenario scenario = drive ? Scenario{} : readScenario(arguments->scenario);
     const DriveScenario imus = drive ? readDriveScenario(arguments->scenario) : DriveScenario{};
     Console console(arguments->quiet);
+    console.announceReplacement(arguments->folder, {"session.yaml"});
     const RunContext context{console, stopOnSignals()};
     const SimulationSummary made = drive ? simulateDrive(imus, arguments->folder, context, arguments->format)
                                          : simulate(scenario, arguments->folder, context, arguments->format);
