@@ -115,7 +115,6 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
        std::abs(excess), sigma});
   if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
     return;
-  result.board_scale = gravity.board_scale;
   result.doubt = fmt::format(
       "the board seems {:.0f} % {} than specified (spacing {:.4g} m): measure it; accelerations "
       "agree with a spacing of {:.3g} m",
@@ -124,25 +123,30 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
   result.warnings.push_back(result.doubt);
 }
 
-// The board's scale if it is far from 1: positions from views are scaled until it no longer changes, since their noise
-// would bias it.
-void refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& input,
+// Board scale and misfit of the accelerations if the scale is far from 1: positions from views are scaled until it no
+// longer changes, since their noise would bias it. False if it does not settle: something else is wrong.
+bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& input,
                       const So3Spline& rotation, const InitialisationOptions& options,
                       const RunContext& context, GravityAlignment& gravity) {
-  constexpr int kMostRounds = 5;
-  constexpr double kFar = 0.3, kSettled = 0.02, kLeast = 1e-3;
-  double step = gravity.board_scale, scale = step;
-  for (int round = 0; round < kMostRounds && std::abs(step - 1.0) > (round == 0 ? kFar : kSettled); ++round) {
-    if (!(step > kLeast)) return;
+  constexpr int kMostRounds = 6;
+  constexpr double kSettled = 0.02, kLeast = 1e-3;
+  double step = gravity.board_scale, scale = 1.0;
+  const bool far = step > options.wrong_size_ratio || step < 1.0 / options.wrong_size_ratio;
+  if (!far || std::abs(step - 1.0) < options.scale_error_sigmas * gravity.board_scale_std) return true;
+  for (int round = 0; round < kMostRounds && step > kLeast; ++round) {
     for (CameraTrack& track : tracks)
       for (CameraPose& pose : track.poses) pose.world_from_camera.translation_m *= step;
     const GravityAlignment again = alignGravity(tracks, withFitForces(referenceImu(input).samples),
                                                 input.start_ns, rotation, options, context);
-    step = again.board_scale;
     scale *= step;
+    step = again.board_scale;
+    if (std::abs(step - 1.0) > kSettled) continue;
+    gravity.board_scale = scale * step;
     gravity.board_scale_std = scale * again.board_scale_std;
-    gravity.board_scale = scale;
+    gravity.acceleration_misfit_m_s2 = again.acceleration_misfit_m_s2;
+    return true;
   }
+  return false;
 }
 
 void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
@@ -153,7 +157,8 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
   GravityAlignment gravity =
       alignGravity(tracksOf(input, cameras), withFitForces(referenceImu(input).samples), input.start_ns,
                    state.world_from_imu_rotation, options, context);
-  refineBoardScale(tracksOf(input, cameras), input, state.world_from_imu_rotation, options, context, gravity);
+  const bool settled = refineBoardScale(tracksOf(input, cameras), input, state.world_from_imu_rotation,
+                                        options, context, gravity);
   result.steps.push_back(
       {"gravity and translation", "",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
@@ -168,6 +173,7 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
   }
   checkAccelerationsAgree(input, stated, cameras, gyro, gravity, options, context);
   checkBoardScale(gravity, input.board, options, result);
+  if (settled && !result.doubt.empty()) result.board_scale = gravity.board_scale;
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
   state.imus.resize(input.imus.size());
