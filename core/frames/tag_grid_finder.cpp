@@ -227,18 +227,15 @@ class TagGridFinder : public PatternFinder {
   }
 
   // True if the tags can be placed on the board. The first picture that leaves only one layout decides.
-  // Others, of one row of tags for example, are placed in Kalibr's if it is possible.
+  // Others, of one row of tags for example, are placed in Kalibr's if it is possible, also if no layout agrees
+  // because tags are tiny or bent by the lens.
   bool findLayout(const std::vector<SeenTag>& tags) {
     if (layout_found_) return true;
     constexpr int kEnough = 3;
     const std::vector<TagLayout> agreeing = agreeingLayouts(tags);
     const bool enough = static_cast<int>(tags.size()) >= std::min(kEnough, tagCount());
-    if (agreeing.empty()) {
-      misfits_ += enough ? 1 : 0;
-      return false;
-    }
-    const bool usual = agreeing.front() == TagLayout{};
-    if (agreeing.size() > 1 || !enough) {
+    const bool usual = agreeing.empty() || agreeing.front() == TagLayout{};
+    if (agreeing.size() != 1 || !enough) {
       placed_undecided_ = placed_undecided_ || usual;
       return usual;
     }
