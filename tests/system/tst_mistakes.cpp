@@ -95,6 +95,19 @@ const std::vector<Mistake>& mistakes() {
        "is for 346 x 260 px, but resolution_px is 240 x 180", "intrinsics of this camera at this resolution"},
       {"51 reference mistyped", Stage::Session, replaced("reference: left_imu", "reference: lef_imu"),
        "lef_imu", "Did you mean 'left_imu'"},
+      {"10 stream of the camera", Stage::Session,
+       replaced("^    stream: .*events.*$", "    stream: /dvs/evnts"),
+       "/dvs/evnts: the recording has no stream of type events with this name", "Its streams of this type: "},
+      {"11 stream of the IMU", Stage::Session, replaced("^    stream: .*imu.*$", "    stream: /dvs/imu"),
+       "/dvs/imu: the recording has no stream of type imu with this name", "Its streams of this type: "},
+      // Times
+      {"27 clocks of 1970 and of uptime", Stage::Imu, inImu("clock_offset_s: -1700000000"),
+       "do not overlap in time.*agree if the IMU's clock is (1700000000|1699999999|1.7e).* s behind",
+       "Add (1700000000|1699999999).* to clock_offset_s of left_imu"},
+      {"52 time range behind the end", Stage::Events, replaced("^board:", "time_range_s: [20, 30]\nboard:"),
+       "lasts (10.0|9.9) s, but time_range_s begins at 20 s", "Give a range within the recording"},
+      {"53 too short", Stage::Events, replaced("^board:", "time_range_s: [0, 2]\nboard:"),
+       "too short: (2.0|1.9)\\d* s, at least 3.00 s are required", "Record at least 20 s of varied motion"},
       // Units and axes
       {"12 SI called g", Stage::Imu, inImu("acceleration_unit: g"),
        "left_imu: the median norm of the accelerations is 9\\d.*: the unit seems to be m/s\\^2",
@@ -185,6 +198,7 @@ class TestMistakes : public QObject {
   void initTestCase();
   void rightSession_isOk();
   void path_thatIsWrong_isNamed();
+  void command_thatIsWrong_isNamed();
   void mistake_isNamedFirst_data();
   void mistake_isNamedFirst();
 
@@ -212,6 +226,19 @@ void TestMistakes::path_thatIsWrong_isNamed() {
   outcome = runProgram({"calibrate", right_.path("sesion.yaml"), "-o", right_.path("other")});
   VERIFY_OUTCOME(outcome, 2);
   VERIFY_SAYS(outcome, "sesion.yaml: does not exist.*Did you mean 'session.yaml'");
+}
+
+void TestMistakes::command_thatIsWrong_isNamed() {
+  const std::vector<std::pair<QStringList, QString>> all = {
+      {{"calibrate", right_.session()}, "--output is required"},
+      {{"calibrate", right_.session(), "--ouput", "x"}, "unknown option --ouput.*Did you mean '--output'"},
+      {{"calibrat", right_.session()}, "unknown command 'calibrat'.*Did you mean 'calibrate'"},
+      {{"init", right_.path("recording.bag"), "-o", right_.session()}, "session.yaml.*exists"}};
+  for (const auto& [arguments, says] : all) {
+    const Outcome outcome = runProgram(arguments);
+    VERIFY_OUTCOME(outcome, 2);
+    VERIFY_SAYS(outcome, says);
+  }
 }
 
 void TestMistakes::mistake_isNamedFirst_data() {
