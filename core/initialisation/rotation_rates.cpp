@@ -75,8 +75,8 @@ RotationRates rotationRates(const CameraData& camera, const Board& board, const 
   return rates;
 }
 
-// The ratio of medians leads to a first scale, with which the search for the time offset works as usual; ratios of
-// single pairs at this offset refine it.
+// The ratio of medians leads to a first scale, with which search and alignment work as usual. Rotations along the
+// gyroscope's refine it: the noise of views, which makes rates seem larger, averages out in them.
 std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board, const ImuData& imu,
                                    std::int64_t start_ns, const InitialisationOptions& options,
                                    const RunContext& context) {
@@ -84,27 +84,41 @@ std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board,
   const std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
   std::vector<ImuSample> samples = withoutRateSpikes(imu.samples);
   if (pairs.empty() || samples.size() < 2) return std::nullopt;
-  const auto seenRate = [](const RotationPair& pair) {
-    return pair.seen_rad.norm() / (pair.to_s - pair.from_s);
-  };
-  std::vector<double> seen, felt, ratios;
-  for (const RotationPair& pair : pairs) seen.push_back(seenRate(pair));
-  for (const ImuSample& sample : samples) felt.push_back(sample.angular_rate_rad_s.norm());
-  const double usual_rad_s = medianOf(std::move(seen));
-  const double first = medianOf(std::move(felt)) / std::max(usual_rad_s, 1e-9);
+  std::vector<double> seen_rad_s, felt_rad_s;
+  for (const RotationPair& pair : pairs)
+    seen_rad_s.push_back(pair.seen_rad.norm() / (pair.to_s - pair.from_s));
+  for (const ImuSample& sample : samples) felt_rad_s.push_back(sample.angular_rate_rad_s.norm());
+  const double first = medianOf(std::move(felt_rad_s)) / std::max(medianOf(std::move(seen_rad_s)), 1e-9);
   if (!(first > 0.0) || !std::isfinite(first)) return std::nullopt;
   for (ImuSample& sample : samples) sample.angular_rate_rad_s /= first;
   const GyroRotation gyro(samples, start_ns);
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
   if (peaks.empty() || peaks.front().correlation < options.clear_peak_correlation) return std::nullopt;
-  const double offset_s = peaks.front().time_offset_s;
+  const std::optional<RelativeRotation> aligned =
+      estimateCameraImuRotation(poses, gyro, peaks.front().time_offset_s, options, camera.prior);
+  if (!aligned) return std::nullopt;
+  const GyroRotation unbiased(samples, start_ns, aligned->gyroscope_bias_rad_s);
+  struct Rotated {
+    Eigen::Vector3d seen_rad, felt_rad;
+  };
+  std::vector<Rotated> rotated;
+  std::vector<double> angles_rad, slopes, rests;
   for (const RotationPair& pair : pairs) {
-    const double from_s = pair.from_s + offset_s, to_s = pair.to_s + offset_s;
-    if (seenRate(pair) < usual_rad_s || !gyro.covers(from_s, to_s)) continue;
-    ratios.push_back(gyro.between(from_s, to_s).norm() / pair.seen_rad.norm());
+    const double from_s = pair.from_s + aligned->time_offset_s, to_s = pair.to_s + aligned->time_offset_s;
+    if (!unbiased.covers(from_s, to_s)) continue;
+    rotated.push_back({aligned->reference_from_sensor * pair.seen_rad, unbiased.between(from_s, to_s)});
+    angles_rad.push_back(rotated.back().felt_rad.norm());
   }
-  if (ratios.empty()) return std::nullopt;
-  return RateRatio{first * medianOf(std::move(ratios)), peaks.front().correlation};
+  const double usual_rad = medianOf(std::move(angles_rad));
+  for (const Rotated& each : rotated)
+    if (each.felt_rad.norm() >= usual_rad && usual_rad > 0.0)
+      slopes.push_back(each.felt_rad.dot(each.seen_rad) / each.felt_rad.squaredNorm());
+  const double slope = medianOf(std::move(slopes));
+  if (!(slope > 0.0)) return std::nullopt;
+  for (const Rotated& each : rotated) rests.push_back((each.seen_rad - slope * each.felt_rad).norm());
+  if (medianOf(std::move(rests)) > options.largest_unexplained_motion * slope * usual_rad)
+    return std::nullopt;
+  return RateRatio{first / slope, peaks.front().correlation};
 }
 
 }  // namespace evical

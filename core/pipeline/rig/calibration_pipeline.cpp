@@ -361,7 +361,7 @@ class Calibration {
     flagDoubtful(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
     flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
     flagDoubtful(clock_doubt_, result, "clock_step");
-    for (const QualityWarning& wrong : wrongInputs(session_, input_, initial_, solution))
+    for (const QualityWarning& wrong : wrongInputs(session_, input_, initial_, solution, uncertainty.report))
       flagDoubtful(wrong, result);
     wrong_noise_ = wrongNoise(session_, input_, solution);
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
@@ -488,7 +488,8 @@ class Calibration {
   void conclude() {
     CalibrationResult& result = run_.result;
     if (result.status != CalibrationStatus::Ok)
-      if (const std::optional<QualityWarning> unit = wrongUnit(session_, input_, context_))
+      if (const std::optional<QualityWarning> unit =
+              wrongUnit(session_, input_, std::ranges::any_of(result.causes, isWrongInput), context_))
         flagDoubtful(*unit, result);
     returnPass();
     result.start_ns = run_.pass.start_ns;

@@ -1,6 +1,7 @@
 #include "core/pipeline/rig/wrong_inputs.h"
 
 #include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/rotation_rates.h"
@@ -39,6 +40,7 @@ double readAsForce_m_s2(const SessionImu* imu) {
                                               AccelerationUnit::MetresPerSecond2)));
 }
 
+constexpr double kCertain_sigmas = 6.0;
 constexpr double kUnitTolerance = 0.1;  // of ratios of rates, which a slightly wrong lens changes, too
 
 // "3.2 times too large", "57 times too small"
@@ -111,7 +113,6 @@ const char* const kCorrectLens =
 // Words for a given lens that differs from the recording's; empty if the difference is small.
 std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics& found, double sigma_px,
                            const InitialisationOptions& options) {
-  constexpr double kCertain_sigmas = 6.0;
   const double diagonal_px = std::hypot(found.resolution_px.width_px, found.resolution_px.height_px);
   const ProjectionDifference difference = projectionDifference(found, given);
   const Eigen::Vector2d focal_px = idealFocalLength_px(found), given_px = idealFocalLength_px(given);
@@ -133,6 +134,18 @@ std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics
   if (std::abs(std::log(times)) > std::log(kNoticeable) && std::abs(centre_times / times - 1.0) < kAlike)
     text += ", and the principal point alike: the lens seems to be that of another resolution";
   return text;
+}
+
+// True if a number of the lens differs by more than its sigma explains: a recording may not determine the lens.
+bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
+             const std::optional<std::array<double, 9>>& sigmas) {
+  if (!sigmas || given.model != found.model) return true;
+  std::array<double, 9> a{}, b{};
+  writeIntrinsics(given, a.data());
+  writeIntrinsics(found, b.data());
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if ((*sigmas)[k] > 0.0 && std::abs(a[k] - b[k]) > kCertain_sigmas * (*sigmas)[k]) return true;
+  return false;
 }
 
 // The lens from the views alone; if these do not determine it, from the recording.
@@ -325,12 +338,14 @@ CalibrationError withWrongInput(const CalibrationError& error, const Session& se
 }
 
 std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
-                                        const Initialisation& initial, const BatchSolution& solution) {
+                                        const Initialisation& initial, const BatchSolution& solution,
+                                        const UncertaintyReport& uncertainty) {
   const InitialisationOptions& options = *session.options.initialisation;
   std::vector<QualityWarning> wrong;
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const CameraLens& lens = solution.state.cameras[k].lens;
     if (!lens.given || !lens.solved || input.sensorOf(k) != k) continue;
+    if (!differs(*lens.given, *lens.solved, uncertainty.cameras[k].intrinsics_std)) continue;
     const std::string words = wrongLensWords(*lens.given, *lens.solved, 0.0, options);
     if (!words.empty())
       wrong.push_back(
@@ -342,11 +357,13 @@ std::vector<QualityWarning> wrongInputs(const Session& session, const Calibratio
 }
 
 std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
-                                        const RunContext& context) {
+                                        bool another_is_wrong, const RunContext& context) {
   if (input.cameras.empty() || input.imus.empty()) return std::nullopt;
   std::optional<CalibrationError> error = wrongForces(session, input);
   if (!error)
-    if (const std::optional<WrongRates> rates = wrongRates(session, input, context)) error = rates->error;
+    if (const std::optional<WrongRates> rates = wrongRates(session, input, context);
+        rates && (rates->certain || !another_is_wrong))
+      error = rates->error;
   if (!error) return std::nullopt;
   return QualityWarning{fmt::format("{}: {}. {}", error->place(), error->problem(), error->advice()),
                         error->repair(), kWrongUnit};

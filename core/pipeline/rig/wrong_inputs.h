@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/progress.h"
+#include "core/data/calibration_result.h"
 #include "core/data/likely_unit.h"
 #include "core/data/quality_warning.h"
 #include "core/initialisation/initialise.h"
@@ -33,13 +34,15 @@ CalibrationError withWrongInput(const CalibrationError& error, const Session& se
                                 const CalibrationInput& input, const Initialisation& initial,
                                 bool recording_is_there, const RunContext& context);
 
-// A wrong unit behind a doubtful solution.
+// A wrong unit behind a doubtful solution. If another input is wrong, only a ratio that a unit explains counts: a wrong
+// lens changes rates, too.
 std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
-                                        const RunContext& context);
+                                        bool another_is_wrong, const RunContext& context);
 
 // Wrong inputs of a solution, each with the value that would agree. They make any result doubtful.
 std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
-                                        const Initialisation& initial, const BatchSolution& solution);
+                                        const Initialisation& initial, const BatchSolution& solution,
+                                        const UncertaintyReport& uncertainty);
 
 // Noise densities that the recording contradicts: too small ones only with a misfit.
 std::vector<QualityWarning> wrongNoise(const Session& session, const CalibrationInput& input,
