@@ -39,6 +39,32 @@ class TestRotationRates : public QObject {
     QCOMPARE(unshifted.rmsDifferenceAfter_rad_s(), unshifted.rmsDifferenceBefore_rad_s());
   }
 
+  void rateRatio_isThatOfTheUnit_data() {
+    QTest::addColumn<double>("times");
+    for (const double times : {1.0, 0.0174533, 57.29578, 1e3, 0.7, 2.0}) QTest::addRow("%g", times) << times;
+  }
+  void rateRatio_isThatOfTheUnit() {
+    QFETCH(double, times);
+    const SessionCamera& known = simulated_.session.cameras[0];
+    ImuData imu = simulated_.pass.imus[0];
+    for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s *= times;
+    const std::optional<RateRatio> found =
+        rateRatio({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
+                  simulated_.session.board, imu, simulated_.pass.start_ns, {}, {});
+    QVERIFY(found);
+    constexpr double kTolerance = 0.03;  // the gyroscope's scale and the noise of views
+    QVERIFY2(std::abs(found->ratio / times - 1.0) < kTolerance, qPrintable(QString::number(found->ratio)));
+  }
+
+  // A gyroscope of another recording, or with a mirrored axis, has no ratio.
+  void rateRatio_ofAnotherMotion_isEmpty() {
+    const SessionCamera& known = simulated_.session.cameras[0];
+    ImuData imu = simulated_.pass.imus[0];
+    for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s.x() *= -1.0;
+    QVERIFY(!rateRatio({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
+                       simulated_.session.board, imu, simulated_.pass.start_ns, {}, {}));
+  }
+
   void rmsDifferences_areThoseByHand() {
     RotationRates rates;
     QCOMPARE(rates.rmsDifferenceBefore_rad_s(), 0.0);

@@ -2,6 +2,7 @@
 // names the deviation. Circles are those of an ideal front end, so that a case takes a second or two.
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/rig/misfit_diagnosis.h"
 #include "core/pipeline/rig/residual_consistency.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/report_options.h"
@@ -139,6 +140,23 @@ class TestCauses : public QObject {
     for (const char* consequence :
          {"ecord again", "ecord longer", "not flat", "pixels are slow", "has a sigma of"})
       QVERIFY2(!reason.contains(consequence), qPrintable(reason));
+  }
+  void reasons_areRankedInOnePlace() {
+    CalibrationResult result;
+    flagDoubtful("weak", result, "observability");
+    flagDoubtful("misfit", result, "misfit");
+    flagDoubtful("late stamps", result, "stamp_jitter");
+    rankReasons(result);
+    QCOMPARE(QString::fromStdString(result.reason), QString("late stamps; misfit; weak"));
+    CalibrationResult noise = result;
+    flagDoubtful("noise", noise, "noise_density");  // too large: it explains weak results only
+    rankReasons(noise);
+    QCOMPARE(QString::fromStdString(noise.reason), QString("late stamps; noise; misfit"));
+    flagDoubtful("spacing", result, "board_dimensions");
+    flagDoubtful("lens", result, "given_lens");
+    flagDoubtful("unit", result, "unit");
+    rankReasons(result);
+    QCOMPARE(QString::fromStdString(result.reason), QString("unit; late stamps"));
   }
   void noiseTooLarge_isAWarningOfAGoodResult() {
     test::Recorded recorded = base_;
