@@ -149,9 +149,11 @@ bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& i
   return false;
 }
 
+// From the cameras that see the world's board; `all` cameras show which sign is wrong.
 void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
                        const InitialisationOptions& options, const std::vector<AlignedCamera>& cameras,
-                       const GyroRotation& gyro, const RunContext& context, Initialisation& result) {
+                       const std::vector<AlignedCamera>& all, const GyroRotation& gyro,
+                       const RunContext& context, Initialisation& result) {
   CalibrationState& state = result.state;
   Stopwatch stopwatch;
   GravityAlignment gravity =
@@ -171,7 +173,7 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
         "probably misidentified",
         gravity.outlying_views, gravity.views));
   }
-  checkAccelerationsAgree(input, stated, cameras, gyro, gravity, options, context);
+  checkAccelerationsAgree(input, stated, all, gyro, gravity, options, context);
   checkBoardScale(gravity, input.board, options, result);
   if (settled && !result.doubt.empty()) result.board_scale = gravity.board_scale;
   state.imu_in_world_m = gravity.imu_in_world_m;
@@ -314,14 +316,14 @@ void checkHandedness(const CalibrationInput& input, const StatedSigns& stated,
 // Boards other than the world's. If one does not fit, a mirrored image may be the cause.
 void alignFurther(const CalibrationInput& input, const StatedSigns& stated,
                   const std::vector<AlignedCamera>& cameras,
-                  const std::map<std::size_t, AlignedCamera>& further, const GyroRotation& gyro,
-                  const InitialisationOptions& options, const RunContext& context, Initialisation& result) {
+                  const std::map<std::size_t, AlignedCamera>& further, const std::vector<AlignedCamera>& all,
+                  const GyroRotation& gyro, const InitialisationOptions& options, const RunContext& context,
+                  Initialisation& result) {
   constexpr double kCarried_s = 0.3;  // longest time that the IMU bridges between views of the world's board
   try {
     alignFurtherBoards(input, further, bodyTrajectory(cameras, result.state), kCarried_s, options, result);
   } catch (const CalibrationError&) {
-    const auto mirror =
-        findMirror(input, stated, withFurther(cameras, further), gyro, false, options, context);
+    const auto mirror = findMirror(input, stated, all, gyro, false, options, context);
     if (mirror) throw MirrorError(*mirror);
     throw;
   }
@@ -359,14 +361,14 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
       fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, knot_s,
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
-  alignTranslations(input, stated, options, cameras, unbiased, context, result);
-  alignFurther(input, stated, cameras, before_further, unbiased, options, context, result);
+  const std::vector<AlignedCamera> all = withFurther(cameras, before_further);
+  alignTranslations(input, stated, options, cameras, all, unbiased, context, result);
+  alignFurther(input, stated, cameras, before_further, all, unbiased, options, context, result);
   keepLenses(input, result.state);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }
-  result.mirror_doubt =
-      mirrorDoubt(input, stated, withFurther(std::move(cameras), before_further), result.state);
+  result.mirror_doubt = mirrorDoubt(input, stated, all, result.state);
   tellSteps(result.steps, context.observer, told);
   context.progress.stageProgress(1.0);
   return result;

@@ -234,7 +234,8 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
   std::vector<SignedCamera> all;
   for (const AlignedCamera& camera : cameras) {
     const int sign = signOf(input, camera, gyro, options, context);
-    all.push_back({&camera, negated && sign == 0 ? -1 : sign, evidenceOf(input, stated, camera)});
+    const bool known = sign == 0 && negated && input.cameras[camera.camera].board == 0;
+    all.push_back({&camera, known ? -1 : sign, evidenceOf(input, stated, camera)});
   }
   const auto mirrored = std::ranges::find(all, -1, &SignedCamera::sign);
   if (mirrored == all.end()) return std::nullopt;
@@ -249,7 +250,8 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
   std::optional<Mirroring> how = mirrored->evidence ? mirrored->evidence->how : std::optional<Mirroring>();
   for (const SignedCamera& other : all)
     if (!how && other.sign > 0) how = mirroringOnChip(input, *mirrored->camera, *other.camera);
-  return mirroredImage(input, *mirrored->camera, how, evidence->reason);
+  return mirroredImage(input, *mirrored->camera, how,
+                       mirrored->evidence ? mirrored->evidence->reason : evidence->reason);
 }
 
 bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& camera, const GyroRotation& gyro,

@@ -33,7 +33,7 @@ struct MirrorError : CalibrationError {
 
 // The error of accelerations that have the opposite sign of what cameras see: a mirrored image, negated
 // accelerations, or one of both, if nothing distinguishes them; with a repair only if nothing else explains
-// the data. `gyro` without its bias; `negated`: all cameras together show the opposite sign. Empty if no
+// the data. `gyro` without its bias; `negated`: those of the world's board together show the opposite sign. Empty if no
 // camera shows it.
 std::optional<CalibrationError> findMirror(const CalibrationInput& input, const StatedSigns& stated,
                                            std::span<const AlignedCamera> cameras, const GyroRotation& gyro,
