@@ -188,8 +188,8 @@ class TestSavedDetections : public QObject {
   void otherOptionsOfTheDetection_areReported_data() {
     QTest::addColumn<QString>("option");
     QTest::addColumn<QString>("value");
-    QTest::newRow("events") << "front_end.window_s"
-                            << "0.03";
+    QTest::newRow("events") << "detection.longest_window_s"
+                            << "0.04";
     QTest::newRow("lens that is calibrated first") << "intrinsics.model"
                                                    << "pinhole_equidistant";
   }
