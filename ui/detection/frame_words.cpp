@@ -25,7 +25,7 @@ StageReport pictureStage(const WindowAnalysis& analysis, const FrameOptions& opt
   const double contrast = frame.brightest - frame.darkest;
   const bool pale = !isOfUse(analysis) && contrast < options.least_contrast;
   std::string text =
-      print("90 % of the pixels are between %.0f and %.0f of 255", frame.darkest, frame.brightest);
+      print("90 %% of the pixels are between %.0f and %.0f of 255", frame.darkest, frame.brightest);
   if (pale) text += print(": too little contrast (least_contrast is %.0f)", options.least_contrast);
   return {"picture", pale ? StageVerdict::Failed : StageVerdict::Passed, text};
 }

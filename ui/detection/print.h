@@ -2,15 +2,19 @@
 // Numbers in sentences, for threads without a translator.
 #pragma once
 
+#include <cstdarg>
 #include <cstdio>
 #include <string>
 
 namespace evical::ui {
 
-template <class... Values>
-std::string print(const char* format, Values... values) {
+// At most 399 characters. The attribute lets the compiler compare format and values.
+[[gnu::format(printf, 1, 2)]] inline std::string print(const char* format, ...) {
   char text[400];
-  std::snprintf(text, sizeof text, format, values...);
+  std::va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
   return text;
 }
 
