@@ -136,7 +136,7 @@ class TestRepeatPage : public QObject {
   }
   void shows(WindowFixture& test, const Repeatability& repeat) {
     auto* const screen = test.child<RepeatScreen>();
-    QCOMPARE(screen->findChild<QLabel*>("repeat_verdict")->text(), QString("Changed"));
+    QCOMPARE(screen->findChild<QLabel*>("repeat_verdict")->text(), QString("The recordings disagree"));
     QVERIFY(screen->findChild<QLabel*>("repeat_reason")->text().contains("rotation"));
     const auto* const list = test.child<RepeatedList>();
     QCOMPARE(list->topLevelItemCount(), 4);

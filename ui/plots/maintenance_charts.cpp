@@ -160,7 +160,8 @@ void MaintenanceCharts::showTrack(const MaintenanceTrack& track) {
   for (const MaintenanceStep& step : maintenance_.steps)
     if (isIn(step, track)) marks.push_back({step.at_s, text(step.title)});
   for (const TrackedQuantity& quantity : track.quantities) {
-    PlotPanel* const panel = addPanel(titleOf(quantity), text(shownUnit(quantity.unit)));
+    PlotPanel* const panel =
+        addPanel(titleOf(quantity), text(shownUnit(quantity.unit)).replace("^2", QChar(0xb2)));
     for (std::size_t k = 0; k < quantity.numbers.size(); ++k)
       addNumber(*panel, track, quantity.numbers[k], kColours[k % kColours.size()]);
     panel->setLevels({0.0});

@@ -90,11 +90,12 @@ void AssessmentScreen::setContent(QWidget* content) {
   stack_->addWidget(found);
 }
 
-void AssessmentScreen::showAssessment(const Assessment& assessment, const QStringList& more) {
+void AssessmentScreen::showAssessment(const Assessment& assessment, const QStringList& more,
+                                      const QString& verdict) {
   const auto text = [](const std::string& of_core) { return sentence(QString::fromStdString(of_core)); };
   for (QPushButton* const button : result_buttons_) button->setVisible(true);
   stack_->setCurrentIndex(1);
-  QString title = verdictWords(assessment.verdict);
+  QString title = verdict.isEmpty() ? verdictWords(assessment.verdict) : verdict;
   title[0] = title[0].toUpper();
   verdict_->setVerdict(toneOf(assessment.verdict), title, text(assessment.reason));
   lines_.clear();

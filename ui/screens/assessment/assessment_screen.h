@@ -51,7 +51,8 @@ class AssessmentScreen : public QWidget {
   void setContent(QWidget* content);
 
   // `more`: further notes.
-  void showAssessment(const Assessment& assessment, const QStringList& more);
+  // `verdict` replaces the usual words, which are about a change.
+  void showAssessment(const Assessment& assessment, const QStringList& more, const QString& verdict = {});
   void changeEvent(QEvent* event) override;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 QString sizeText(double value, const std::string& unit) {
   if (!std::isfinite(value)) return QChar(0x2013);
-  return QString("%1 %2").arg(fromCore(html::significant(value, 2)), fromCore(shownUnit(unit))).trimmed();
+  return QString("%1 %2").arg(fromCore(html::significant(value, 2)), unitText(unit)).trimmed();
 }
 
 QString valueText(const ValueWithSigma& number) {
@@ -48,9 +48,8 @@ QString wordsOf(const Finding& finding) {
 }
 
 QTreeWidgetItem* itemOf(const ComparedNumber& number) {
-  const QString unit = fromCore(shownUnit(number.unit));
-  auto* const item = new QTreeWidgetItem(
-      {unit.isEmpty() ? fromCore(number.name) : QString("%1 [%2]").arg(fromCore(number.name), unit)});
+  const QString unit = unitText(number.unit), name = nameOfKey(number.name);
+  auto* const item = new QTreeWidgetItem({unit.isEmpty() ? name : QString("%1 [%2]").arg(name, unit)});
   item->setText(FindingTable::kBefore, valueText(number.before));
   item->setText(FindingTable::kNow, valueText(number.now));
   if (number.joint.isThere())
@@ -151,7 +150,7 @@ void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
     for (const std::string& other : step.alternatives) others << fromCore(other);
     for (const ComparedNumber& number : step.numbers)
       numbers << QString("%1: %2 %3")
-                     .arg(fromCore(number.name), valueText(number.change), fromCore(shownUnit(number.unit)))
+                     .arg(nameOfKey(number.name), valueText(number.change), unitText(number.unit))
                      .trimmed();
     auto* const item = new QTreeWidgetItem({titleOf(step), QString("%1 s").arg(step.at_s, 0, 'f', 1),
                                             QString("%1 s").arg(step.noticed_s, 0, 'f', 1), changeText(step),

@@ -39,6 +39,12 @@ QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* par
   return choice;
 }
 
+// Not "unchanged": the recordings are compared with each other, not with an old result.
+QString agreementText(Verdict verdict) {
+  if (verdict == Verdict::Unchanged) return QObject::tr("The recordings agree");
+  return verdict == Verdict::Changed ? QObject::tr("The recordings disagree") : QString();
+}
+
 }  // namespace
 
 RepeatScreen::RepeatScreen(QWidget* parent)
@@ -159,7 +165,7 @@ void RepeatScreen::setRepeat(const Repeatability& repeat) {
     more << tr("Biases, gravity and time offsets are separate for each recording: the joint solution lists "
                "those of %1.")
                 .arg(QString::fromStdString(repeat.own_values_of));
-  showAssessment(repeat, more);
+  showAssessment(repeat, more, agreementText(repeat.verdict));
   ratio_->setVisible(repeat.rms_ratio > 0.0);
   ratio_->setText(
       tr("Ratio of the observed scatter to the one expected from the sigmas: %1 RMS over all numbers "

@@ -88,8 +88,8 @@ void RepeatTable::fillPair(const RepeatedNumber& number, QTreeWidgetItem& item) 
 }
 
 QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
-  const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(fromCore(number.unit));
-  auto* const item = new QTreeWidgetItem({fromCore(number.name) + unit});
+  const QString unit = unitText(number.unit), name = nameOfKey(number.name);
+  auto* const item = new QTreeWidgetItem({unit.isEmpty() ? name : QString("%1 [%2]").arg(name, unit)});
   // Number of decimals according to the spread.
   const double spread = number.deviation > 0.0 ? number.deviation : number.mean_sigma;
   item->setText(kMean, QString::number(number.mean, 'f', decimalsFor(spread)));

@@ -31,10 +31,6 @@ QString rateText(const StreamSummary& stream) {
   return QString("%1 %2").arg(stream.rate_hz, 0, 'f', 1).arg(unit);
 }
 
-QString streamUnitText(const std::string& unit) {
-  return fromCore(unit).replace("^2", QChar(0xb2));
-}
-
 QString contentText(const StreamSummary& stream) {
   switch (stream.info.type) {
     case StreamType::Events: {
@@ -43,11 +39,11 @@ QString contentText(const StreamSummary& stream) {
     }
     case StreamType::Imu:
       if (imuStreamKind(stream) == ImuStreamKind::Gyroscope)
-        return QObject::tr("gyroscope, %1").arg(streamUnitText(stream.angular_rate_unit));
+        return QObject::tr("gyroscope, %1").arg(unitText(stream.angular_rate_unit));
       if (imuStreamKind(stream) == ImuStreamKind::Accelerometer)
-        return QObject::tr("accelerometer, %1").arg(streamUnitText(stream.acceleration_unit));
+        return QObject::tr("accelerometer, %1").arg(unitText(stream.acceleration_unit));
       return QObject::tr("IMU, %1, %2")
-          .arg(streamUnitText(stream.acceleration_unit), streamUnitText(stream.angular_rate_unit));
+          .arg(unitText(stream.acceleration_unit), unitText(stream.angular_rate_unit));
     case StreamType::Frames:
       if (!stream.info.readable) return fromCore(stream.info.message);
       if (!stream.info.resolution_px.known())

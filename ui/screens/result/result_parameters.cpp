@@ -8,6 +8,7 @@
 #include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 #include "core/report/truth_comparison.h"
+#include "ui/screens/format_number.h"
 
 #include <QObject>
 
@@ -21,10 +22,6 @@ namespace {
 const char* const kGravityKey = "gravity";
 constexpr int kMostDecimals = 8;
 const QString kAcceleration = QString("m/s") + QChar(0xb2);
-
-QString shownUnit(const std::string& unit) {
-  return QString::fromStdString(unit).replace("^2", QChar(0xb2));
-}
 
 // "Accelerometer delay", "Gyroscope scale xx", "Focal length x".
 QString nameOf(const ShownQuantity& quantity, const ShownNumber& number) {
@@ -46,7 +43,7 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
     if (intrinsics && number.sigma == 0.0) continue;  // fixed
     group.rows.push_back({QString::fromStdString(number.key),
                           nameOf(quantity, number),
-                          shownUnit(number.unit),
+                          unitText(number.unit),
                           number.value,
                           number.sigma,
                           {},
