@@ -98,6 +98,18 @@ class TestRecordingScreen : public QObject {
  private slots:
   void initTestCase() { applyTheme(*qApp, Appearance::Light); }
 
+  void longFileName_doesNotWidenThePage() {
+    RecordingScreenFixture test;
+    QApplication::processEvents();
+    const int width_px = test.page()->widget()->minimumSizeHint().width();
+    test.session.recording = "/data/" + std::string(200, 'x') + ".bag";
+    test.screen.setSession(test.session);
+    test.screen.addInspection(QString::fromStdString(test.session.recording.string()), test.inspection);
+    QApplication::processEvents();
+    QCOMPARE(test.page()->widget()->minimumSizeHint().width(), width_px);
+    QCOMPARE(test.page()->horizontalScrollBar()->maximum(), 0);
+  }
+
   void streams_areListedWithRatesAndRoles() {
     RecordingScreenFixture test;
     QCOMPARE(test.streams()->rowCount(), 2);

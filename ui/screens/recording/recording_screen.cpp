@@ -103,8 +103,8 @@ void showOrHide(QLabel* shown, const QString& text) {
 RecordingScreen::RecordingScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
-      title_(wrappedLabel({}, "title", this)),
-      path_(wrappedLabel({}, "hint", this)),
+      title_(new ElidedLabel("title", this)),
+      path_(new ElidedLabel("hint", this)),
       verdict_(wrappedLabel({}, "heading", this)),
       looking_text_(wrappedLabel({}, "hint", this)),
       file_faults_(wrappedLabel({}, "problem", this)),
@@ -233,10 +233,11 @@ QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
   auto* const layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(time_range_, 1);
-  auto* const add = new QPushButton(icon("open"), tr("Sensors from another file..."), line);
+  auto* const add = new QPushButton(icon("open"), tr("Sensors from another recording..."), line);
   add->setObjectName("add_recording");
   add->setToolTip(
-      tr("An IMU or a camera that was recorded into a separate file, by the same clock or with a known "
+      tr("An IMU or a camera that was recorded into a separate file or folder, by the same clock or with a "
+         "known "
          "offset"));
   connect(add, &QPushButton::clicked, this, &RecordingScreen::addRecordingRequested);
   layout->addWidget(add);
@@ -270,6 +271,8 @@ void RecordingScreen::setSession(const Session& session) {
   showPart();
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
+  title_->setToolTip(QString::fromStdString(session.recording.string()));
+  path_->setToolTip(title_->toolTip());
   boards_->setSession(session);
   other_recording ? listStreams() : streams_->setSession(session);
   time_range_->setRange(session.time_range_s);

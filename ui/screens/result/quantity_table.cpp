@@ -68,8 +68,10 @@ QuantityTable::QuantityTable(QWidget* parent) : QTreeWidget(parent) {
   headerItem()->setToolTip(kSigmas, tr("Difference in standard deviations"));
   setAccessibleName(tr("Calibrated quantities"));
   const auto remember = [this](QTreeWidgetItem* heading) {
-    if (const int row = indexOfTopLevelItem(heading); row >= 0)
-      folded_[groups_[static_cast<std::size_t>(row)].title] = !heading->isExpanded();
+    const int row = indexOfTopLevelItem(heading);
+    if (row < 0) return;
+    folded_[groups_[static_cast<std::size_t>(row)].title] = !heading->isExpanded();
+    fitColumns();
   };
   connect(this, &QTreeWidget::itemExpanded, this, remember);
   connect(this, &QTreeWidget::itemCollapsed, this, remember);
@@ -103,7 +105,7 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   fitColumns();
 }
 
-// Measures the texts: a header that resizes to contents asks the style for each item's size at every layout.
+// Measures the visible texts: a header that resizes to contents asks the style for each item's size at every layout.
 void QuantityTable::fitColumns() {
   const QFontMetrics metrics(font());
   const int margin_px = 2 * metrics.horizontalAdvance('0');
@@ -112,8 +114,9 @@ void QuantityTable::fitColumns() {
     int& width_px = widths_px[static_cast<std::size_t>(column)];
     width_px = std::max(width_px, metrics.horizontalAdvance(text) + margin_px);
   };
-  for (const ParameterGroup& group : groups_) {
-    for (const ParameterRow& row : group.rows) {
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    if (!topLevelItem(static_cast<int>(i))->isExpanded()) continue;
+    for (const ParameterRow& row : groups_[i].rows) {
       widen(kQuantity, row.name);
       widen(kValue, row.valueText());
       widen(kSigma, row.sigmaText());
