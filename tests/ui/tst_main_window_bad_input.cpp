@@ -171,6 +171,24 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
+  // The dialog that opens files chooses folders, too.
+  void folderWithoutRecording_isNamed() {
+    const QTemporaryDir folder;
+    QVERIFY(QDir(folder.path()).mkdir("pictures"));
+    WindowFixture test;
+    QTimer::singleShot(500, qApp, [&folder] {
+      auto* const dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+      QVERIFY(dialog != nullptr);
+      dialog->setDirectory(folder.filePath("pictures"));
+      dialog->findChild<QPushButton*>("use_folder")->click();
+    });
+    test.press(Qt::Key_O, Qt::ControlModifier);
+    QTRY_VERIFY_WITH_TIMEOUT(test.child<ErrorPanel>()->isVisible(), kPatience_ms);
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("pictures"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(test.window.close());
+  }
+
   // Its events are in the program's cache; calibrating it again cannot work, and the message names the
   // missing file.
   void recordingRemoved_whilePlaying() {

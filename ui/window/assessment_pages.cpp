@@ -53,10 +53,9 @@ void wireFile(PathRow& row, QWidget& page, const QString& title, const QString& 
   });
 }
 
-void wireList(FileList& list, QWidget& page, const QString& title, bool with_sessions) {
-  QObject::connect(&list, &FileList::addRequested, &page, [&list, &page, title, with_sessions] {
-    list.add(QFileDialog::getOpenFileNames(&page, title, lastUsedFolder(), recordingsFilter(with_sessions)));
-  });
+void wireList(FileList& list, QWidget& page, const QString& title, RecordingChoice choice) {
+  QObject::connect(&list, &FileList::addRequested, &page,
+                   [&list, &page, title, choice] { list.add(askForRecordings(&page, title, choice, true)); });
 }
 
 std::vector<std::filesystem::path> pathsOf(const FileList& list) {
@@ -138,8 +137,11 @@ void wireRepeatedFiles(RepeatScreen& screen, const RepeatJob& job, SessionFiles&
 void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFiles& files) {
   ResultCheckJob& job = workbench.result_check;
   wireOldResult(screen.result(), screen, workbench);
-  wireFile(screen.recording(), screen, QObject::tr("New recording, or a session of it"),
-           recordingsFilter(true));
+  QObject::connect(&screen.recording(), &PathRow::chooseRequested, &screen, [&screen] {
+    const QString path = askForRecording(&screen, QObject::tr("New recording, or a session of it"),
+                                         RecordingChoice::RecordingsAndSessions);
+    if (!path.isEmpty()) screen.recording().setPath(path);
+  });
   wirePage(
       screen, job, [&screen, &workbench] { beginResultCheck(screen, workbench); },
       QObject::tr("The result cannot be checked"), workbench, files);
@@ -167,7 +169,7 @@ void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFil
 void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& workbench,
                   SessionFiles& files) {
   MaintainJob& job = workbench.maintain;
-  wireList(screen.logs(), screen, QObject::tr("Logs of the IMUs"), false);
+  wireList(screen.logs(), screen, QObject::tr("Logs of the IMUs"), RecordingChoice::Recordings);
   wireOldResult(screen.result(), screen, workbench);
   wireFile(screen.trajectory(), screen, QObject::tr("Trajectory of the reference IMU"),
            QObject::tr("Trajectories (*.csv *.txt *.tum);;All files (*)"));
@@ -191,7 +193,8 @@ void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& 
 
 void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
   RepeatJob& job = workbench.repeat;
-  wireList(screen.files(), screen, QObject::tr("Recordings or sessions of one rig"), true);
+  wireList(screen.files(), screen, QObject::tr("Recordings or sessions of one rig"),
+           RecordingChoice::RecordingsAndSessions);
   QObject::connect(&screen.folder(), &PathRow::chooseRequested, &screen, [&screen] {
     const QString folder =
         QFileDialog::getExistingDirectory(&screen, QObject::tr("Folder for the results"), lastUsedFolder());

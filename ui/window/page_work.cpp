@@ -8,8 +8,11 @@
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
 
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QFileDialog>
+#include <QFileInfo>
+#include <QPushButton>
 #include <QSettings>
 
 #include <utility>
@@ -25,6 +28,16 @@ QString titleOf(const JobProgress& progress) {
   for (const MaintainStage& stage : kMaintainStages)
     if (title == stage.name) title = QObject::tr(stage.title);
   return progress.part.isEmpty() ? title : progress.part + ": " + title;
+}
+
+QString recordingsFilter(RecordingChoice choice) {
+  const QString recordings =
+      "*.bag *.bag.active *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy *.hdf5 *.es "
+      "*.txt *.csv";
+  const QString all = QObject::tr("All files (*)");
+  if (choice == RecordingChoice::RecordingsAndSessions)
+    return QObject::tr("Recordings, sessions and results (%1 *.yaml *.yml);;%2").arg(recordings, all);
+  return QObject::tr("Recordings (%1);;%2").arg(recordings, all);
 }
 
 }  // namespace
@@ -70,13 +83,29 @@ QString lastUsedFolder() {
   return QSettings().value("last_folder", QDir::homePath()).toString();
 }
 
-QString recordingsFilter(bool with_sessions) {
-  const QString recordings =
-      "*.bag *.bag.active *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy *.hdf5 *.es "
-      "*.txt *.csv";
-  const QString all = QObject::tr("All files (*)");
-  if (with_sessions) return QObject::tr("Recordings and sessions (%1 *.yaml *.yml);;%2").arg(recordings, all);
-  return QObject::tr("Recordings (%1);;%2").arg(recordings, all);
+QStringList askForRecordings(QWidget* parent, const QString& title, RecordingChoice choice, bool several) {
+  QFileDialog dialog(parent, title, lastUsedFolder(), recordingsFilter(choice));
+  dialog.setOption(
+      QFileDialog::DontUseNativeDialog);  // desktops' dialogs choose files or folders, never both
+  dialog.setFileMode(several ? QFileDialog::ExistingFiles : QFileDialog::ExistingFile);
+  QPushButton* const use_folder = dialog.findChild<QDialogButtonBox*>()->addButton(
+      QObject::tr("Use this &folder"), QDialogButtonBox::ActionRole);
+  use_folder->setObjectName("use_folder");
+  use_folder->setToolTip(
+      QObject::tr("The marked folder, or the one that is shown: pictures, text files or a ROS 2 bag"));
+  QString folder;
+  QObject::connect(use_folder, &QPushButton::clicked, &dialog, [&dialog, &folder] {
+    const QStringList marked = dialog.selectedFiles();
+    folder =
+        !marked.isEmpty() && QFileInfo(marked.front()).isDir() ? marked.front() : dialog.directory().path();
+    static_cast<QDialog&>(dialog).done(QDialog::Accepted);
+  });
+  if (dialog.exec() != QDialog::Accepted) return {};
+  return folder.isEmpty() ? dialog.selectedFiles() : QStringList{folder};
+}
+
+QString askForRecording(QWidget* parent, const QString& title, RecordingChoice choice) {
+  return askForRecordings(parent, title, choice, false).value(0);
 }
 
 }  // namespace evical::ui

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QString>
+#include <QStringList>
 
 #include <filesystem>
 #include <functional>
@@ -31,7 +32,12 @@ void saveToFolder(QWidget& page, const SavedWords& words,
 // The session's file, else its recording; empty without a session.
 QString openFileOf(const CalibrationDocument& document);
 
-QString lastUsedFolder();                      // folder of the last opened file
-QString recordingsFilter(bool with_sessions);  // for file dialogs
+QString lastUsedFolder();  // folder of the last opened file
+
+enum class RecordingChoice { Recordings, RecordingsAndSessions };
+// Asks for recordings, which are files or folders (of pictures, text or a ROS 2 bag): a button of the dialog chooses the
+// folder that it shows or marks. Empty if the user cancels.
+QStringList askForRecordings(QWidget* parent, const QString& title, RecordingChoice choice, bool several);
+QString askForRecording(QWidget* parent, const QString& title, RecordingChoice choice);
 
 }  // namespace evical::ui
