@@ -165,6 +165,21 @@ class TestKeptRuns : public QObject {
     QVERIFY(test.window.close());
   }
 
+  void recentFile_opensWithItsNewestRun() {
+    WindowFixture test;
+    test.window.files().openRecent(session_);
+    QTRY_VERIFY_WITH_TIMEOUT(test.document().last().run != nullptr, kPatience_ms);
+    QCOMPARE(test.document().last().run->result.rejected_windows.size(),
+             readSavedRun(QDir(runs()).filePath(folders().at(1)).toStdString())
+                 .run->result.rejected_windows.size());
+    QVERIFY(!test.document().runIsOutdated());
+    QVERIFY(!test.window.isWindowModified());
+    test.window.files().open(session_);  // opened by its name: a new start
+    spin(500);
+    QVERIFY(!test.document().last().run);
+    QVERIFY(test.window.close());
+  }
+
   void sessionWithoutFile_keepsItsRuns_andTakesThemAlong() {
     const SavedRun saved = readSavedRun(QDir(runs()).filePath(folders().at(0)).toStdString());
     const QString file = scratch_.filePath("later/named.yaml");

@@ -45,8 +45,8 @@ void MainWindow::makeActions() {
 }
 
 void MainWindow::makeFileMenu() {
-  actions_.open_session =
-      makeAction(this, "open", tr("&Open session..."), tr("Open a session file"), QKeySequence::Open);
+  actions_.open_session = makeAction(this, "open", tr("&Open..."),
+                                     tr("Open a session, a result or a recording"), QKeySequence::Open);
   actions_.open_recording = makeAction(this, "recording", tr("Open &recording..."),
                                        tr("Open a recording and describe it"), QKeySequence("Ctrl+Shift+O"));
   actions_.save = makeAction(this, "save", tr("&Save"), tr("Save the session"), QKeySequence::Save);
@@ -76,7 +76,7 @@ void MainWindow::makeFileMenu() {
   connect(recent, &QMenu::aboutToShow, this, [this, recent] {
     recent->clear();
     for (const RecentFile& file : recentFiles())
-      recent->addAction(file.path, files_, [this, path = file.path] { files_->open(path); });
+      recent->addAction(file.path, files_, [this, path = file.path] { files_->openRecent(path); });
     recent->setEnabled(!recent->isEmpty());
   });
   menu->addSeparator();

@@ -45,7 +45,7 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
     workbench.lens.setAim(CalibrationAim::Rig);  // the demo is a rig
     files.openDemo();
   });
-  QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::open);
+  QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::openRecent);
   QObject::connect(&files, &SessionFiles::recentFilesChanged, &start,
                    [&start] { start.setRecentFiles(recentFiles()); });
   QObject::connect(&files, &SessionFiles::demoRunning, &start, &StartScreen::setDemoRunning);

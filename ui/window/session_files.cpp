@@ -119,6 +119,7 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
     export_targets_.reset();
   });
   connect(&workbench_.document, &CalibrationDocument::runsChanged, this, &SessionFiles::rememberRun);
+  connect(&workbench_.history, &RunHistory::changed, this, &SessionFiles::showNewestRun);
   connect(&workbench_.lens, &LensDocument::runChanged, this, &SessionFiles::rememberRun);
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this, [this] {
     if (every_result_folder_.isEmpty()) return;
@@ -127,7 +128,28 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
   });
 }
 
+void SessionFiles::openRecent(const QString& path) {
+  open(path);
+  newest_run_awaited_ = true;
+}
+
+// Recent files are listed with the verdict of their last run, so opening one shows this run.
+void SessionFiles::showNewestRun() {
+  RunHistory& history = workbench_.history;
+  if (!newest_run_awaited_ || history.runs().empty()) return;
+  newest_run_awaited_ = false;
+  const auto is_wanted = [this] { return !workbench_.document.last().run && !workbench_.runner.running(); };
+  if (!is_wanted()) return;
+  history.open(history.runs().back().folder,
+               [this, is_wanted, place = history.place()](const SavedRun& saved) {
+                 if (!is_wanted() || workbench_.history.place() != place) return;
+                 workbench_.lens.setAim(CalibrationAim::Rig);  // saved runs are rigs
+                 workbench_.document.addRun({saved.run, saved.session, QString::fromStdString(saved.log)});
+               });
+}
+
 void SessionFiles::open(const QString& path) {
+  newest_run_awaited_ = false;
   if (workbench_.runner.running()) {
     emit failed(tr("%1 cannot be opened now").arg(QFileInfo(path).fileName()),
                 {true, workbench_.runner.title(), tr("is still running"), tr("Cancel it, or wait")});
@@ -195,7 +217,7 @@ void SessionFiles::runOpened(const SavedRun& saved) {
 
 void SessionFiles::lookForRecording(const QString& missing) {
   const QString name = QFileInfo(missing).fileName();
-  const QString file = askForRecording(tr("Where is %1?").arg(name));
+  const QString file = askForRecording(window_, tr("Where is %1?").arg(name), RecordingChoice::Recordings);
   if (file.isEmpty()) return;
   workbench_.document.moveRecording(missing.toStdString(), QFileInfo(file).absoluteFilePath().toStdString());
   inspectSession();
@@ -276,22 +298,19 @@ void SessionFiles::takeResolutions(const QString& recording, const Inspection& i
 }
 
 void SessionFiles::chooseSession() {
-  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a session or a result"), lastFolder(),
-                                                    tr("Sessions and results (*.yaml *.yml);;All files (*)"));
+  const QString file = askForRecording(window_, tr("Open a session, a result or a recording"),
+                                       RecordingChoice::RecordingsAndSessions);
   if (!file.isEmpty()) open(file);
 }
 
-QString SessionFiles::askForRecording(const QString& title) {
-  return QFileDialog::getOpenFileName(window_, title, lastFolder(), recordingsFilter(false));
-}
-
 void SessionFiles::chooseRecording() {
-  const QString file = askForRecording(tr("Open a recording"));
+  const QString file = askForRecording(window_, tr("Open a recording"), RecordingChoice::Recordings);
   if (!file.isEmpty()) open(file);
 }
 
 void SessionFiles::chooseFurtherRecording() {
-  const QString file = askForRecording(tr("Sensors from another file"));
+  const QString file =
+      askForRecording(window_, tr("Sensors from another recording"), RecordingChoice::Recordings);
   if (!file.isEmpty()) addRecording(file);
 }
 

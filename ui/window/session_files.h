@@ -32,6 +32,8 @@ class SessionFiles : public QObject {
   SessionFiles(Workbench& workbench, QWidget* window);
 
   void open(const QString& path);  // a session file, a recording, a saved run, or a folder with one of them
+  // The same; also shows the newest run that is stored for it.
+  void openRecent(const QString& path);
   void chooseSession();
   void chooseRecording();
   // Adds a recording to the session, for sensors that it lacks.
@@ -69,6 +71,7 @@ class SessionFiles : public QObject {
   void await(const QString& recording);
   void openRun(const QString& path);
   void runOpened(const SavedRun& saved);
+  void showNewestRun();
   bool saveTo(const QString& file);
   void remember(const QString& file);
   void rememberRun();
@@ -77,7 +80,6 @@ class SessionFiles : public QObject {
   void takeResolutions(const QString& recording, const Inspection& inspection);
   bool refuseUseless(const QString& recording,
                      const Inspection& inspection);  // false if the recording is useful
-  QString askForRecording(const QString& title);
   void inspectSession();
   QString lastFolder() const;
   void startExport(const ExportRequest& request);
@@ -94,6 +96,7 @@ class SessionFiles : public QObject {
   std::shared_ptr<const CalibrationRun> reported_run_;      // run of report_folder_
   QString report_folder_;
   QTemporaryDir momentary_;
+  bool newest_run_awaited_ = false;
 };
 
 }  // namespace evical::ui
