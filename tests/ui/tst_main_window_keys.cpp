@@ -15,6 +15,8 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
+#include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QScrollBar>
 #include <QSet>
@@ -200,6 +202,34 @@ class TestMainWindowKeys : public QObject {
     contents->setCurrentRow(3);
     const QString top = browser->cursorForPosition({30, 8}).block().text();
     QCOMPARE(top, contents->item(3)->text());
+  }
+
+  void guide_canBeSearched() {
+    WindowFixture test;
+    test.press(Qt::Key_F1);
+    auto* const guide = test.child<QDialog>("user_guide");
+    QVERIFY(guide && guide->isVisible());
+    guide->activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(guide));
+    QTest::keyClick(guide, Qt::Key_F, Qt::ControlModifier);
+    auto* const field = guide->findChild<QLineEdit*>("guide_search");
+    auto* const matches = guide->findChild<QLabel*>("guide_matches");
+    auto* const browser = guide->findChild<QTextBrowser*>();
+    QVERIFY(field->hasFocus());
+    QTest::keyClicks(field, "noise densities");
+    QCOMPARE(browser->textCursor().selectedText().toLower(), QString("noise densities"));
+    QVERIFY(matches->text().contains("match"));
+    const int first = browser->textCursor().selectionStart();
+    field->clear();
+    QTest::keyClicks(field, "the");
+    const int second = browser->textCursor().selectionStart();
+    QTest::keyClick(field, Qt::Key_Return);
+    QVERIFY(guide->isVisible());  // Return does not close the dialog
+    QVERIFY(browser->textCursor().selectionStart() > second);
+    QVERIFY(second >= first);
+    field->clear();
+    QTest::keyClicks(field, "no such words");
+    QCOMPARE(matches->text(), QString("0 matches"));
   }
 };
 

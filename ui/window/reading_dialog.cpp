@@ -3,6 +3,7 @@
 
 #include <QDialog>
 #include <QDialogButtonBox>
+#include <QPushButton>
 #include <QVBoxLayout>
 
 namespace evical::ui {
@@ -19,6 +20,7 @@ QDialog* makeReadingDialog(QWidget* window, const QString& name, const QString& 
 void addCloseButton(QDialog* dialog) {
   auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Close, dialog);
   QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::close);
+  buttons->button(QDialogButtonBox::Close)->setAutoDefault(false);  // Return belongs to the fields
   dialog->layout()->addWidget(buttons);
 }
 

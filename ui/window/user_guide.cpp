@@ -7,8 +7,11 @@
 #include <QAbstractTextDocumentLayout>
 #include <QDialog>
 #include <QFile>
+#include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QScrollBar>
+#include <QShortcut>
 #include <QSplitter>
 #include <QStyledItemDelegate>
 #include <QTextBlock>
@@ -70,6 +73,57 @@ QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
   return contents;
 }
 
+// Marks all places of the text, shows their number, and moves to the next one after `from`.
+void findInGuide(QTextBrowser& browser, QLabel& count, const QString& text, int from) {
+  QList<QTextEdit::ExtraSelection> places;
+  QTextCursor next;
+  QColor pale = browser.palette().color(QPalette::Highlight);
+  pale.setAlphaF(0.3F);
+  for (QTextCursor at = browser.document()->find(text, 0); !text.isEmpty() && !at.isNull();
+       at = browser.document()->find(text, at)) {
+    QTextCharFormat marked;
+    marked.setBackground(pale);
+    places.append({at, marked});
+    if (next.isNull() && at.selectionStart() >= from) next = at;
+  }
+  if (next.isNull() && !places.isEmpty()) next = places.front().cursor;  // after the last one, the first
+  browser.setExtraSelections(places);
+  count.setText(text.isEmpty()       ? QString()
+                : places.size() == 1 ? QObject::tr("1 match")
+                                     : QObject::tr("%1 matches").arg(places.size()));
+  if (next.isNull()) return;
+  browser.setTextCursor(next);
+  browser.ensureCursorVisible();
+}
+
+// Field above the contents; Return goes to the next place.
+QWidget* makeSearch(QTextBrowser* browser, QWidget* parent) {
+  auto* const search = new QWidget(parent);
+  auto* const field = new QLineEdit(search);
+  auto* const count = new QLabel(search);
+  field->setObjectName("guide_search");
+  field->setAccessibleName(QObject::tr("Search the guide"));
+  field->setPlaceholderText(QObject::tr("Search (Ctrl+F)"));
+  field->setClearButtonEnabled(true);
+  count->setObjectName("guide_matches");
+  count->setProperty("role", "hint");
+  const auto find = [browser, field, count](int from) { findInGuide(*browser, *count, field->text(), from); };
+  QObject::connect(field, &QLineEdit::textChanged, browser,
+                   [browser, find] { find(browser->textCursor().selectionStart()); });
+  QObject::connect(field, &QLineEdit::returnPressed, browser,
+                   [browser, find] { find(browser->textCursor().selectionEnd()); });
+  auto* const key = new QShortcut(QKeySequence::Find, parent);
+  QObject::connect(key, &QShortcut::activated, field, [field] {
+    field->setFocus();
+    field->selectAll();
+  });
+  auto* const layout = new QVBoxLayout(search);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(field);
+  layout->addWidget(count);
+  return search;
+}
+
 QString wholeGuide() {
   QFile file(":/user_guide.md");
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
@@ -94,7 +148,12 @@ void showUserGuide(QWidget* window) {
   addGuidePictures(*browser->document(), kPicture_px, dialog->devicePixelRatioF());
   browser->document()->markContentsDirty(0, browser->document()->characterCount());
   browser->moveCursor(QTextCursor::Start);  // setMarkdown leaves it at the end, which scrolls the view
-  parts->insertWidget(0, makeContents(browser, parts));
+  auto* const left = new QWidget(parts);
+  auto* const column = new QVBoxLayout(left);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(makeSearch(browser, dialog));
+  column->addWidget(makeContents(browser, left));
+  parts->insertWidget(0, left);
   parts->setSizes({kContents_px, kWidth_px - kContents_px});
   parts->setStretchFactor(1, 1);
   parts->setChildrenCollapsible(false);
