@@ -25,6 +25,11 @@ struct SheetOptions {
 // False if the functions below refuse the board.
 bool fitsSheet(const Board& board, const SheetOptions& options);
 
+// The board with all sizes in proportion, as large as the paper permits, its spacing in whole tenths of a
+// millimetre. Nothing without a paper, if the board is invalid, or
+// if the paper has no space.
+std::optional<Board> boardThatFits(const Board& board, const SheetOptions& options, const TagPrint& print);
+
 // Throw CalibrationError (BadInput) if the board is invalid, or too large for the paper or a PDF page (5 m).
 std::string boardSvg(const Board& board, const SheetOptions& options = {}, const TagPrint& print = {});
 std::string boardPdf(const Board& board, const SheetOptions& options = {}, const TagPrint& print = {});

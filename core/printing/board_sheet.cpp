@@ -77,21 +77,51 @@ Eigen::Vector2d ownSize_mm(const Board& board, const Eigen::Vector2d& needed_mm)
   return size_mm;
 }
 
-// Portrait or landscape, as the board fits. `beside_mm`: part of the needed size that is not the board.
-Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const Eigen::Vector2d& needed_mm,
-                             const Eigen::Vector2d& beside_mm) {
+bool isUsable(const Board& board) {
+  try {
+    validate(board);
+    return true;
+  } catch (const CalibrationError&) {
+    return false;
+  }
+}
+
+// What the sheet must contain: the pattern, and the margins and the footer around it.
+struct SheetNeeds {
+  Pattern pattern;
+  Eigen::Vector2d field_mm, whole_mm;  // pattern with margins; with the footer, too
+};
+
+SheetNeeds needsOf(const Board& board, const SheetOptions& options, const TagPrint& print) {
+  SheetNeeds needs;
+  needs.pattern = board.hasCircles() ? circlesOf(board) : squaresOf(board, print);
+  needs.field_mm = needs.pattern.size_mm + Eigen::Vector2d::Constant(2e3 * options.margin_m);
+  needs.whole_mm = needs.field_mm + Eigen::Vector2d(0.0, kFooterHeight_mm);
+  return needs;
+}
+
+// Largest spacing with which the board fits if all its sizes change in proportion, in whole tenths of a
+// millimetre; not positive if the paper has no space.
+double largestSpacing_mm(const Board& board, const SheetNeeds& needs, const Paper& paper) {
+  const Eigen::Vector2d around_mm = needs.whole_mm - needs.pattern.size_mm;
+  double scale = 0.0;
+  for (const Eigen::Vector2d& size_mm :
+       {Eigen::Vector2d(paper.short_mm, paper.long_mm), Eigen::Vector2d(paper.long_mm, paper.short_mm)})
+    scale = std::max(scale, ((size_mm - around_mm).array() / needs.pattern.size_mm.array()).minCoeff());
+  return std::floor(1e4 * scale * board.spacing_m) / 10.0;
+}
+
+// Portrait or landscape, as the board fits.
+Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const SheetNeeds& needs) {
   const Eigen::Vector2d upright(paper.short_mm, paper.long_mm), lying(paper.long_mm, paper.short_mm);
   constexpr double kRounding_mm = 1e-6;
-  double largest = 0.0;  // largest scale of the board that fits
-  for (const Eigen::Vector2d& size_mm : {upright, lying}) {
-    if ((needed_mm.array() <= size_mm.array() + kRounding_mm).all()) return size_mm;
-    largest = std::max(largest, ((size_mm - beside_mm).array() / (needed_mm - beside_mm).array()).minCoeff());
-  }
-  const double spacing_mm = std::floor(1e4 * largest * board.spacing_m) / 10.0;
+  for (const Eigen::Vector2d& size_mm : {upright, lying})
+    if ((needs.whole_mm.array() <= size_mm.array() + kRounding_mm).all()) return size_mm;
+  const double spacing_mm = largestSpacing_mm(board, needs, paper);
   throw badInput(
       "board",
       fmt::format("needs {:.0f} mm x {:.0f} mm with margins and ruler; {} has {:.0f} mm x {:.0f} mm",
-                  needed_mm.x(), needed_mm.y(), paper.name, paper.short_mm, paper.long_mm),
+                  needs.whole_mm.x(), needs.whole_mm.y(), paper.name, paper.short_mm, paper.long_mm),
       "Use larger paper, fewer rows or columns, or a smaller margin" +
           (spacing_mm > 0.0 ? fmt::format("; with all sizes in proportion, a spacing of {} mm fits",
                                           shortNumber(spacing_mm))
@@ -123,30 +153,37 @@ bool fitsSheet(const Board& board, const SheetOptions& options) {
   }
 }
 
+std::optional<Board> boardThatFits(const Board& board, const SheetOptions& options, const TagPrint& print) {
+  if (!options.paper || !isUsable(board)) return std::nullopt;
+  const double spacing_m = 1e-3 * largestSpacing_mm(board, needsOf(board, options, print), *options.paper);
+  if (!(spacing_m > 0.0)) return std::nullopt;
+  Board fitting = board;
+  fitting.spacing_m = spacing_m;
+  fitting.radius_m *= spacing_m / board.spacing_m;
+  fitting.tag_size_m *= spacing_m / board.spacing_m;
+  return fitting;
+}
+
 BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrint& print) {
   validate(board);
   if (!(options.margin_m >= 0.0))
     throw badInput("margin", "is negative", "Give a margin in metres, 0 or more");
-  const Pattern pattern = board.hasCircles() ? circlesOf(board) : squaresOf(board, print);
-  const double margin_mm = 1e3 * options.margin_m;
-  const Eigen::Vector2d field_mm = pattern.size_mm + Eigen::Vector2d::Constant(2.0 * margin_mm);
-  const Eigen::Vector2d needed_mm = field_mm + Eigen::Vector2d(0.0, kFooterHeight_mm);
+  const SheetNeeds needs = needsOf(board, options, print);
   const Eigen::Vector2d size_mm =
-      options.paper ? paperSize_mm(*options.paper, board, needed_mm, needed_mm - pattern.size_mm)
-                    : ownSize_mm(board, needed_mm);
+      options.paper ? paperSize_mm(*options.paper, board, needs) : ownSize_mm(board, needs.whole_mm);
   BoardSheet sheet;
   sheet.width_mm = size_mm.x();
   sheet.height_mm = size_mm.y();
   sheet.radius_mm = 1e3 * board.radius_m;
   // Centred in the area above the footer.
-  const Eigen::Vector2d field_at_mm = 0.5 * (size_mm - needed_mm);
-  const Eigen::Vector2d first_mm = field_at_mm + Eigen::Vector2d::Constant(margin_mm);
-  sheet.field = {field_at_mm.x(), field_at_mm.y(), field_mm.x(), field_mm.y(), false};
+  const Eigen::Vector2d field_at_mm = 0.5 * (size_mm - needs.whole_mm);
+  const Eigen::Vector2d first_mm = field_at_mm + Eigen::Vector2d::Constant(1e3 * options.margin_m);
+  sheet.field = {field_at_mm.x(), field_at_mm.y(), needs.field_mm.x(), needs.field_mm.y(), false};
   sheet.bright_circles = board.hasCircles() && board.circles == CircleShade::Bright;
   if (sheet.bright_circles) sheet.boxes.push_back(sheet.field);
-  for (const Eigen::Vector2d& centre_mm : pattern.centres_mm)
+  for (const Eigen::Vector2d& centre_mm : needs.pattern.centres_mm)
     sheet.centres_mm.push_back(first_mm + centre_mm);
-  for (SheetBox box : pattern.boxes) {
+  for (SheetBox box : needs.pattern.boxes) {
     box.x_mm += first_mm.x();
     box.y_mm += first_mm.y();
     sheet.boxes.push_back(box);

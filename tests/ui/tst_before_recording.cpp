@@ -156,9 +156,11 @@ class TestBeforeRecording : public QObject {
     QVERIFY(test.window.close());
   }
 
-  void paperThatIsTooSmall_isSaid_andNothingIsOffered() {
+  void paperThatIsTooSmall_isSaid_andASmallerBoardIsOffered() {
     PrintBoardDialog dialog(Board{}, nullptr);
     dialog.show();
+    auto* const shrink = dialog.findChild<QPushButton*>("shrink_board");
+    QVERIFY(!shrink->isVisible());
     QCOMPARE(dialog.findChild<QComboBox*>("paper")->currentText(), QString("A1"));  // smallest that it fits
     dialog.findChild<QComboBox*>("paper")->setCurrentText("A4");
     QVERIFY2(saidBy(dialog).contains("A4") && saidBy(dialog).contains("larger paper"),
@@ -166,6 +168,16 @@ class TestBeforeRecording : public QObject {
     QVERIFY(!dialog.findChild<QPushButton*>("save_board")->isEnabled());
     dialog.findChild<QComboBox*>("paper")->setCurrentText("A0");
     QVERIFY(dialog.findChild<QPushButton*>("save_board")->isEnabled());
+    QVERIFY(!shrink->isVisible());
+    dialog.findChild<QComboBox*>("paper")->setCurrentText("A4");
+    const QString spacing =
+        QLocale::c().toString(1e3 * boardThatFits(Board{}, dialog.sheetOptions(), {})->spacing_m);
+    QVERIFY2(shrink->isVisible() && shrink->text().contains(spacing), qPrintable(shrink->text()));
+    QTest::mouseClick(shrink, Qt::LeftButton);
+    QVERIFY(dialog.findChild<QPushButton*>("save_board")->isEnabled());
+    QVERIFY(std::abs(dialog.board().radius_m / dialog.board().spacing_m -
+                     Board{}.radius_m / Board{}.spacing_m) < 1e-9);
+    QVERIFY(!shrink->isVisible());
   }
 
   void usualPaperOfTheCountry_isProposed_withABoardThatFitsIt_data() {

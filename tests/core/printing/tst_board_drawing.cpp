@@ -71,6 +71,8 @@ class TestBoardDrawing : public QObject {
   void papers_holdBoardsOfAllTypes_data();
   void papers_holdBoardsOfAllTypes();
   void boardLargerThanItsPaper_isRefusedWithASpacingThatFits();
+  void boardThatFits_isAsLargeAsThePaperPermits_data();
+  void boardThatFits_isAsLargeAsThePaperPermits();
   void png_isTrueToScale_data();
   void png_isTrueToScale();
   void png_tellsItsResolution();
@@ -239,12 +241,37 @@ void TestBoardDrawing::boardLargerThanItsPaper_isRefusedWithASpacingThatFits() {
     const std::string advice = error.advice();
     QCOMPARE(std::sscanf(advice.c_str() + advice.find("a spacing of"), "a spacing of %lf", &fits_mm), 1);
     b.spacing_m = 1e-3 * fits_mm;
+    QVERIFY(std::abs(boardThatFits(b, sheet, {})->spacing_m - b.spacing_m) < 1e-9);
     boardPdf(b, sheet);
     QVERIFY(fitsSheet(b, sheet));
     b.spacing_m += 2e-4;
     QVERIFY(!fitsSheet(b, sheet));
     QVERIFY_THROWS_EXCEPTION(CalibrationError, boardPdf(b, sheet));
   }
+}
+
+void TestBoardDrawing::boardThatFits_isAsLargeAsThePaperPermits_data() {
+  papers_holdBoardsOfAllTypes_data();
+}
+
+void TestBoardDrawing::boardThatFits_isAsLargeAsThePaperPermits() {
+  QFETCH(Board, printed);
+  QFETCH(const Paper, paper);
+  const SheetOptions sheet{0.01, paper};
+  printed.spacing_m *= 20.0;
+  printed.radius_m *= 20.0;
+  printed.tag_size_m *= 20.0;
+  QVERIFY(!fitsSheet(printed, sheet));
+  Board fitting = *boardThatFits(printed, sheet, {});
+  QVERIFY(fitsSheet(fitting, sheet));
+  QVERIFY(std::abs(fitting.radius_m * printed.spacing_m - printed.radius_m * fitting.spacing_m) < 1e-12);
+  QVERIFY(std::abs(fitting.tag_size_m * printed.spacing_m - printed.tag_size_m * fitting.spacing_m) < 1e-12);
+  const double larger = 1.0 + 2e-4 / fitting.spacing_m;
+  fitting.spacing_m *= larger;
+  fitting.radius_m *= larger;
+  fitting.tag_size_m *= larger;
+  QVERIFY(!fitsSheet(fitting, sheet));
+  QVERIFY(!boardThatFits(printed, {1.0, paper}, {}));  // margins of 1 m leave no space
 }
 
 void TestBoardDrawing::png_isTrueToScale_data() {

@@ -10,6 +10,7 @@
 #include "ui/screens/board/board_form.h"
 #include "ui/screens/board/measured_form.h"
 #include "ui/screens/board/sheet_preview.h"
+#include "ui/screens/format_number.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 
@@ -139,11 +140,7 @@ PrintBoardDialog::PrintBoardDialog(const Board& board, QWidget* parent)
   auto* const layout = new QVBoxLayout(this);
   layout->addLayout(columns, 1);
   layout->addWidget(close);
-  connect(form_, &BoardForm::edited, this, [this](const Board& changed) {
-    board_ = changed;
-    measured_->setBoard(board_);
-    showBoard();
-  });
+  connect(form_, &BoardForm::edited, this, &PrintBoardDialog::setBoard);
   measured_->setBoard(board_);
   showBoard();
 }
@@ -206,7 +203,10 @@ QLayout* PrintBoardDialog::makeOutputs() {
   auto* const column = new QVBoxLayout;
   column->addWidget(preview_, 1);
   column->addWidget(half_turn_);
-  column->addWidget(message_);
+  auto* const messages = new QHBoxLayout;
+  messages->addWidget(message_, 1);
+  messages->addWidget(shrink_, 0, Qt::AlignTop);
+  column->addLayout(messages);
   auto* const outputs = new QHBoxLayout;
   for (QPushButton* const each : {print_, save_, blink_, open_}) outputs->addWidget(each);
   outputs->addStretch();
@@ -263,6 +263,12 @@ void PrintBoardDialog::makeButtons() {
                   tr("Use this board, with the measured length, in the session; without a session, in the "
                      "next recording that is opened"),
                   this);
+  shrink_ =
+      sheetButton("board", {}, tr("Change all sizes in proportion, so that the board fits the paper"), this);
+  connect(shrink_, &QPushButton::clicked, this, [this] {
+    if (fitting_) setBoard(Board(*fitting_));
+  });
+  shrink_->setObjectName("shrink_board");
   save_->setObjectName("save_board");
   take_->setObjectName("take_board");
   open_->setObjectName("open_board");
@@ -289,6 +295,12 @@ TagPrint PrintBoardDialog::tagPrint() const {
   return {border_bits_->currentIndex() + 1, markers_->currentText().toStdString()};
 }
 
+void PrintBoardDialog::setBoard(const Board& board) {
+  board_ = board;
+  measured_->setBoard(board_);
+  showBoard();
+}
+
 void PrintBoardDialog::showBoard() {
   form_->setBoard(board_, {});
   paper_form_->setRowVisible(border_bits_, board_.type == BoardType::AprilGrid);
@@ -297,6 +309,7 @@ void PrintBoardDialog::showBoard() {
   auto* const numbers = form_->findChild<QScrollArea*>();
   numbers->setFixedHeight(numbers->widget()->sizeHint().height());  // all rows are visible
   taken_->clear();
+  fitting_.reset();
   try {
     sheet_ = layOut(board_, sheetOptions(), tagPrint());
     say(tr("Sheet of %1 mm x %2 mm. Print it at 100 %.")
@@ -306,7 +319,12 @@ void PrintBoardDialog::showBoard() {
   } catch (const CalibrationError& error) {
     sheet_.reset();
     say(textOf(error), true);
+    fitting_ = boardThatFits(board_, sheetOptions(), tagPrint());
   }
+  shrink_->setVisible(fitting_.has_value());
+  if (fitting_)
+    shrink_->setText(
+        tr("&Use a spacing of %1 mm").arg(fromCore(shortNumber(kSheetMmPerM * fitting_->spacing_m))));
   half_turn_->setVisible(sheet_ && board_.hasHalfTurnAmbiguity());
   preview_->setSheet(sheet_);
   open_->hide();

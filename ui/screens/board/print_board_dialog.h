@@ -68,11 +68,13 @@ class PrintBoardDialog : public QDialog {
   void makeButtons();
   void chooseFile(const QString& ending);
   void print();
+  void setBoard(const Board& board);
   void showBoard();
   void say(const QString& text, bool problem);
 
   Board board_;
   std::optional<BoardSheet> sheet_;
+  std::optional<Board> fitting_;  // offered if board_ is too large for the paper
   BoardForm* form_;
   QFormLayout* paper_form_;
   QComboBox *paper_, *markers_, *border_bits_;
@@ -82,7 +84,7 @@ class PrintBoardDialog : public QDialog {
   QLabel *message_, *half_turn_, *taken_;
   MeasuredForm* measured_;
   QToolButton* after_printing_;  // shows the last step
-  QPushButton *save_, *blink_, *print_, *open_, *take_;
+  QPushButton *save_, *blink_, *print_, *open_, *take_, *shrink_;
   QString written_file_;
 };
 
