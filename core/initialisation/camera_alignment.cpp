@@ -27,12 +27,12 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
   CameraPoses found = estimateCameraPoses(camera, board, options, context);
   checkViews(camera, found, options);
   result.steps.push_back({"camera poses", camera.name,
-                          fmt::format("{} of {} views, circles fit to {:.3f} px (median)", found.poses.size(),
+                          fmt::format("{} of {} views, points fit to {:.3f} px (median)", found.poses.size(),
                                       camera.observations.views.size(), found.median_reprojection_px),
                           found.median_reprojection_px, 0.0});
   if (found.rejected > static_cast<int>(found.poses.size())) {
     result.warnings.push_back(fmt::format(
-        "{}: the circles of most views ({} of {}) fit the board with errors above {:.2f} px; check the "
+        "{}: the points of most views ({} of {}) fit the board with errors above {:.2f} px; check the "
         "intrinsics and the board",
         camera.name, found.rejected, camera.observations.views.size(), options.largest_reprojection_px));
   }

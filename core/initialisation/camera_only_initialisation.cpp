@@ -61,7 +61,7 @@ class CamerasAlone {
     trajectory_ = through(poses_);
     result_.steps.push_back(
         {"trajectory", reference().name,
-         fmt::format("{} of {} views, circles fit to {:.3f} px (median), {} swapped to the "
+         fmt::format("{} of {} views, points fit to {:.3f} px (median), {} swapped to the "
                      "plane's other pose",
                      found.poses.size(), reference().observations.views.size(), found.median_reprojection_px,
                      swapped),

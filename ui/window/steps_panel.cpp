@@ -29,7 +29,7 @@ QString capitalised(QString text) {
 }
 
 QString windowCounts(std::size_t views, std::size_t windows) {
-  return QObject::tr("board in %1 of %2 windows").arg(views).arg(windows);
+  return QObject::tr("board found %1 of %2 times").arg(views).arg(windows);
 }
 
 // "pass 2" gives "Pass 2: detect, fit the lens".

@@ -44,7 +44,7 @@ QString fitText(const NamedResult& named) {
   QStringList parts;
   for (std::size_t i = 0; i < named.result->cameras.size(); ++i) {
     const CameraFit& fit = named.result->cameras[i];
-    parts << QObject::tr("%1: circles fit to %2 px RMS, board used in %3 of %4 windows")
+    parts << QObject::tr("%1: points fit to %2 px RMS, board used %3 of %4 times")
                  .arg(QString::fromStdString(named.cameras.at(i).name))
                  .arg(fit.reprojection_rms_px, 0, 'g', 3)
                  .arg(fit.windows_used)
