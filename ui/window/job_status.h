@@ -18,9 +18,9 @@ class JobStatus : public QWidget {
   explicit JobStatus(const JobRunner& runner, QWidget* parent = nullptr);
 
   QString text() const;
-  void reset();
+  void reset();  // forgets the last job, unless one is running
   // A recording that is being read without a job of the window; empty: none.
-  void setReading(const QString& recording);  // forgets the last job, unless one is running
+  void setReading(const QString& recording);
 
  private:
   void begin(const QString& title);

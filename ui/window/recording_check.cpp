@@ -74,8 +74,14 @@ void choose(Workbench& workbench) {
 void wireCard(CheckCard& card, RecordingScreen& screen, Workbench& workbench) {
   const RecordingCheckJob& check = workbench.check;
   const auto ready = [&screen, &workbench] { showReadiness(screen, workbench, false); };
-  QObject::connect(&check, &RecordingCheckJob::outdated, &card, [&card, ready] {
-    card.clear();
+  // Between two checks the card stays: it must not flash at each edit.
+  QObject::connect(&check, &RecordingCheckJob::outdated, &card, [&card, &check, &workbench, ready] {
+    if (!check.awaited())
+      card.clear();
+    else if (workbench.runner.running())
+      card.setWaiting();
+    else
+      card.setChecking(0.0);
     ready();
   });
   QObject::connect(&check, &RecordingCheckJob::started, &card, [&card, ready] {

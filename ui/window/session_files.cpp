@@ -130,7 +130,7 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
 
 void SessionFiles::openRecent(const QString& path) {
   open(path);
-  newest_run_awaited_ = true;
+  newest_run_awaited_ = !workbench_.runner.running();
 }
 
 // Recent files are listed with the verdict of their last run, so opening one shows this run.
