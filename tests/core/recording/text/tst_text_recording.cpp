@@ -473,7 +473,7 @@ void TestTextRecording::namesThatDoNotTell_areRefused_data() {
   row("an unknown unit", "t_us,ax [lsb],ay [lsb],az [lsb],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "meter: lsb", "");
   row("different units", "t_us,ax [g],ay [g],az [mg],gx,gy,gz\n7,1,2,9.5,1,2,3\n", "different units", "");
   row("a name too few", "t_us,ax,ay,az,gx,gy\n7,1,2,9.5,1,2,3\n", "6 names, but its lines have 7", "");
-  row("no polarity", "t_us,x,y,z\n7,1,2,9\n", "neither polarity (events) nor point", "t_us,x,y,?");
+  row("no polarity", "t_us,x,y,z\n7,1,2,9\n", "neither polarity (events) nor point", "t_us,gx,gy,gz");
   row("no header, no gravity", "0.001,1,2,3,0.1,5.8,0.2\n0.002,1,2,3,0.1,5.8,0.2\n", "numbers do not show",
       "t_s,ax,ay,az,gx,gy,gz");
 }
