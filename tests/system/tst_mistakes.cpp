@@ -109,10 +109,10 @@ const std::vector<Mistake>& mistakes() {
       {"53 too short", Stage::Events, replaced("^board:", "time_range_s: [0, 2]\nboard:"),
        "too short: (2.0|1.9)\\d* s, at least 3.00 s are required", "Record at least 20 s of varied motion"},
       // Units and axes
-      {"12 SI called g", Stage::Imu, inImu("acceleration_unit: g"),
+      {"12 SI called g", Stage::Imu, replaced("acceleration_unit: .*", "acceleration_unit: g"),
        "left_imu: the median norm of the accelerations is 9\\d.*: the unit seems to be m/s\\^2",
        "Set acceleration_unit: m/s\\^2.*Try:.*acceleration_unit=m/s\\^2"},
-      {"13 rad/s called deg/s", Stage::Imu, inImu("angular_rate_unit: deg/s"),
+      {"13 rad/s called deg/s", Stage::Imu, replaced("angular_rate_unit: .*", "angular_rate_unit: deg/s"),
        "left_imu: the gyroscope's rates are 5\\d.* times too small.*: their unit seems to be rad/s",
        "Set angular_rate_unit: rad/s.*Try:.*angular_rate_unit=rad/s"},
       {"26 gyroscope turned by half a turn", Stage::Imu, inImu("gyroscope_axes: x,-y,-z"),
