@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kIndentation_px = 12;
 
-QString unitText(const ParameterRow& row) {
+QString unitAndDetail(const ParameterRow& row) {
   return row.detail.isEmpty() ? row.unit : QString(row.unit + " " + row.detail).trimmed();
 }
 
 QTreeWidgetItem* treeItem(const ParameterRow& row) {
   auto* const item = new QTreeWidgetItem(
-      {row.name, row.valueText(), row.sigmaText(), unitText(row), row.differenceText(), row.sigmasText()});
+      {row.name, row.valueText(), row.sigmaText(), unitAndDetail(row), row.differenceText(), row.sigmasText()});
   using Table = QuantityTable;
   for (const int column : {Table::kValue, Table::kSigma, Table::kDifference, Table::kSigmas})
     item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
@@ -120,7 +120,7 @@ void QuantityTable::fitColumns() {
       widen(kQuantity, row.name);
       widen(kValue, row.valueText());
       widen(kSigma, row.sigmaText());
-      widen(kUnit, unitText(row));
+      widen(kUnit, unitAndDetail(row));
       widen(kDifference, row.differenceText());
       widen(kSigmas, row.sigmasText());
     }
