@@ -29,6 +29,7 @@ constexpr double kShareOfBends =
     0.1;  // of samples at which a steady rate bends, if their own times scatter by steps
 // Longer and shorter intervals at nearly equal distances are a beat between two rates; losses come at any distance.
 constexpr std::size_t kFewestRegular = 8;
+constexpr double kLeastVariance = 1e-3, kLongestOfTicks = 10.0;
 constexpr double kRegularScatter = 0.35;  // of the distances, relative to their mean; 1 for losses
 
 bool isMultiple(std::int64_t interval_ns, std::int64_t step_ns) {
@@ -96,7 +97,10 @@ bool haveBeat(const Intervals& intervals) {
     squares += each * each;
   }
   const double count = static_cast<double>(distances.size()), mean = sum / count;
-  return squares / count - mean * mean < kRegularScatter * kRegularScatter * mean * mean;
+  const double variance = squares / count - mean * mean;
+  // A driver that drops every fiftieth sample has constant distances, a beat of two clocks hardly ever.
+  if (variance < kLeastVariance && mean > kLongestOfTicks) return false;
+  return variance < kRegularScatter * kRegularScatter * mean * mean;
 }
 
 // Equal stamps that no longer interval next to them makes up for: more samples than a steady rate of the median has.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -35,11 +36,14 @@ void appendFaults(Faults& faults, Faults alike, const char* many) {
   faults.insert(faults.end(), alike.begin(), alike.end());
 }
 
-void checkTimes(const std::string& name, Samples samples, const InspectionOptions& options, Faults& faults) {
-  const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
-  if (std::is_sorted(samples.begin(), samples.end(), earlier))
-    if (const CoarseStamps stamps = reconstructStamps(samples); stamps.step_s > 0.0)
-      faults.push_back(faultOf(name, stamps));
+constexpr auto kIsEarlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
+
+bool areSorted(const Samples& samples) {
+  return std::is_sorted(samples.begin(), samples.end(), kIsEarlier);
+}
+
+void checkTimes(const std::string& name, const Samples& samples, const InspectionOptions& options,
+                Faults& faults) {
   const std::vector<SecondClock> clocks = findSecondClocks(samples);
   for (const SecondClock& clock : clocks)
     faults.push_back(faultOf(name, samples.front().time_ns, samples, clock));
@@ -49,7 +53,8 @@ void checkTimes(const std::string& name, Samples samples, const InspectionOption
   };
   std::vector<std::int64_t> times_ns;
   for (const ImuSample& sample : samples) times_ns.push_back(sample.time_ns);
-  if (const std::optional<StampBatches> batches = findStampBatches(times_ns)) {
+  const std::optional<StampBatches> batches = areSorted(samples) ? findStampBatches(times_ns) : std::nullopt;
+  if (batches) {
     faults.push_back({name, FaultKind::Jitter, 0.0, fmt::format("The {}.", batches->text())});
     return;  // the gaps are between batches
   }
@@ -190,9 +195,10 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
 
 }  // namespace
 
-std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<ImuSample>& samples,
+std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<ImuSample>& recorded,
                                      const InspectionOptions& options) {
   Faults faults;
+  Samples samples = recorded;
   if (samples.size() < 2) {
     faults.push_back(
         {name, FaultKind::Empty, 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
@@ -207,6 +213,11 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
                      samples.size())});
     return faults;  // everything else follows from it
   }
+  Samples sorted = samples;
+  std::stable_sort(sorted.begin(), sorted.end(), kIsEarlier);
+  const CoarseStamps stamps = reconstructStamps(sorted);
+  if (stamps.step_s > 0.0) faults.push_back(faultOf(name, stamps));
+  if (stamps.reconstructed && areSorted(samples)) samples = std::move(sorted);
   Samples good;
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(good), isMeasurable);
   if (good.size() < samples.size()) {
