@@ -103,14 +103,17 @@ bool haveBeat(const Intervals& intervals) {
   return variance < kRegularScatter * kRegularScatter * mean * mean;
 }
 
-// Equal stamps that no longer interval next to them makes up for: more samples than a steady rate of the median has.
+// Equal stamps in a row that no longer interval next to them makes up for: more samples than a steady rate has.
 std::size_t samplesTooMany(const Intervals& intervals) {
-  std::size_t count = 0;
+  const Times& all = intervals.all;
   const auto isLonger = [&](std::size_t i) {
-    return i < intervals.all.size() && intervals.all[i] > intervals.median_ns + kStampError_ns;
+    return i < all.size() && all[i] > intervals.median_ns + kStampError_ns;
   };
-  for (std::size_t i = 0; i < intervals.all.size(); ++i)
-    if (intervals.all[i] == 0 && !isLonger(i + 1) && !(i > 0 && isLonger(i - 1))) ++count;
+  std::size_t count = 0;
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end + 1) {
+    for (end = begin; end < all.size() && all[end] == 0;) ++end;
+    if (!isLonger(end) && !(begin > 0 && isLonger(begin - 1))) count += end - begin;
+  }
   return count;
 }
 

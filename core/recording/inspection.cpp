@@ -182,7 +182,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     std::vector<ImuSample> samples;
     toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
     std::vector<ImuSample> timed = samples;
-    reconstructStamps(timed);
+    if (std::ranges::is_sorted(timed, {}, &ImuSample::time_ns)) reconstructStamps(timed);
     summarise(imu_samples[i], timed, options, summary);
     setMeasuredBy(imu_samples[i], imuStreamKind(summary), samples);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);

@@ -86,7 +86,7 @@ class TestImuStamps : public QObject {
   void coarseStamps_becomeSteadyTimes();
   void otherStamps_areKept_data();
   void otherStamps_areKept();
-  void regularLosses_areNoBeat();
+  void regularLossesAndUnsetClocks_areNoBeat();
   void scatteringSamples_keepTheirStamps();
   void separateSensors_haveTheirOwnTimes();
   void fewEqualStamps_areLeftOutAndNamed();
@@ -165,12 +165,14 @@ void TestImuStamps::otherStamps_areKept_data() {
   row("steps of 0.1 ms", {.rate_hz = 200.3, .stamp = rounded(1e-4)});
 }
 
-void TestImuStamps::regularLosses_areNoBeat() {
+void TestImuStamps::regularLossesAndUnsetClocks_areNoBeat() {
   std::vector<double> times_s;
   Samples samples = Stamped{.rate_hz = 1000.0, .stamp = rounded(0.001)}.samples(times_s), left;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (i % 50 != 7) left.push_back(samples[i]);
   QCOMPARE(reconstructStamps(left).step_s, 0.0);
+  for (std::size_t i = 0; i < 5; ++i) samples[i].time_ns = 0;  // the driver's clock was not set yet
+  QCOMPARE(reconstructStamps(samples).step_s, 0.0);
 }
 
 void TestImuStamps::otherStamps_areKept() {
