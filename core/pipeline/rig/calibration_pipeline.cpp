@@ -356,7 +356,7 @@ class Calibration {
     flagDoubtful(uncertainty.other_sensors, result, "another_sensor");
     flagDoubtful(QualityWarning{uncertainty.rolling_shutters, kFreeLineDelays, "rolling_shutter"}, result);
     flagDoubtful(priors.doubt, result, "prior");
-    flagDoubtful(boardDoubt(uncertainty, solution.state), result, "board_size");
+    flagDoubtful(boardDoubt(uncertainty, solution.state), result);
     flagDoubtful(uncertainty.stretch_doubt, result, "board_stretch");
     flagDoubtful(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
     flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
@@ -380,8 +380,13 @@ class Calibration {
     result.cameras = std::move(solution.cameras);
     result.imus = std::move(solution.imus);
     result.iterations = std::move(solution.iterations);
-    notes_ = std::move(solution.notes);
     std::vector<std::string> slow = notesOnSlowPixels(input_, options);
+    // Most of what a solution with a wrong input shows follows from that input.
+    const bool wrong_input = result.status != CalibrationStatus::Ok &&
+                             (!wrong_noise_.empty() || std::ranges::any_of(result.causes, isWrongInput));
+    if (wrong_input) solution.notes.clear();
+    if (wrong_input) slow.clear();
+    notes_ = std::move(solution.notes);
     for (const auto* more : {&uncertainty.notes, &priors.notes, &slow})
       notes_.insert(notes_.end(), more->begin(), more->end());
   }
@@ -389,7 +394,7 @@ class Calibration {
   // Doubt about the board's size. The initialisation detects large errors, since no prior pulls it towards
   // the given size. It is misled by a stretched board, and by an inaccurate lens or a late accelerometer that
   // the batch has corrected since.
-  std::string boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
+  QualityWarning boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
     // Chosen by size, not measured: 1 px at the edge of a 346x260 image is 0.6 % of focal length, which
     // corresponds to a wrong board spacing; 2 ms are 10 % of an acceleration that oscillates at 8 Hz.
     constexpr double kAnotherLens_px = 1.0, kLate_s = 2e-3;
@@ -402,7 +407,8 @@ class Calibration {
           return lens.solved &&
                  projectionDifference(*lens.detection_intrinsics, *lens.solved).rms_px > kAnotherLens_px;
         });
-    return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
+    if (initial_.doubt.empty() || led_astray) return {uncertainty.scale_doubt, {}, "board_size"};
+    return {initial_.doubt, {}, "board_scale"};
   }
 
   // Doubt about fixed parameters. A prior with a large error has the same effect as a misaligned gyroscope.
@@ -461,17 +467,10 @@ class Calibration {
         flagDoubtful(noise, result);
     }
     rankReasons(result);
-    // Notes that a reason states, or that follow from it.
-    const auto named = [&](const char* cause) {
-      return std::ranges::any_of(result.causes,
-                                 [&](const QualityWarning& each) { return each.name == cause; });
-    };
+    // Notes that a reason states, or a warning.
     const auto isTold = [&](const std::string& note) {
-      return result.reason.find(note) != std::string::npos ||
-             (named(kWrongBoard) &&
-              (note.find("the pixels are slow") != std::string::npos || note == initial_.doubt)) ||
-             (!wrong_noise_.empty() && note.find("times its given sigma") != std::string::npos &&
-              note.find("residual") != std::string::npos);
+      return result.reason.find(note) != std::string::npos || note == initial_.doubt ||
+             (!wrong_noise_.empty() && note.find("residual is ") != std::string::npos);
     };
     std::erase_if(result.notes, isTold);
   }

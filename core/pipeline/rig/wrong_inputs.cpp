@@ -124,9 +124,10 @@ std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics
   const double centre_times = given.principal_point_px.norm() / std::max(centre_px.norm(), 1.0);
   constexpr double kNoticeable = 1.05, kAlike = 0.1;
   std::string text = fmt::format(
-      "the given lens differs from that of the recording by {:.2g} px (RMS over the image): focal lengths of "
+      "the given lens differs from that of the recording by {} px (RMS over the image): focal lengths of "
       "{:.4g} and {:.4g} px agree, the given ones ({:.4g} and {:.4g} px) are {}",
-      off_px, found.focal_length_px.x(), found.focal_length_px.y(), given.focal_length_px.x(),
+      off_px < 10.0 ? fmt::format("{:.2g}", off_px) : fmt::format("{:.0f}", off_px),
+      found.focal_length_px.x(), found.focal_length_px.y(), given.focal_length_px.x(),
       given.focal_length_px.y(),
       std::abs(std::log(times)) > std::log(kNoticeable)
           ? timesWords(times)
@@ -229,23 +230,22 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
     const double radius = *seen * of_spacing;  // in units of the given one
     if (!isFar(radius, options.wrong_radius_ratio)) continue;
     if (wrong_spacing && camera.board == 0) break;  // the spacing comes first
-    return QualityWarning{
-        fmt::format(
-            "{}: radius_m ({:.4g} m) is {}: the circles' edges agree with {:.3g} m at this spacing. Measure "
-            "the diameter of a circle, and give half of it",
-            input.boardWords(camera.board), board.radius_m, timesWords(1.0 / radius),
-            radius * board.radius_m),
-        {},
-        kWrongBoard};
+    return QualityWarning{fmt::format("{}: radius_m ({:.4g} m) is {}: the circles' edges agree with about "
+                                      "{:.2g} m at this spacing. Measure "
+                                      "the diameter of a circle, and give half of it",
+                                      input.boardWords(camera.board), board.radius_m,
+                                      timesWords(1.0 / radius), radius * board.radius_m),
+                          {},
+                          kWrongBoard};
   }
   if (!wrong_spacing) return std::nullopt;
-  return QualityWarning{
-      fmt::format(
-          "{}: spacing_m ({:.4g} m) is {}: accelerations agree with {:.3g} m. Measure the board over as many "
-          "spacings as possible, and give metres",
-          input.boardWords(0), input.board.spacing_m, timesWords(1.0 / scale), scale * input.board.spacing_m),
-      {},
-      kWrongBoard};
+  return QualityWarning{fmt::format("{}: spacing_m ({:.4g} m) is {}: accelerations agree with about {:.2g} "
+                                    "m. Measure the board over as many "
+                                    "spacings as possible, and give metres",
+                                    input.boardWords(0), input.board.spacing_m, timesWords(1.0 / scale),
+                                    scale * input.board.spacing_m),
+                        {},
+                        kWrongBoard};
 }
 
 // Noise density of samples: their third differences contain hardly any motion. Filters correlate neighbours, so the
