@@ -164,7 +164,7 @@ void TestSpoiltImu::coarseStamps_widenTheTimeOffset() {
   QVERIFY2(notes.contains(QString("steps of %1 ms").arg(step_ms)), qPrintable(notes));
   const bool doubtful = run.result.status == CalibrationStatus::Doubtful;
   QVERIFY(doubtful);  // half a step is more than the offset may be uncertain by
-  QVERIFY2(run.result.reason.find("time stamps of imu have steps of") == std::size_t{4},
+  QVERIFY2(run.result.reason.find("time stamps of left_imu have steps of") == std::size_t{4},
            run.result.reason.c_str());
   const TruthComparison comparison =
       compareWithTruth(namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),
