@@ -157,6 +157,10 @@ class Calibration {
   // Replaces the error by the wrong input that caused it.
   void tellCause(CalibrationOutcome& outcome) {
     try {
+      const DetectionResult& pass = run_.pass;
+      if (input_.cameras.empty() && pass.cameras.size() == session_.cameras.size() &&
+          pass.lenses.size() == pass.cameras.size() && pass.imus.size() == session_.imus.size())
+        input_ = makeInput(session_, run_.pass);  // the checks of the pass failed
       if (!mirrored_)
         outcome.error =
             withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);

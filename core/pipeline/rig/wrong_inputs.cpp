@@ -149,32 +149,39 @@ bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
   return false;
 }
 
+// True if rows of circles are visible in some windows. With a wrong lens they are, but they do not fit the board.
+bool showsLattices(const BoardObservations& seen) {
+  const auto isLattice = [](const WindowReport& window) {
+    return window.outcome != WindowOutcome::TooFewEvents && window.outcome != WindowOutcome::TooFewCircles &&
+           window.outcome != WindowOutcome::NoLattice && window.outcome != WindowOutcome::Unreadable;
+  };
+  constexpr std::ptrdiff_t kOneIn = 5;
+  return kOneIn * std::ranges::count_if(seen.windows, isLattice) > std::ssize(seen.windows);
+}
+
 // The lens from the views alone; if these do not determine it, from the recording.
 std::optional<IntrinsicsResult> lensAlone(const Session& session, const CalibrationInput& input,
                                           std::size_t camera, bool recording_is_there,
                                           const RunContext& context) {
+  const CameraData& data = input.cameras[camera];
   const RunContext quiet{silentProgress(), context.stop};
   try {
-    if (camera < input.cameras.size()) {
-      const CameraData& data = input.cameras[camera];
-      return estimateIntrinsics({input.boardAt(data.board), data.lens.detection_intrinsics->resolution_px,
-                                 data.observations, data.lens.detection_intrinsics, std::nullopt},
-                                *session.options.intrinsics, quiet);
-    }
+    return estimateIntrinsics({input.boardAt(data.board), data.lens.detection_intrinsics->resolution_px,
+                               data.observations, data.lens.detection_intrinsics, std::nullopt},
+                              *session.options.intrinsics, quiet);
   } catch (const CalibrationError&) {
-    if (!recording_is_there) return std::nullopt;  // the views do not determine this lens
+    if (!recording_is_there || !showsLattices(data.observations)) return std::nullopt;
   }
-  if (!recording_is_there) return std::nullopt;
   try {
     return calibrateIntrinsics(session, camera, quiet).result;
   } catch (const CalibrationError&) {
-    return std::nullopt;  // nor does the recording
+    return std::nullopt;  // the recording does not determine this lens
   }
 }
 
 std::optional<CalibrationError> wrongLens(const Session& session, const CalibrationInput& input,
                                           bool recording_is_there, const RunContext& context) {
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     if (!session.cameras[k].intrinsics || session.sensorOf(k) != k) continue;
     const std::optional<IntrinsicsResult> found = lensAlone(session, input, k, recording_is_there, context);
     if (!found) continue;
