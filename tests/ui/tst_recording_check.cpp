@@ -52,7 +52,7 @@ class TestRecordingCheck : public QObject {
   void card_appearsByItself_andCalibrateStartsFromWhatWasDetected() {
     CheckFixture test;
     test.window.files().open(copyOfSimulatedSession(scratch_.path()));
-    QVERIFY(!test.card()->isVisibleTo(test.child<RecordingScreen>()));
+    QVERIFY(test.card()->isClear() && test.card()->text().contains("Before you calibrate"));
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
     const QString text = test.card()->text();
     QVERIFY2(test.card()->isVisible() && text.contains("Record 20 to 30 s"), qPrintable(text));
@@ -75,6 +75,32 @@ class TestRecordingCheck : public QObject {
     QVERIFY(run && run->pass.detect_s > 0.0);
     QCOMPARE(run->pass.detect_s, test.check.checked()->detected->pass.detect_s);
     QCOMPARE(test.started.size(), 1);
+    QVERIFY(!test.card()->isClear());  // the assessment stays
+    QVERIFY(test.window.close());
+  }
+
+  // The card has a text in all states: its place would be an empty strip.
+  void card_tellsWhyNothingIsChecked() {
+    CheckFixture test;
+    test.check.setAutomatic(false);
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QVERIFY2(test.card()->text().contains("not checked"), qPrintable(test.card()->text()));
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY2(test.card()->text().contains("is calibrated"), qPrintable(test.card()->text()));
+    // An edit starts a check; the card does not flash before.
+    test.check.setAutomatic(true);
+    Session other = test.document().session();
+    other.time_range_s = {{0.0, 0.5}};
+    test.document().edit(other, "Cut");
+    QVERIFY2(test.card()->text().contains("Checking"), qPrintable(test.card()->text()));
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    other.time_range_s = {{0.0, 0.6}};
+    test.document().edit(other, "Cut");
+    QVERIFY2(test.card()->text().contains("Checking"), qPrintable(test.card()->text()));
+    test.check.setAutomatic(false);
+    QVERIFY2(test.card()->text().contains("not checked"), qPrintable(test.card()->text()));
+    answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }
 

@@ -47,6 +47,7 @@ void RecordingCheckJob::setAutomatic(bool automatic) {
     pause_.stop();
     due_ = due_ || runner_.running();
     runner_.cancel();
+    if (!checked_) emit outdated();  // nobody awaits it any more
     return;
   }
   due_ = due_ || checked_ == nullptr;

@@ -26,11 +26,27 @@ QString boardText(const Session& session) {
       .arg(1e3 * session.board.spacing_m);
 }
 
+// The card while nothing is checked.
+void showIdle(CheckCard& card, const Workbench& workbench) {
+  const LensDocument& lens = workbench.lens;
+  const bool of_camera = lens.aim() == CalibrationAim::Camera;
+  const bool outdated = of_camera ? lens.runIsOutdated() : workbench.document.runIsOutdated();
+  if (workbench.lastStatus() && !outdated)
+    return card.clear(QObject::tr("This recording is calibrated"),
+                      QObject::tr("The page Result shows how good the calibration is. If you change the "
+                                  "session, the recording is checked again."));
+  if (!workbench.check.automatic())
+    return card.clear({}, QObject::tr("The recording is not checked: the menu Calibrate can enable this."));
+  card.clear();
+}
+
 // Text in place of "ready" for a session without problems.
 void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool failed) {
   const CalibrationDocument& document = workbench.document;
   const bool unconfirmed = document.hasSession() && !document.boardConfirmed();
-  screen.checkCard()->setUnconfirmedBoard(unconfirmed ? boardText(document.session()) : QString());
+  CheckCard& card = *screen.checkCard();
+  card.setUnconfirmedBoard(unconfirmed ? boardText(document.session()) : QString());
+  if (card.isClear()) showIdle(card, workbench);
   const auto& checked = workbench.check.checked();
   if (workbench.growing.following()) return screen.setReservation(QObject::tr("Being recorded"), Light::Fair);
   if (failed || (checked && !checked->assessment.can_be_calibrated))
@@ -119,9 +135,11 @@ void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
     showReadiness(screen, workbench, false);
   };
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &check, anew);
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &check, anew);
   QObject::connect(&workbench.growing, &GrowingRecording::followingChanged, &screen,
                    [&screen, &workbench] { showReadiness(screen, workbench, false); });
   QObject::connect(&workbench.lens, &LensDocument::aimChanged, &check, anew);
+  QObject::connect(&workbench.lens, &LensDocument::runChanged, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::inspected, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::started, &check, anew);
   QObject::connect(&workbench.runner, &JobRunner::started, &check, [&check] { check.giveWay(true); });

@@ -102,9 +102,9 @@ CheckCard::CheckCard(QWidget* parent)
   layout->addWidget(makeWords());
   layout->addWidget(details_);
   grid_->setContentsMargins(0, 4, 0, 2);
-  // The card has the same height in all states, and also while it is hidden: a check that starts or ends must
-  // not move the page under the mouse.
-  for (QWidget* const kept : std::initializer_list<QWidget*>{this, mark_, progress_, more_}) keepPlace(*kept);
+  // The card has the same height in all states: a check that starts or ends must not move the page under the
+  // mouse.
+  for (QWidget* const kept : std::initializer_list<QWidget*>{mark_, progress_, more_}) keepPlace(*kept);
   setUnconfirmedBoard({});
   setMissing({});
   showDetails(false);
@@ -155,7 +155,6 @@ QWidget* CheckCard::makeFollowLine() {
 
 void CheckCard::offerFollowing(bool offered) {
   follow_line_->setVisible(offered);
-  if (offered) setVisible(true);
 }
 
 void CheckCard::setFollowing(bool following) {
@@ -177,21 +176,17 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
   showDetails(more_->isChecked());
 }
 
-void CheckCard::clear() {
-  showState(tr("Before you calibrate"), std::nullopt);
+void CheckCard::clear(const QString& summary, const QString& advice) {
+  showState(summary.isEmpty() ? tr("Before you calibrate") : summary, std::nullopt);
   idle_ = true;
-  setVisible(hasLines());
-}
-
-// These lines are shown in any state.
-bool CheckCard::hasLines() const {
-  return !board_line_->isHidden() || !follow_line_->isHidden() || !missing_->isHidden();
+  advice_->setText(advice);
+  advice_->setToolTip({});
+  advice_->setVisible(!advice.isEmpty());
 }
 
 void CheckCard::setMissing(const QString& text) {
   missing_->setText(text);
   missing_->setVisible(!text.isEmpty());
-  if (idle_) setVisible(hasLines());
 }
 
 void CheckCard::setChecking(double fraction) {
@@ -199,12 +194,10 @@ void CheckCard::setChecking(double fraction) {
   if (!progress_->isVisibleTo(this) && !keep) showState(tr("Checking the recording..."), {});
   progress_->show();
   progress_->setValue(static_cast<int>(1000.0 * fraction));
-  setVisible(true);
 }
 
 void CheckCard::setWaiting() {
   showState(tr("The recording is checked after the current job"), {});
-  setVisible(true);
 }
 
 void CheckCard::setFailed(const QString& why) {
@@ -212,13 +205,11 @@ void CheckCard::setFailed(const QString& why) {
     showState(tr("Not enough data to check yet"), {});
     advice_->setText(tr("The check is repeated when more data arrive."));
     advice_->setToolTip(why);
-    advice_->show();
-    return setVisible(true);
+    return advice_->show();
   }
   showState(tr("This recording cannot be calibrated"), Light::Poor);
   advice_->setText(sentence(why));
   advice_->show();
-  setVisible(true);
 }
 
 void CheckCard::setAssessment(const RecordingAssessment& assessment) {
@@ -228,7 +219,6 @@ void CheckCard::setAssessment(const RecordingAssessment& assessment) {
   showLights(assessment);
   more_->setVisible(true);
   showDetails(more_->isChecked());
-  setVisible(true);
 }
 
 void CheckCard::showAdvice(const RecordingAssessment& assessment) {
@@ -290,7 +280,6 @@ void CheckCard::showDetails(bool shown) {
 void CheckCard::setUnconfirmedBoard(const QString& board) {
   board_->setText(tr("Board: %1, not confirmed. Compare these numbers with the print.").arg(board));
   board_line_->setVisible(!board.isEmpty());
-  if (idle_) setVisible(hasLines());
 }
 
 QString CheckCard::text() const {

@@ -25,7 +25,8 @@ class CheckCard : public QFrame {
   explicit CheckCard(QWidget* parent = nullptr);
 
   // States; one at a time is shown.
-  void clear();                       // no recording, no check
+  void clear(const QString& summary = {}, const QString& advice = {});  // no check
+  bool isClear() const { return idle_; }
   void setChecking(double fraction);  // 0..1
   void setWaiting();                  // for another job
   void setAssessment(const RecordingAssessment& assessment);
@@ -50,7 +51,6 @@ class CheckCard : public QFrame {
   QWidget* makeBoardLine();
   QWidget* makeFollowLine();
   QWidget* makeWords();
-  bool hasLines() const;
   void showAdvice(const RecordingAssessment& assessment);
   void showState(const QString& summary, std::optional<Light> light);
   void showLights(const RecordingAssessment& assessment);
@@ -64,7 +64,7 @@ class CheckCard : public QFrame {
   QWidget *lights_, *details_ = nullptr;  // the table of checks, and the area around it
   QCheckBox* follow_;
   QGridLayout* grid_;
-  bool idle_ = true;  // no recording
+  bool idle_ = true;  // no check
   bool following_ = false, assessed_ = false;
 };
 
