@@ -24,8 +24,8 @@ QString unitAndDetail(const ParameterRow& row) {
 }
 
 QTreeWidgetItem* treeItem(const ParameterRow& row) {
-  auto* const item = new QTreeWidgetItem(
-      {row.name, row.valueText(), row.sigmaText(), unitAndDetail(row), row.differenceText(), row.sigmasText()});
+  auto* const item = new QTreeWidgetItem({row.name, row.valueText(), row.sigmaText(), unitAndDetail(row),
+                                          row.differenceText(), row.sigmasText()});
   using Table = QuantityTable;
   for (const int column : {Table::kValue, Table::kSigma, Table::kDifference, Table::kSigmas})
     item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
