@@ -307,7 +307,8 @@ void checkHandedness(const CalibrationInput& input, const StatedSigns& stated,
     const std::size_t board = input.cameras[camera->camera].board;
     const AlignedCamera& first = *std::ranges::find_if(
         all, [&](const AlignedCamera& each) { return input.cameras[each.camera].board == board; });
-    if (!contradictsHandedness(first, *camera, gyro, options)) continue;
+    if (!contradictsHandedness(first, *camera, gyro, std::numeric_limits<double>::infinity(), options))
+      continue;
     const auto cause = findMirror(input, stated, all, gyro, false, options, context);
     throw MirrorError(cause ? *cause : mirroredOfTwo(input, stated, first, *camera));
   }

@@ -255,7 +255,7 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
 }
 
 bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& camera, const GyroRotation& gyro,
-                           const InitialisationOptions& options) {
+                           double longest_gap_s, const InitialisationOptions& options) {
   if (std::min(first.hand_eye.axis_ratio, camera.hand_eye.axis_ratio) < options.least_axis_ratio)
     return false;
   const auto worldFromFirst = [&](const AlignedCamera& aligned, const CameraPose& pose) {
@@ -263,13 +263,15 @@ bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& came
            gyro.at(pose.time_s + aligned.hand_eye.time_offset_s).conjugate();
   };
   const double shift_s = camera.hand_eye.time_offset_s - first.hand_eye.time_offset_s;
-  std::size_t k = 0, turned = 0;
+  std::size_t k = 0, turned = 0, compared = 0;
   for (const CameraPose& pose : camera.poses) {
     while (k + 1 < first.poses.size() && first.poses[k].time_s < pose.time_s + shift_s) ++k;
+    if (std::abs(first.poses[k].time_s - pose.time_s - shift_s) > longest_gap_s) continue;
+    ++compared;
     turned += rotationAngleBetween_rad(worldFromFirst(first, first.poses[k]), worldFromFirst(camera, pose)) >
               kHalfwayToHalfTurn_rad;
   }
-  return 2 * turned > camera.poses.size();
+  return 2 * turned > compared;
 }
 
 CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns& stated,
