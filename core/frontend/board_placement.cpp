@@ -78,16 +78,19 @@ void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingP
               std::vector<std::pair<int, std::size_t>>& placed) {
   std::vector<bool> found(static_cast<std::size_t>(board.pointCount()), false), used(ideal.size(), false);
   for (const auto& [circle, index] : placed) found[static_cast<std::size_t>(circle)] = used[index] = true;
+  std::vector<std::size_t> spare;  // few: most are placed, and boards that are given too large have many gaps
+  for (std::size_t k = 0; k < ideal.size(); ++k)
+    if (!used[k]) spare.push_back(k);
   const auto imageOf = [&](const Eigen::Vector2d& on_board) {
     return Eigen::Vector2d((ideal_from_board * on_board.homogeneous()).hnormalized());
   };
-  for (int circle = 0; circle < board.pointCount(); ++circle) {
+  for (int circle = 0; circle < board.pointCount() && !spare.empty(); ++circle) {
     if (found[static_cast<std::size_t>(circle)]) continue;
     const Eigen::Vector2d centre = board.point_m(circle), predicted_px = imageOf(centre);
     const double step_px = (imageOf(centre + Eigen::Vector2d(board.spacing_m, 0.0)) - predicted_px).norm();
     std::size_t nearest = ideal.size();
     double nearest_px = 0.5 * options.step_tolerance * step_px;
-    for (std::size_t k = 0; k < ideal.size(); ++k) {
+    for (const std::size_t k : spare) {
       const double distance_px = (ideal[k].centre_px - predicted_px).norm();
       if (used[k] || !(distance_px < nearest_px)) continue;
       nearest = k;
