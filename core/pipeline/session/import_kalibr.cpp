@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 namespace evical {
 namespace {
@@ -65,9 +66,11 @@ void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSess
 // Files of Kimera and EuRoC do not name a topic. The recording's only IMU is then used.
 std::string onlyImuOf(const YamlNode& map, const ImportRequest& request) {
   std::vector<std::string> streams;
-  if (!request.recording.empty())
-    for (const StreamInfo& stream : openRecording(request.recording)->streams())
+  if (!request.recording.empty()) {
+    const std::unique_ptr<RecordingReader> recording = openRecording(request.recording);
+    for (const StreamInfo& stream : recording->streams())
       if (stream.type == StreamType::Imu) streams.push_back(stream.name);
+  }
   if (streams.size() == 1) return streams.front();
   throw map.error("has no rostopic", streams.empty()
                                          ? "Add rostopic: with the IMU's topic, or give " +
@@ -130,7 +133,8 @@ constexpr const char* kOtherWays =
 std::vector<std::string> freeStreams(const ImportRequest& request, const Session& session, StreamType type) {
   std::vector<std::string> names;
   try {
-    for (const StreamInfo& stream : openRecording(request.recording)->streams()) {
+    const std::unique_ptr<RecordingReader> recording = openRecording(request.recording);
+    for (const StreamInfo& stream : recording->streams()) {
       const auto is_own = [&](const SessionCamera& camera) { return camera.stream == stream.name; };
       if (stream.type == type && stream.readable &&
           std::none_of(session.cameras.begin(), session.cameras.end(), is_own))
