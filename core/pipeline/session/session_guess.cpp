@@ -336,8 +336,7 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
 }
 
 std::vector<std::string> notesOn(const Session& session) {
-  std::vector<std::string> notes = {
-      "board: complete its entry: remove the '#' of its lines, and give type and dimensions"};
+  std::vector<std::string> notes = {"board: complete its entry"};
   for (const SessionCamera& camera : session.cameras)
     if (!camera.resolution_px.known())
       notes.push_back(
