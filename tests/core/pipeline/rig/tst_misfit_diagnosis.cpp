@@ -93,11 +93,12 @@ class TestCauses : public QObject {
     const auto row = [](const char* name, double size, const char* says) {
       QTest::addRow("%s %g", name, size) << QString(name) << size << QString(says);
     };
-    row("rates times", 57.29578, "57.* times too large.*unit seems to be deg/s.*angular_rate_unit: deg/s");
+    row("rates times", 57.29578, "unit seems to be deg/s.*angular_rate_unit: deg/s");
     row("rates times", 1.0 / 57.29578, "57.* times too small.*seems to be rad/s.*angular_rate_unit: rad/s");
     row("rates times", 1e3, "mrad/s.*0.001 rad/s|seems to be deg/s");
     row("rates times", 0.0572958, "17.* times too small.*deg/ms.*angular_rate_unit: 1000 deg/s");
-    row("rates times", 2.0, "(2|1.9\\d|2.0\\d) times too large.*measuring range.*0.5");
+    row("rates times", 2.0,
+        "(2|1.9\\d|2.0\\d) times too large.*measuring range.*angular_rate_unit: 0.(49|50)\\d* rad/s");
     row("rates times", 0.5, "(2|1.9\\d|2.0\\d) times too small.*measuring range");
     row("forces times", 9.80665, "norm .* is 9\\d.*unit seems to be m/s\\^2");
     row("forces times", 1e3, "unit seems to be mm/s\\^2.*acceleration_unit: 0.001 m/s\\^2");
@@ -105,10 +106,9 @@ class TestCauses : public QObject {
     row("forces times", 1.0 / 9.80665, "unit seems to be g.*acceleration_unit: g");
     row("forces times", 2.0, "norm of the accelerations is (19|20).*measuring range");
     row("stated noise", 1e4,
-        "gyroscope_noise_density .*e\\+0?4 times too large.*have about 1.9e-04 rad/s/sqrt.*data sheet");
-    row("stated noise", 1e3, "gyroscope_noise_density .*times too large.*have about 1.9e-04 rad/s/sqrt");
-    row("stated noise", 1e-2,
-        "gyroscope_noise_density .*times too small.*have about 0?.*rad/s/sqrt.*data sheet");
+        "gyroscope_noise_density .*e\\+0[34] times too large.*have about 0.0001[89].*data sheet");
+    row("stated noise", 1e3, "gyroscope_noise_density .*times too large.*have about 0.0001[89]");
+    row("stated noise", 1e-2, "gyroscope_noise_density .*times too small.*have about 0.0001[89].*data sheet");
     row("stated noise", 1e-3, "gyroscope_noise_density .*times too small");
     row("board spacing alone", 900,
         "spacing_m .0.5 m. is (9.|10).* times too large: accelerations agree with about 0.05");
@@ -158,15 +158,16 @@ class TestCauses : public QObject {
     rankReasons(result);
     QCOMPARE(QString::fromStdString(result.reason), QString("unit; late stamps"));
   }
-  void noiseTooLarge_isAWarningOfAGoodResult() {
+  // The weights use the estimate, so that the result may be ok: then the density is the first note.
+  void noiseTooLarge_isNamedInAnyVerdict() {
     test::Recorded recorded = base_;
     test::perturbation("stated noise").apply(recorded, 30.0);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
-    if (run.result.status == CalibrationStatus::Ok) {
-      QVERIFY(!run.result.notes.empty());
-      const QString note = QString::fromStdString(run.result.notes.front());
-      QVERIFY2(note.contains("noise_density") && note.contains("times too large"), qPrintable(note));
-    }
+    const CalibrationResult result = calibrate(recorded.session, recorded.pass, RunContext{}).result;
+    QVERIFY(!result.notes.empty());
+    const QString text =
+        QString::fromStdString(result.status == CalibrationStatus::Ok ? result.notes.front() : result.reason);
+    QVERIFY2(text.contains(QRegularExpression("noise_density .*30.* times too large|noise_density .*29")),
+             qPrintable(text));
   }
 
   // Seed 3 rotates more about one axis than about the others, and a mirrored gyroscope leaves a third
