@@ -29,7 +29,7 @@ constexpr double kShareOfBends =
     0.1;  // of samples at which a steady rate bends, if their own times scatter by steps
 // Longer and shorter intervals at nearly equal distances are a beat between two rates; losses come at any distance.
 constexpr std::size_t kFewestRegular = 8;
-constexpr double kLeastVariance = 1e-3, kLongestOfTicks = 10.0;
+constexpr double kLeastVariance = 1e-3, kLongestOfTicks = 10.0, kLeastPart = 0.5;
 constexpr double kRegularScatter = 0.35;  // of the distances, relative to their mean; 1 for losses
 
 bool isMultiple(std::int64_t interval_ns, std::int64_t step_ns) {
@@ -90,12 +90,14 @@ bool haveBeat(const Intervals& intervals) {
     if (last > 0) distances.push_back(static_cast<double>(i + 1 - last));
     last = i + 1;
   }
-  if (distances.size() < kFewestRegular) return false;
   double sum = 0.0, squares = 0.0;
   for (const double each : distances) {
     sum += each;
     squares += each * each;
   }
+  // A stretch of a recording may have another rate or clock.
+  if (distances.size() < kFewestRegular || sum < kLeastPart * static_cast<double>(intervals.all.size()))
+    return false;
   const double count = static_cast<double>(distances.size()), mean = sum / count;
   const double variance = squares / count - mean * mean;
   // A driver that drops every fiftieth sample has constant distances, a beat of two clocks hardly ever.

