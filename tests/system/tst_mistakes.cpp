@@ -97,9 +97,11 @@ const std::vector<Mistake>& mistakes() {
        "lef_imu", "Did you mean 'left_imu'"},
       {"10 stream of the camera", Stage::Session,
        replaced("^    stream: .*events.*$", "    stream: /dvs/evnts"),
-       "/dvs/evnts: the recording has no stream of type events with this name", "Its streams of this type: "},
+       "cameras.left.stream: '/dvs/evnts': the recording has no stream of type events",
+       "Its streams of this type: "},
       {"11 stream of the IMU", Stage::Session, replaced("^    stream: .*imu.*$", "    stream: /dvs/imu"),
-       "/dvs/imu: the recording has no stream of type imu with this name", "Its streams of this type: "},
+       "imus.left_imu.stream: '/dvs/imu': the recording has no stream of type imu",
+       "Its streams of this type: "},
       // Times
       {"27 clocks of 1970 and of uptime", Stage::Events, inImu("clock_offset_s: -1700000000"),
        "do not overlap in time.*agree if the IMU's clock is (1700000000|1699999999|1.7e).* s behind",
