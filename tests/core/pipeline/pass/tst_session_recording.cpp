@@ -220,7 +220,7 @@ void TestSessionRecording::mirroredFrames_areReversed() {
     writeFile(path(name), picture.finish());
   }
   session_.imus.clear();
-  session_.cameras[0].stream = "frames";
+  session_.cameras[0].stream = "pictures";
   session_.recording = path("frames");
   const std::pair<Mirroring, std::vector<std::uint8_t>> kExpected[] = {
       {Mirroring::None, {1, 2, 3, 4, 5, 6}},
