@@ -50,6 +50,17 @@ class TestCheckCommand : public QObject {
     QVERIFY(readFile(path("good") + "/check.yaml").startsWith("evical_check: 1\nverdict: unchanged\n"));
   }
 
+  // The same data in another folder.
+  void copy_isNoticed() {
+    QDir().mkpath(path("copy"));
+    for (const QString name : {"events.txt", "imu.txt", "session.yaml"})
+      QVERIFY(QFile::copy(simulated("short") + "/" + name, path("copy/" + name)));
+    const Outcome outcome = runProgram(QStringList{"check", result(), path("copy/session.yaml")} + kCoarse);
+    VERIFY_OUTCOME(outcome, 0);
+    QVERIFY2(outcome.output.contains("duplicates the recording of the old result"),
+             qPrintable(outcome.output));
+  }
+
   void changed_endsWith3() {
     QByteArray yaml = readFile(result() + "/result.yaml");
     const QString text = QString::fromUtf8(yaml);
