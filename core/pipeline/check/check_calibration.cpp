@@ -106,7 +106,7 @@ class Check {
 
   // A copy of the old recording has its start, and the same noise.
   bool isCopy() const {
-    constexpr double kSame = 0.2;  // sigmas; a copy gave 0.07, other recordings exceed 1 in some quantity
+    constexpr double kSame = 0.2;  // sigmas; a copy of 6 s gave 0.07
     const std::vector<Finding>& findings = out_.check.findings;
     return out_.run->result.start_ns == input_.before.result->start_ns && !findings.empty() &&
            std::all_of(findings.begin(), findings.end(),
