@@ -303,6 +303,11 @@ void joinFiles(const std::vector<InspectedRecording>& recordings, Session& sessi
     session.imus.erase(session.imus.begin() + static_cast<std::ptrdiff_t>(*other));
     if (*other < k) --k;
   }
+  // One number for each IMU, not for each file.
+  for (SessionImu& imu : session.imus)
+    if (!imu.accelerometer_recording.empty()) imu.name.clear();
+  for (SessionImu& imu : session.imus)
+    if (imu.name.empty()) imu.name = freeName(imu.stream, "imu", session);
 }
 
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
