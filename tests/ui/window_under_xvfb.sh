@@ -31,7 +31,7 @@ differing() { compare -metric AE "$pictures/xvfb-$1.png" "$pictures/xvfb-$2.png"
 click() { xdotool mousemove "$1" "$2" click 1; sleep 1; }
 fail() { echo "$1" >&2; cat "$scratch/errors" >&2; exit 1; }
 
-click 60 327 # Result, empty
+click 60 364 # Result, empty
 picture empty
 click 282 47 # Calibrate
 for _ in $(seq 90); do
@@ -42,7 +42,7 @@ for _ in $(seq 90); do
   [ "${changed%%.*}" -gt 20000 ] && break
 done
 [ "${changed%%.*}" -gt 20000 ] || fail "No result is shown: $changed pixels differ from the empty screen."
-click 70 196 # Trajectory
+click 70 240 # Trajectory
 sleep 2
 picture trajectory
 changed=$(differing result trajectory)
