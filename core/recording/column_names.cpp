@@ -67,7 +67,7 @@ constexpr std::string_view kTimeWords[] = {"time",    "times",    "timestamp",  
                                            "nanosec", "nanosecs", "nanosecond", "nanoseconds",  "ns",
                                            "usec",    "usecs",    "microsec",   "microseconds", "us",
                                            "msec",    "msecs",    "millisec",   "milliseconds", "ms",
-                                           "millis",  "micros"};
+                                           "millis",  "micros",   "clock"};
 // Words next to the x of an event.
 constexpr std::string_view kPlaceWords[] = {"event", "events", "ev",     "pos", "coord", "coords",
                                             "px",    "pixel",  "pixels", "pix", "addr",  "field"};

@@ -66,7 +66,8 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
     if (isOfSecondClock(i)) continue;
     const double at_s = secondsSince(samples.front().time_ns, samples[i - 1].time_ns);
     const double interval_s = secondsSince(samples[i - 1].time_ns, samples[i].time_ns);
-    if (i <= kMostFirstSamples && interval_s > kUnset_s) {
+    const bool late = interval_s > options.imu_gap_periods * period_s && period_s > 0.0;
+    if (i <= kMostFirstSamples && interval_s > kUnset_s && late) {
       faults.push_back(
           {name, FaultKind::Corrupt, 0.0,
            fmt::format(
@@ -79,7 +80,7 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
       backward.push_back(
           {name, FaultKind::BackwardTime, at_s,
            fmt::format("Time runs backwards by {:.3f} ms at sample {}{}.", -1e3 * interval_s, i, reset)});
-    } else if (interval_s > options.imu_gap_periods * period_s && period_s > 0.0) {
+    } else if (late) {
       gaps.push_back({name, FaultKind::Gap, at_s,
                       fmt::format("No samples for {:.3f} ms; the usual interval is {:.3f} ms.",
                                   1e3 * interval_s, 1e3 * period_s)});
@@ -170,6 +171,7 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
                 Faults& faults) {
   const Samples forces = ownSamples(samples, measuresForce<ImuSample>);
   const double norm = medianForceNorm(forces);
+  const bool raw = !forces.empty() && norm >= kLeastRaw_m_s2;
   // Fast motion increases the norms, but not the norm of their mean in a frame that does not rotate.
   if (!forces.empty() && !isGravity(norm, options) &&
       !isGravity(steadyForceNorm(samples).value_or(norm), options)) {
@@ -179,17 +181,20 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
                      in_g                           ? ": the file has it in g"
                      : norm < kStandardGravity_m_s2 ? "; is gravity removed, or the unit different?"
-                     : norm < kLeastRaw_m_s2
-                         ? "; is the unit different?"
-                         : fmt::format("; are these raw counts? Give the size of a count "
-                                       "as acceleration_unit; {:.3g} g would give gravity",
-                                       1.0 / norm))});
+                     : !raw                         ? "; is the unit different?"
+                            : fmt::format("; are these raw counts? Give the size of a count "
+                                          "as acceleration_unit; {:.3g} g would give gravity",
+                                          1.0 / norm))});
   }
   const double fastest = largestRate(samples);
   if (fastest > options.largest_rate_rad_s) {
     faults.push_back(
         {name, FaultKind::Unit, 0.0,
-         fmt::format("The angular rate reaches {:.1f}: too fast for rad/s, probably deg/s.", fastest)});
+         raw ? fmt::format(
+                   "The angular rate reaches {:.1f}: too fast for rad/s; are these raw counts, too? Give "
+                   "the size of a count as angular_rate_unit.",
+                   fastest)
+             : fmt::format("The angular rate reaches {:.1f}: too fast for rad/s, probably deg/s.", fastest)});
   }
 }
 

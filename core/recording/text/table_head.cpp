@@ -34,7 +34,7 @@ TextStyle styleOf(std::string_view line) {
   std::vector<std::string_view> cells;
   splitColumns(line, comma, cells);
   const bool all = std::all_of(cells.begin(), cells.end(), [&](std::string_view cell) {
-    return cell.find(',') == std::string_view::npos || (hasDecimalComma(cell) && cellNumber(cell, comma));
+    return cell.find(',') == std::string_view::npos || hasDecimalComma(cell);
   });
   return all && std::any_of(cells.begin(), cells.end(), hasDecimalComma) ? comma : style;
 }

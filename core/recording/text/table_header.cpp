@@ -3,6 +3,7 @@
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/base/trimmed.h"
+#include "core/recording/text/table_axes.h"
 #include "core/recording/text/table_times.h"
 
 #include <fmt/format.h>
@@ -20,84 +21,6 @@ constexpr std::string_view kUnusedName = "-";
 constexpr std::size_t kMostListed = 8;
 constexpr std::size_t kMostImus = 8;
 
-using Axes = std::array<std::size_t, 3>;
-
-std::vector<std::size_t> columnsOfKind(const TableHeader& header, ColumnKind kind) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < header.columns.size(); ++i)
-    if (header.columns[i].kind == kind) found.push_back(i);
-  return found;
-}
-
-// Columns of each complete group of three.
-std::vector<Axes> vectorsOf(const TableHeader& header, ColumnKind kind) {
-  std::map<std::string, std::vector<std::size_t>> groups;
-  for (const std::size_t i : columnsOfKind(header, kind)) groups[header.columns[i].group].push_back(i);
-  std::vector<Axes> vectors;
-  for (const auto& [group, members] : groups) {
-    const auto smallest = std::min_element(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
-      return header.columns[a].axis < header.columns[b].axis;
-    });
-    const ColumnName& first = header.columns[*smallest];
-    const int base = !first.lettered && first.axis == 1 ? 1 : 0;
-    Axes axes{};
-    std::array<int, 3> count{};
-    for (const std::size_t i : members) {
-      const int axis = header.columns[i].axis - base;
-      if (axis < 0 || axis > 2) continue;
-      axes[static_cast<std::size_t>(axis)] = i;
-      ++count[static_cast<std::size_t>(axis)];
-    }
-    if (members.size() == 3 && count == std::array{1, 1, 1}) vectors.push_back(axes);
-  }
-  std::sort(vectors.begin(), vectors.end());
-  return vectors;
-}
-
-// Header lines of any IMU; Kalibr's table is "timestamp, omega_x, ..., alpha_x, ...".
-std::vector<Axes> accelerationsOf(const TableHeader& header) {
-  const std::vector<Axes> named = vectorsOf(header, ColumnKind::Acceleration);
-  return named.empty() && header.has(ColumnKind::AngularRate) ? vectorsOf(header, ColumnKind::Alpha) : named;
-}
-
-// The three columns "x", "y" and "z" of a sensor that the header does not name.
-std::optional<Axes> bareAxesOf(const TableHeader& header) {
-  if (header.has(ColumnKind::Acceleration) || header.has(ColumnKind::AngularRate) ||
-      header.has(ColumnKind::Polarity) || header.has(ColumnKind::EventType) || header.has(ColumnKind::Point))
-    return std::nullopt;
-  Axes axes{};
-  std::array<int, 3> count{};
-  for (std::size_t i = 0; i < header.columns.size(); ++i) {
-    const int axis = header.columns[i].bare_axis;
-    if (axis < 0) continue;
-    axes[static_cast<std::size_t>(axis)] = i;
-    ++count[static_cast<std::size_t>(axis)];
-  }
-  return count == std::array{1, 1, 1} ? std::optional(axes) : std::nullopt;
-}
-
-// Sensor of bare axes: by their unit, otherwise by the file's name.
-std::optional<MeasuredBy> sensorOf(const TableHeader& header, const Axes& axes,
-                                   std::optional<MeasuredBy> by_file) {
-  const std::string& unit = header.columns[axes[0]].unit;
-  if (accelerationUnitOf(unit)) return MeasuredBy::Accelerometer;
-  if (angularRateUnitOf(unit) && unit.find('s') != std::string::npos) return MeasuredBy::Gyroscope;
-  return by_file;
-}
-
-void nameBareAxes(std::optional<MeasuredBy> by_file, TableHeader& header) {
-  const std::optional<Axes> axes = bareAxesOf(header);
-  const auto sensor = axes ? sensorOf(header, *axes, by_file) : std::nullopt;
-  if (!sensor) return;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    ColumnName& column = header.columns[(*axes)[axis]];
-    column.kind = *sensor == MeasuredBy::Gyroscope ? ColumnKind::AngularRate : ColumnKind::Acceleration;
-    column.axis = static_cast<int>(axis);
-    column.lettered = true;
-    column.group.clear();
-  }
-}
-
 bool namesImu(const TableHeader& header) {
   return header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
 }
@@ -105,10 +28,37 @@ bool namesPlaces(const TableHeader& header) {
   return header.has(ColumnKind::X) && header.has(ColumnKind::Y);
 }
 
+// Name that a column without a sensor's axis has in a proposed line; '?' without a known meaning.
+std::string nameOfKind(ColumnKind kind) {
+  switch (kind) {
+    case ColumnKind::X:
+      return "x";
+    case ColumnKind::Y:
+      return "y";
+    case ColumnKind::Polarity:
+      return "p";
+    case ColumnKind::EventType:
+      return "type";
+    case ColumnKind::Point:
+      return "point";
+    default:
+      return "?";
+  }
+}
+
+// Name of a used column in a proposed line. `bare`: the letter of the sensor that bare axes belong to, if there are any.
+std::string proposedName(const ColumnName& column, std::optional<char> bare, bool imu) {
+  const std::string unit = column.unit.empty() ? "" : "_" + column.unit;
+  if (column.kind == ColumnKind::Time) return timeUnitNamed(column.unit) ? "t" + unit : "t";
+  if (column.kind == ColumnKind::Acceleration || column.kind == ColumnKind::AngularRate)
+    return fmt::format("{}{}{}", column.kind == ColumnKind::Acceleration ? 'a' : 'g',
+                       column.lettered ? "xyz"[column.axis] : '?', unit);
+  if (bare && column.bare_axis >= 0) return fmt::format("{}{}", *bare, "xyz"[column.bare_axis]);
+  return imu ? "?" : nameOfKind(column.kind);
+}
+
 // Proposed line for the session; '?' for names without a known meaning. `sensor`: letter of a sensor for bare axes.
 std::string suggestion(const TableHeader& header, std::span<const TableColumn> table, char sensor = '?') {
-  std::string text;
-  const auto add = [&](const std::string& name) { text += (text.empty() ? "" : ",") + name; };
   const std::vector<Axes> accelerations = accelerationsOf(header),
                           rates = vectorsOf(header, ColumnKind::AngularRate);
   // The first sensor is proposed if there are several.
@@ -117,42 +67,20 @@ std::string suggestion(const TableHeader& header, std::span<const TableColumn> t
       return axes != vectors.front() && std::find(axes.begin(), axes.end(), i) != axes.end();
     });
   };
-  const bool bare = bareAxesOf(header).has_value(), imu = namesImu(header) || bare;
+  const std::optional<char> bare = bareAxesOf(header) ? std::optional(sensor) : std::nullopt;
+  const bool imu = namesImu(header) || bare;
   const std::vector<std::size_t> time = chooseTime(header, table).columns;
-  for (std::size_t i = 0; i < header.columns.size(); ++i) {
+  const auto isUnused = [&](std::size_t i) {
     const ColumnName& column = header.columns[i];
-    const bool other_time =
-        column.kind == ColumnKind::Time && std::find(time.begin(), time.end(), i) == time.end();
-    if (isFurther(i, accelerations) || isFurther(i, rates) || other_time || (imu && column.other_quantity) ||
-        (bare && sensor != '?' && column.kind != ColumnKind::Time && column.bare_axis < 0)) {
-      add(std::string(kUnusedName));
-      continue;
-    }
-    const std::string unit = column.unit.empty() ? "" : "_" + column.unit;
-    switch (column.kind) {
-      case ColumnKind::Time:
-        add(timeUnitNamed(column.unit) ? "t" + unit : "t");
-        continue;
-      case ColumnKind::Acceleration:
-      case ColumnKind::AngularRate:
-        add(fmt::format("{}{}{}", column.kind == ColumnKind::Acceleration ? 'a' : 'g',
-                        column.lettered ? "xyz"[column.axis] : '?', unit));
-        continue;
-      default:
-        break;
-    }
-    if (bare && column.bare_axis >= 0)
-      add(fmt::format("{}{}", sensor, "xyz"[column.bare_axis]));
-    else if (imu)
-      add("?");
-    else
-      add(column.kind == ColumnKind::X           ? "x"
-          : column.kind == ColumnKind::Y         ? "y"
-          : column.kind == ColumnKind::Polarity  ? "p"
-          : column.kind == ColumnKind::EventType ? "type"
-          : column.kind == ColumnKind::Point     ? "point"
-                                                 : "?");
-  }
+    const bool is_time = column.kind == ColumnKind::Time;
+    return isFurther(i, accelerations) || isFurther(i, rates) || (imu && column.other_quantity) ||
+           (is_time && std::find(time.begin(), time.end(), i) == time.end()) ||
+           (bare && sensor != '?' && !is_time && column.bare_axis < 0);
+  };
+  std::string text;
+  for (std::size_t i = 0; i < header.columns.size(); ++i)
+    text += (i > 0 ? "," : "") +
+            (isUnused(i) ? std::string(kUnusedName) : proposedName(header.columns[i], bare, imu));
   return text;
 }
 

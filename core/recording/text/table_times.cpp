@@ -28,7 +28,7 @@ int timeRank(const std::vector<std::size_t>& members, const TableHeader& header,
   const std::string& group = header.columns[members.front()].group;
   const auto contains = [&](const char* word) { return group.find(word) != std::string::npos; };
   const bool late = contains("log") || contains("receive") || contains("host") || contains("arrival") ||
-                    contains("elapsed") || contains("relative");
+                    contains("elapsed") || contains("relative") || contains("clock");
   const bool bare =
       group == "t" && header.columns[members.front()].unit.empty();  // also a temperature's name
   return (!imu.empty() && group.starts_with(imu) ? 8 : 0) + (contains("header_stamp") ? 4 : 0) +
@@ -86,7 +86,7 @@ struct SplitTime {
 };
 std::optional<SplitTime> splitTime(std::string_view cell) {
   SplitTime split;
-  const std::size_t point = std::min(cell.find('.'), cell.size());
+  const std::size_t point = std::min(cell.find_first_of(".,"), cell.size());
   split.digits = point < cell.size() ? cell.substr(point + 1) : std::string_view();
   const auto plain = [](std::string_view text) {
     return text.find_first_not_of("0123456789") == std::string_view::npos;

@@ -186,18 +186,51 @@ std::vector<std::pair<std::size_t, std::string>> neededColumns(const TextColumns
   return needed;
 }
 
+constexpr const char* kWithoutThousands =
+    "Write times without thousands separators, such as 1700000000000000000";
+
+// The first time with a point between thousands, if times as decimals would run backwards: 995, then 1.000. Shorter ones of the
+// same column look like decimals.
+std::optional<std::size_t> firstThousands(const TableColumn& time) {
+  std::optional<std::size_t> first;
+  bool several = false, back_as_decimals = false;
+  double last = -1.0, last_decimal = -1.0;
+  for (std::size_t row = 0; row < time.cells.size(); ++row) {
+    std::string_view cell = time.cells[row];
+    std::string joined;
+    for (std::size_t group = 0; !cell.empty(); ++group) {
+      const std::size_t point = std::min(cell.find('.'), cell.size());
+      const std::string_view digits = cell.substr(0, point);
+      if (digits.empty() || digits.size() > 3 || (group > 0 && digits.size() != 3) ||
+          digits.find_first_not_of("0123456789") != std::string_view::npos)
+        return std::nullopt;
+      joined += digits;
+      several = several || group > 1;
+      if (group == 1 && !first) first = row;
+      cell.remove_prefix(std::min(point + 1, cell.size()));
+    }
+    double number = 0.0, decimal = last_decimal;
+    if (!parseNumber(joined, number) || number < last) return std::nullopt;
+    parseNumber(time.cells[row], decimal);
+    back_as_decimals = back_as_decimals || decimal < last_decimal;
+    last = number;
+    last_decimal = decimal;
+  }
+  return several || back_as_decimals ? first : std::nullopt;
+}
+
 void refuseCell(TextColumns& columns, std::uint64_t line, const std::string& what, std::string_view cell) {
   constexpr std::size_t kMostShown = 40;
   const bool time = what == "time";
-  const bool thousands =
-      std::count(cell.begin(), cell.end(), '.') > 1 || std::count(cell.begin(), cell.end(), ',') > 1;
+  const bool thousands = std::ranges::any_of(std::string_view(".,'_ "),
+                                             [&](char mark) { return std::ranges::count(cell, mark) > 1; });
   columns.type = StreamType::Other;
   columns.problem = cell.empty()
                         ? fmt::format("line {} has no {}, nor have the lines below", line, what)
                         : fmt::format("line {} has \"{}\" as {}, and no line below has one that can be read",
                                       line, cell.substr(0, kMostShown), what);
   columns.advice = !time       ? "Write numbers with a decimal point, or check the names of the columns"
-                   : thousands ? "Write times without thousands separators, such as 1700000000000000000"
+                   : thousands ? kWithoutThousands
                                : "Write times as numbers, as 2026-03-01T10:00:00.25Z, or as 12:34:56.789";
 }
 
@@ -208,6 +241,16 @@ void checkReadable(const TableHead& head, TextColumns& columns) {
     if (column >= head.columns.size() || head.columns[column].values.empty())
       return refuseCell(columns, head.lines.front(), what,
                         column < head.columns.size() ? head.columns[column].cells.front() : "");
+    const std::optional<std::size_t> row =
+        what == "time" ? firstThousands(head.columns[column]) : std::nullopt;
+    if (row) {
+      columns.type = StreamType::Other;
+      columns.problem =
+          fmt::format("line {} has the time {}: its point separates thousands, and is not a decimal point",
+                      head.lines[*row], head.columns[column].cells[*row]);
+      columns.advice = kWithoutThousands;
+      return;
+    }
     const bool place = columns.type == StreamType::Events && (what == "x" || what == "y");
     if (!place || head.columns[column].numbers.pixels > 0) continue;
     refuseCell(columns, head.lines.front(), what, head.columns[column].cells.front());
@@ -300,6 +343,18 @@ void applyScales(const TableHead& head, const TableHeader& header, TextColumns& 
   if (!applied.empty()) columns.scales = "scaled as stated above the header: " + applied;
 }
 
+// End of the first cell. Separators within its quotes belong to it: "1,700". Some programs quote whole lines.
+std::size_t cellEnd(std::string_view line, std::string_view separators, bool first) {
+  const std::size_t end = line.find_first_of(separators);
+  if (!line.starts_with('"')) return end;
+  const std::size_t quote = line.find('"', 1);
+  if (quote == std::string_view::npos || quote < end) return end;
+  const std::string_view rest = trimmed(line.substr(quote + 1), " \r");
+  if (rest.empty()) return first ? end : std::string_view::npos;
+  return separators.find(rest.front()) == std::string_view::npos ? end
+                                                                 : line.find_first_of(separators, quote);
+}
+
 TextColumns columnsOf(const TableHead& head, std::string_view names, const std::string& file) {
   TextColumns columns;
   const auto apply = [&](const TableHeader& header) {
@@ -363,7 +418,7 @@ void splitColumns(std::string_view line, const TextStyle& style, std::vector<std
   }
   const std::string_view separators = style.decimal_comma ? ";\t" : ",;\t";
   for (std::size_t end = 0; end != std::string_view::npos;) {
-    end = line.find_first_of(separators);
+    end = cellEnd(line, separators, columns.empty());
     columns.push_back(trimmed(line.substr(0, end), kAroundCell));
     if (end != std::string_view::npos) line.remove_prefix(end + 1);
   }

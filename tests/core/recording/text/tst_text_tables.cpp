@@ -53,6 +53,8 @@ class TestTextTables : public QObject {
  private slots:
   void tablesWithoutTimes_areRefusedByRowAndCell_data();
   void tablesWithoutTimes_areRefusedByRowAndCell();
+  void thousandsAmongTimes_areRefused_data();
+  void thousandsAmongTimes_areRefused();
   void tablesWithoutCells_areSurvived_data();
   void tablesWithoutCells_areSurvived();
   void times_areRead_data();
@@ -124,6 +126,40 @@ void TestTextTables::tablesWithoutTimes_areRefusedByRowAndCell() {
   }
 }
 
+// Shorter times of the same column look like decimals.
+void TestTextTables::thousandsAmongTimes_areRefused_data() {
+  QTest::addColumn<QByteArray>("text");
+  QTest::addColumn<QByteArray>("place");
+  const auto row = [](const char* name, const std::string& text, const char* place) {
+    QTest::newRow(name) << QByteArray::fromStdString(text) << QByteArray(place);
+  };
+  const auto thousands = [](int number, const std::string& mark) {
+    std::string text = std::to_string(number);
+    for (std::ptrdiff_t at = std::ssize(text) - 3; at > 0; at -= 3)
+      text.insert(static_cast<std::size_t>(at), mark);
+    return text;
+  };
+  row("ms", table("t_ms,ax,ay,az,gx,gy,gz", 300, [&](int i) { return thousands(5 * i, "."); }),
+      "line 202 has the time 1.000");
+  row("us, decimal commas",
+      table(
+          "t_us;ax;ay;az;gx;gy;gz", 300, [&](int i) { return thousands(5000 * i, "."); },
+          [](int i) { return fmt::format("0,{}", i % 10); }, ';'),
+      "line 3 has the time 5.000");
+  row("commas in quotes",
+      table(kHeader, 300, [&](int i) { return '"' + thousands(4'000'000 + i, ",") + '"'; }),
+      "line 2 has \"4,000,000\" as time");
+  row("apostrophes", table(kHeader, 300, [&](int i) { return thousands(4'000'000 + i, "'"); }),
+      "line 2 has \"4'000'000\" as time");
+}
+
+void TestTextTables::thousandsAmongTimes_areRefused() {
+  QFETCH(QByteArray, text);
+  QFETCH(QByteArray, place);
+  const QByteArray refusal = refusalOf(text.toStdString()).c_str();
+  QVERIFY2(refusal.contains(place) && refusal.contains("without thousands separators"), refusal);
+}
+
 void TestTextTables::tablesWithoutCells_areSurvived_data() {
   QTest::addColumn<QByteArray>("text");
   QTest::addColumn<bool>("read");
@@ -190,6 +226,15 @@ void TestTextTables::times_areRead_data() {
       100'000'000'000);
   row("seconds and microseconds without zeros", table(kHeader, 700, parts(1000)), 100'000'000'000);
   row("seconds and milliseconds without zeros", table("t,ax,ay,az,gx,gy,gz", 700, parts(1)), 100'000'000'000);
+  row("seconds and milliseconds without zeros, decimal commas",
+      table(
+          "t;ax;ay;az;gx;gy;gz", 700, [](int i) { return fmt::format("{},{}", 100 + i / 200, i % 200 * 5); },
+          [](int i) { return fmt::format("0,{}", i % 10); }, ';'),
+      100'000'000'000);
+  row("a column named clock", table("clock,ax,ay,az,gx,gy,gz", 300, clock(43'200, "{:02}:{:02}:{:02}.{:03}")),
+      noon_ns);
+  row("all cells in quotes",
+      table(kHeader, 300, [](int i) { return fmt::format("\"{}\"", 1.0 + 0.005 * i); }), 1'000'000'000);
   row("decimals without zeros at their end",
       table(kHeader, 700, [](int i) { return fmt::format("{}", 100.0 + 0.005 * i); }), 100'000'000'000);
   row("a temperature named T",
