@@ -218,11 +218,15 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
                      samples.size())});
     return faults;  // everything else follows from it
   }
-  Samples sorted = samples;
+  Samples sorted = samples;  // without second clocks, as in a calibration
+  const std::vector<SecondClock> clocks = findSecondClocks(samples);
+  for (auto clock = clocks.rbegin(); clock != clocks.rend(); ++clock)
+    sorted.erase(sorted.begin() + static_cast<std::ptrdiff_t>(clock->begin),
+                 sorted.begin() + static_cast<std::ptrdiff_t>(clock->end));
   std::stable_sort(sorted.begin(), sorted.end(), kIsEarlier);
   const CoarseStamps stamps = reconstructStamps(sorted);
   if (stamps.step_s > 0.0) faults.push_back(faultOf(name, stamps));
-  if (stamps.reconstructed && areSorted(samples)) samples = std::move(sorted);
+  if (stamps.reconstructed && clocks.empty() && areSorted(samples)) samples = std::move(sorted);
   Samples good;
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(good), isMeasurable);
   if (good.size() < samples.size()) {
