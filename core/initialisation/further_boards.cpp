@@ -58,7 +58,9 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
     }
     const std::string& name = input.boardName(board);
     const auto found = alignBoard(body, sights, gap_s, options.least_views);
-    if (!agrees(found) && agrees(alignBoard(body, sights, gap_s, options.least_views, -1.0)))
+    constexpr double kFarBetter = 0.5;
+    const auto negated = alignBoard(body, sights, gap_s, options.least_views, -1.0);
+    if (agrees(negated) && (!agrees(found) || negated->position_rms_m < kFarBetter * found->position_rms_m))
       throw calibrationFailed(
           name,
           fmt::format("its views agree with '{}' only if the images of the cameras of one of the two boards "

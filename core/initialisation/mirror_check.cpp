@@ -102,7 +102,17 @@ int signOf(const CalibrationInput& input, const AlignedCamera& camera, const Gyr
   const CameraTrack track{camera.poses, offset_s};
   const GravityAlignment gravity = alignGravity({&track, 1}, withFitForces(imu.samples), input.start_ns,
                                                 rotation, options, {silentProgress(), context.stop});
-  return signOfScale(gravity, options);
+  if (const int sign = signOfScale(gravity, options); sign != 0) return sign;
+  constexpr double kFarBetter = 0.5;
+  std::vector<ImuSample> samples = withFitForces(imu.samples);
+  const auto misfit = [&] {
+    return accelerationMisfit_m_s2({&track, 1}, samples, input.start_ns, rotation, options, context);
+  };
+  const double as_is_m_s2 = misfit();
+  for (ImuSample& sample : samples) sample.specific_force_m_s2 *= -1.0;
+  const double negated_m_s2 = misfit();
+  if (negated_m_s2 < kFarBetter * as_is_m_s2) return -1;
+  return as_is_m_s2 < kFarBetter * negated_m_s2 ? 1 : 0;
 }
 
 // What determines that accelerations are negated, or that they are not: then images are mirrored.
