@@ -84,7 +84,7 @@ class CamerasAlone {
       first.hand_eye.axis_ratio = 1.0;  // its rotation is the identity, not estimated
       if (input_.cameras[k].board > 0)
         before_further_.emplace(k, std::move(aligned));
-      else if (contradictsHandedness(first, aligned, gyro, options_.longest_pair_s, options_))
+      else if (contradictsHandedness(first, aligned, gyro, options_.longest_shared_gap_s, options_))
         mirrored = mirroredOfTwo(input_, stated_, first, aligned);
       else
         place(k, aligned);

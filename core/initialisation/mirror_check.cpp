@@ -281,7 +281,7 @@ bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& came
     turned += rotationAngleBetween_rad(worldFromFirst(first, first.poses[k]), worldFromFirst(camera, pose)) >
               kHalfwayToHalfTurn_rad;
   }
-  return 2 * turned > compared;
+  return static_cast<int>(compared) >= options.least_views && 2 * turned > compared;
 }
 
 CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns& stated,

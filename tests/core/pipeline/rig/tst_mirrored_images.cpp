@@ -105,7 +105,7 @@ class TestMirroredImages : public QObject {
       mirror(Mirroring::Y, 0, mirrored);
       const Outcome outcome = outcomeOf(mirrored);
       QVERIFY2(!outcome.ok(), scenario);
-      QCOMPARE(outcome.repair, QString());
+      QVERIFY2(!outcome.repair.contains("axes"), qPrintable(outcome.repair));
       if (!outcome.failure.isEmpty()) VERIFY_NAMES(outcome.failure, "negated", "mirrored");
     }
   }
