@@ -281,7 +281,9 @@ bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& came
     turned += rotationAngleBetween_rad(worldFromFirst(first, first.poses[k]), worldFromFirst(camera, pose)) >
               kHalfwayToHalfTurn_rad;
   }
-  return static_cast<int>(compared) >= options.least_views && 2 * turned > compared;
+  // Cameras that see the board in turns have only few views near each other's, next to gaps of the rotation.
+  const bool enough = static_cast<int>(compared) >= options.least_views && 2 * compared > camera.poses.size();
+  return enough && 2 * turned > compared;
 }
 
 CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns& stated,
