@@ -54,17 +54,22 @@ void checkStampsApart(const ImuData& imu) {
   checkStampsApart(imu.name, forces_ns);
 }
 
+const ImuAxis* deadAxis(const ImuData& imu) {
+  for (const ImuAxis& axis : kImuAxes)
+    if (!imu.samples.empty() && std::ranges::all_of(imu.samples, [&](const ImuSample& sample) {
+          return axis.of(sample) == axis.of(imu.samples.front());
+        }))
+      return &axis;
+  return nullptr;
+}
+
 void checkAxesAlive(const ImuData& imu) {
-  if (imu.samples.empty()) return;
-  for (const ImuAxis& axis : kImuAxes) {
-    const double first = axis.of(imu.samples.front());
-    if (std::any_of(imu.samples.begin(), imu.samples.end(),
-                    [&](const ImuSample& sample) { return axis.of(sample) != first; }))
-      continue;
-    throw calibrationFailed(imu.name,
-                            fmt::format("{} is constant at {:.4g}: the axis is dead", axis.name, first),
-                            "Check the IMU and its driver");
-  }
+  const ImuAxis* const axis = deadAxis(imu);
+  if (axis == nullptr) return;
+  throw calibrationFailed(
+      imu.name,
+      fmt::format("{} is constant at {:.4g}: the axis is dead", axis->name, axis->of(imu.samples.front())),
+      "Check the IMU and its driver");
 }
 
 void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,

@@ -4,6 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/calibration_setup.h"
+#include "core/data/unfit_samples.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialise.h"
 #include "core/initialisation/mirror_check.h"
@@ -11,6 +12,9 @@
 #include <span>
 
 namespace evical {
+
+// An axis that never changes; null if there is none.
+const ImuAxis* deadAxis(const ImuData& imu);
 
 // Rejects batches of samples with stamps of their arrival, and axes that never change.
 void checkStampsApart(const ImuData& imu);

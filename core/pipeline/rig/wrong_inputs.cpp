@@ -3,6 +3,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
+#include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/rotation_rates.h"
 #include "core/intrinsics/estimate_intrinsics.h"
@@ -91,7 +92,8 @@ std::optional<CalibrationError> wrongForces(const Session& session, const Calibr
   constexpr double kShaken = 0.15;  // of the norm, by motion
   for (std::size_t k = 0; k < std::min(input.imus.size(), session.imus.size()); ++k) {
     const ImuData& imu = input.imus[k];
-    std::vector<ImuSample> forces;  // without those of separate gyroscopes
+    if (deadAxis(imu) != nullptr) continue;  // this is the cause
+    std::vector<ImuSample> forces;           // without those of separate gyroscopes
     std::ranges::copy_if(imu.samples, std::back_inserter(forces), measuresForce<ImuSample>);
     const double norm = medianForceNorm(forces);
     if (forces.empty() || isGravity(norm, options) ||
