@@ -153,7 +153,9 @@ class TestResultScreen : public QObject {
     compare(groups, result_, result_);
     QVERIFY(std::abs(find(groups, "left.rotation.x")->difference.value()) < 1e-9);
     NamedResult other = result_;
-    other.cameras = {{"right"}};
+    other.reference = other.imus.at(0).name = "other_imu";
+    other.imus.push_back({"second"});
+    evical::test::ownResult(other).state.imus.emplace_back();
     QVERIFY_THROWS_EXCEPTION(CalibrationError, compare(groups, result_, other));
   }
 
