@@ -40,9 +40,7 @@ void CopyTable::widenFirst() {
   int others_px = 0;
   for (int column = 1; column < columnCount(); ++column)
     if (!isColumnHidden(column)) others_px += columnWidth(column);
-  constexpr int kLeast_px = 180;  // a longer name ends with dots before the last column leaves the view
-  if (first_px_ > 0)
-    setColumnWidth(0, std::max(std::min(first_px_, kLeast_px), viewport()->width() - others_px));
+  if (first_px_ > 0) setColumnWidth(0, std::max(first_px_, viewport()->width() - others_px));
 }
 
 void CopyTable::resizeEvent(QResizeEvent* event) {

@@ -263,8 +263,8 @@ void PrintBoardDialog::makeButtons() {
                   tr("Use this board, with the measured length, in the session; without a session, in the "
                      "next recording that is opened"),
                   this);
-  shrink_ =
-      sheetButton("board", {}, tr("Change all sizes in proportion, so that the board fits the paper"), this);
+  shrink_ = sheetButton("board", tr("Use a smaller spacing"),
+                        tr("Change all sizes in proportion, so that the board fits the paper"), this);
   connect(shrink_, &QPushButton::clicked, this, [this] {
     if (fitting_) setBoard(Board(*fitting_));
   });

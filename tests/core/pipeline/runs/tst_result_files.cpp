@@ -102,7 +102,8 @@ class TestResultFiles : public QObject {
     }
     const QString ms = shown(1e3 * camera.time_offset_s, 1e3 * sigma.time_offset_std_s);
     QVERIFY2(text_.contains(ms), qPrintable(ms));
-    QVERIFY(text_.contains(QString("of %1 with the board").arg(read.result->cameras[0].windows_total)));
+    QVERIFY(
+        text_.contains(QString("of %1 event windows or frames").arg(read.result->cameras[0].windows_total)));
     QVERIFY(read.result->split_half_check.has_value());
     QVERIFY2(text_.contains(QString::number(read.result->split_half_check->rms_sigmas, 'f', 2)),
              "rms of the halves");
