@@ -96,7 +96,10 @@ std::optional<CalibrationError> wrongForces(const Session& session, const Calibr
     std::vector<ImuSample> forces;           // without those of separate gyroscopes
     std::ranges::copy_if(imu.samples, std::back_inserter(forces), measuresForce<ImuSample>);
     const double norm = medianForceNorm(forces);
+    // Motion shifts the norm of short recordings by a tenth; wrong units and ranges have a factor of two or more.
+    constexpr double kByMotion = 1.5;
     if (forces.empty() || isGravity(norm, options) ||
+        std::abs(std::log(norm / input.gravity_norm_m_s2)) < std::log(kByMotion) ||
         isGravity(steadyForceNorm(forces).value_or(norm), options))
       continue;
     const LikelyUnit unit = likelyUnitOfForces(&session.imus[k], norm / input.gravity_norm_m_s2, kShaken);
