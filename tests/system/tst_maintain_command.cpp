@@ -301,7 +301,7 @@ class TestMaintainCommand : public QObject {
     QTest::addColumn<QString>("says");
     const QString log = path("drive_stops") + "/recording.bag", result = path("drive_stops") + "/calibration";
     writeFile(path("empty.csv"), "");
-    QTest::newRow("no log") << QStringList{path("gone.bag"), "--result", result} << "no such file";
+    QTest::newRow("no log") << QStringList{path("gone.bag"), "--result", result} << "does not exist";
     QTest::newRow("empty log") << QStringList{path("empty.csv"), "--result", result} << "the file is empty";
     QTest::newRow("no result") << QStringList{log, "--result", path("gone")} << "does not exist";
     QTest::newRow("a stream that is not there")
