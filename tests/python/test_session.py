@@ -47,7 +47,7 @@ def test_a_guess_names_what_the_recording_holds(bag, caplog):
 def test_guesses_of_nothing_are_refused(tmp_path):
     with pytest.raises(evical.InputError, match="no path is given"):
         evical.Session.guess()
-    with pytest.raises(evical.InputError, match="there is no such file"):
+    with pytest.raises(evical.InputError, match="does not exist"):
         evical.Session.guess(tmp_path / "none.bag")
     with pytest.raises((TypeError, RuntimeError)):
         evical.Session.guess(3)
