@@ -54,7 +54,7 @@ std::string directionWords(const std::optional<Mirroring>& how) {
              : std::string(" in ") + kMirroringNames[static_cast<std::size_t>(*how)];
 }
 
-// Whether a camera's image is mirrored, according to anything except motion.
+// Evidence for or against a mirrored image of a camera, from anything except motion.
 struct ImageEvidence {
   bool mirrored;
   std::string reason;  // "its tags are readable"
@@ -115,7 +115,7 @@ int signOf(const CalibrationInput& input, const AlignedCamera& camera, const Gyr
   return as_is_m_s2 < kFarBetter * negated_m_s2 ? 1 : 0;
 }
 
-// What determines that accelerations are negated, or that they are not: then images are mirrored.
+// Evidence that accelerations are negated, or that they are not: then images are mirrored.
 struct SignEvidence {
   bool negated;
   std::string reason;

@@ -86,7 +86,7 @@ bool isUsable(const Board& board) {
   }
 }
 
-// What the sheet must contain: the pattern, and the margins and the footer around it.
+// Contents of a sheet: the pattern, and the margins and the footer around it.
 struct SheetNeeds {
   Pattern pattern;
   Eigen::Vector2d field_mm, whole_mm;  // pattern with margins; with the footer, too
