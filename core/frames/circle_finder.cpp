@@ -126,17 +126,17 @@ class CircleFinder : public PatternFinder {
     std::optional<PlaneMap> best;
     std::size_t most = 0;
     for (const LatticePlacement& placement : layOnBoard(lattice, board_, kNearlyBest)) {
-      if (static_cast<int>(placement.size()) < kFewest) continue;
+      if (static_cast<int>(placement.circles.size()) < kFewest) continue;
       std::optional<PlaneMap> map = mapOfPlacement(placement, blobs);
       if (!map || !hasShapes(*map, placement, blobs)) continue;
       if (!best) {
         best = std::move(map);
-        most = placement.size();
+        most = placement.circles.size();
         continue;
       }
       if (isHalfTurnOf(*best, *map)) continue;
       // A part of the board may fit several places equally well: then it is rejected.
-      if (placement.size() + kMargin > most) return std::nullopt;
+      if (placement.circles.size() + kMargin > most) return std::nullopt;
     }
     return best;
   }
@@ -144,7 +144,7 @@ class CircleFinder : public PatternFinder {
   std::optional<PlaneMap> mapOfPlacement(const LatticePlacement& placement,
                                          const std::vector<Blob>& blobs) const {
     std::vector<ReadPoint> known;
-    for (const auto& [circle, blob] : placement)
+    for (const auto& [circle, blob] : placement.circles)
       known.push_back({board_.point_m(circle), blobs[blob].centre_px});
     return mapOf(known, board_.spacing_m);
   }
@@ -154,7 +154,7 @@ class CircleFinder : public PatternFinder {
                  const std::vector<Blob>& blobs) const {
     constexpr double kTolerance = 0.35;
     std::vector<double> errors;
-    for (const auto& [circle, blob] : placement) {
+    for (const auto& [circle, blob] : placement.circles) {
       const Eigen::Matrix2d a = board_.radius_m * map.placeOf(board_.point_m(circle)).px_per_m;
       const Eigen::Matrix2d expected = a * a.transpose();
       errors.push_back((expected.inverse() * blobs[blob].shape_px2 - Eigen::Matrix2d::Identity()).norm());

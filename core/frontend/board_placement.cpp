@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace evical {
@@ -71,35 +72,44 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
   }
 }
 
-// Adds circles that the lattice missed or had assigned to an outlier: any circle at a place that the
-// homography predicts.
+// The board's circle whose place is nearest, if the place is on the board.
+std::optional<int> nearestCircle(const Board& board, const Eigen::Vector2d& place_m) {
+  const bool asymmetric = board.type == BoardType::AsymmetricCircles;
+  const Eigen::Vector2d place = place_m / board.spacing_m;
+  if (!(place.cwiseAbs().maxCoeff() < 1e3)) return std::nullopt;  // no number is one, too
+  const auto row = static_cast<int>(std::lround(place.y()));
+  const double x = asymmetric ? 0.5 * (place.x() - std::abs(row % 2)) : place.x();
+  const auto col = static_cast<int>(std::lround(x));
+  if (row < 0 || row >= board.rows || col < 0 || col >= board.cols) return std::nullopt;
+  return board.index(row, col);
+}
+
+// Adds circles that the lattice missed or had assigned to an outlier: those near a place that the homography
+// predicts. Looks from each circle to the board: a board that is given too large has many more places.
 void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingPoint>& ideal,
               const Board& board, const GridOptions& options,
               std::vector<std::pair<int, std::size_t>>& placed) {
-  std::vector<bool> found(static_cast<std::size_t>(board.pointCount()), false), used(ideal.size(), false);
+  const auto count = static_cast<std::size_t>(board.pointCount());
+  std::vector<bool> found(count, false), used(ideal.size(), false);
   for (const auto& [circle, index] : placed) found[static_cast<std::size_t>(circle)] = used[index] = true;
-  std::vector<std::size_t> spare;  // few: most are placed, and boards that are given too large have many gaps
-  for (std::size_t k = 0; k < ideal.size(); ++k)
-    if (!used[k]) spare.push_back(k);
+  const Eigen::Matrix3d board_from_ideal = ideal_from_board.inverse();
   const auto imageOf = [&](const Eigen::Vector2d& on_board) {
     return Eigen::Vector2d((ideal_from_board * on_board.homogeneous()).hnormalized());
   };
-  for (int circle = 0; circle < board.pointCount() && !spare.empty(); ++circle) {
-    if (found[static_cast<std::size_t>(circle)]) continue;
-    const Eigen::Vector2d centre = board.point_m(circle), predicted_px = imageOf(centre);
+  std::map<int, std::pair<double, std::size_t>> nearest;  // by circle: distance, index
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    if (used[k]) continue;
+    const auto circle =
+        nearestCircle(board, (board_from_ideal * ideal[k].centre_px.homogeneous()).hnormalized());
+    if (!circle || found[static_cast<std::size_t>(*circle)]) continue;
+    const Eigen::Vector2d centre = board.point_m(*circle), predicted_px = imageOf(centre);
     const double step_px = (imageOf(centre + Eigen::Vector2d(board.spacing_m, 0.0)) - predicted_px).norm();
-    std::size_t nearest = ideal.size();
-    double nearest_px = 0.5 * options.step_tolerance * step_px;
-    for (const std::size_t k : spare) {
-      const double distance_px = (ideal[k].centre_px - predicted_px).norm();
-      if (used[k] || !(distance_px < nearest_px)) continue;
-      nearest = k;
-      nearest_px = distance_px;
-    }
-    if (nearest == ideal.size()) continue;
-    used[nearest] = true;
-    placed.emplace_back(circle, nearest);
+    const double distance_px = (ideal[k].centre_px - predicted_px).norm();
+    if (!(distance_px < 0.5 * options.step_tolerance * step_px)) continue;
+    const auto [at, first] = nearest.try_emplace(*circle, distance_px, k);
+    if (!first && distance_px < at->second.first) at->second = {distance_px, k};
   }
+  for (const auto& [circle, found_at] : nearest) placed.emplace_back(circle, found_at.second);
 }
 
 }  // namespace
@@ -165,9 +175,13 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
   std::vector<BoardPlacement> placements;
   std::vector<MovingPoint> ideal;
   for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, scene.camera));
+  // All shifts of one map have the same axes: if its first placement is not square, none is.
+  std::set<LatticeMap> sheared;
   for (LatticePlacement& laid : layOnBoard(lattice, scene.board, kNearlyBest)) {
+    if (scene.camera && placements.size() == kMostPlacements) break;
+    if (sheared.contains(laid.map)) continue;
     BoardPlacement placement;
-    placement.circles = std::move(laid);
+    placement.circles = std::move(laid.circles);
     std::erase_if(placement.circles,
                   [&](const auto& circle) { return !ideal[circle.second].centre_px.allFinite(); });
     std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, scene.board, options);
@@ -175,7 +189,11 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
       fillGaps(*h, ideal, scene.board, options, placement.circles);
       h = fitAgreeing(placement.circles, ideal, scene.board, options);
     }
-    if (!h || (scene.camera && !looksSquare(*h, *scene.camera))) continue;
+    if (!h) continue;
+    if (scene.camera && !looksSquare(*h, *scene.camera)) {
+      sheared.insert(laid.map);
+      continue;
+    }
     std::vector<MovingPoint> placed;
     for (const auto& [circle, index] : placement.circles) placed.push_back(ideal[index]);
     placement.motion = motionFromPoints(*h, placed, time_ns);

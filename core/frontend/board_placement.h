@@ -15,8 +15,11 @@ struct BoardPlacement {
   BoardMotion motion;                                // approximate: from centres and velocities only
 };
 
-// All placements with nearly the largest number of circles on the board, in descending order. If the camera
-// is known, only those that a camera can see: two equal, perpendicular axes behind the homography.
+// A board that is given too large has hundreds of placements on the same circles.
+inline constexpr std::size_t kMostPlacements = 48;
+
+// Placements with nearly the largest number of circles on the board, in descending order. If the camera is known, at
+// most kMostPlacements, and only those that a camera can see: two equal, perpendicular axes behind the homography.
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);

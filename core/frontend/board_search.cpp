@@ -20,7 +20,6 @@ namespace {
 constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
 constexpr double kSpeedHalfWindow_s = 0.04;  // for the edges' typical speed
 constexpr double kSlowest_px_s = 10.0;       // lower limit of speeds
-constexpr std::size_t kMostPlacements = 48;  // largest number of fits: each costs as much as a tracked window
 constexpr double kRoughGateFactor =
     1.5;  // factor on the first gate: placements are less accurate than predictions
 

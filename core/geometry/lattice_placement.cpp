@@ -70,11 +70,11 @@ std::vector<LatticePlacement> layOnBoard(const CircleLattice& lattice, const Boa
   const std::map<LatticePlace, int> places = boardLattice(board);
   std::vector<LatticePlacement> placements;
   for (const Shifted& shifted : bestShifts(lattice, places, nearly)) {
-    LatticePlacement& placement = placements.emplace_back();
+    LatticePlacement& placement = placements.emplace_back(LatticePlacement{shifted.map, {}});
     for (const LatticeNode& node : lattice) {
       const LatticePlace at = applied(shifted.map, {node.i, node.j});
       const auto found = places.find({at.first + shifted.shift.first, at.second + shifted.shift.second});
-      if (found != places.end()) placement.emplace_back(found->second, node.circle);
+      if (found != places.end()) placement.circles.emplace_back(found->second, node.circle);
     }
   }
   return placements;

@@ -23,7 +23,10 @@ LatticePlace applied(const LatticeMap& map, const LatticePlace& place);
 // The board's circles in steps of the board's square lattice, positively oriented like the image's.
 std::map<LatticePlace, int> boardLattice(const Board& board);
 
-using LatticePlacement = std::vector<std::pair<int, std::size_t>>;  // board circle, index of the circle
+struct LatticePlacement {
+  LatticeMap map;                                    // of the lattice, before it is shifted
+  std::vector<std::pair<int, std::size_t>> circles;  // board circle, index of the circle
+};
 
 // Placements with at least `nearly` (a ratio) as many circles on the board as the best one, in descending
 // order.

@@ -111,7 +111,7 @@ void TestBoardSearch::otherSource_isTriedWhereTheFirstFails() {
 }
 
 // It has dozens of placements on the same circles, which must not be fitted one by one: a recording of 10 s took
-// minutes for its message. A search still takes about 50 times as long as that of the right board.
+// minutes for its message. A search that fails takes all lengths of windows: some 40 times one that finds the board.
 void TestBoardSearch::muchTooLargeBoard_isSearchedInBoundedTime() {
   FrontEndOptions options;
   const BoardScene given = MovingBoard().scene();
@@ -126,7 +126,7 @@ void TestBoardSearch::muchTooLargeBoard_isSearchedInBoundedTime() {
   };
   const double right_s = searched_s(given, true), wrong_s = searched_s(scene, false);
   QVERIFY(right_s > 0.0 && wrong_s > 0.0);
-  QVERIFY2(wrong_s < 120.0 * right_s, qPrintable(QString("%1 s, %2 s").arg(right_s).arg(wrong_s)));
+  QVERIFY2(wrong_s < 80.0 * right_s, qPrintable(QString("%1 s, %2 s").arg(right_s).arg(wrong_s)));
 }
 
 // If hardly anything moves, edges count as the slowest possible ones.
