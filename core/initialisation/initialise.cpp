@@ -174,6 +174,7 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
         gravity.outlying_views, gravity.views));
   }
   checkAccelerationsAgree(input, stated, all, gyro, gravity, options, context);
+  result.forces_show_size = gravity.board_scale > options.scale_error_sigmas * gravity.board_scale_std;
   checkBoardScale(gravity, input.board, options, result);
   if (settled && !result.doubt.empty()) result.board_scale = gravity.board_scale;
   state.imu_in_world_m = gravity.imu_in_world_m;
@@ -270,9 +271,10 @@ CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const
 
 // Each camera's poses, time offset and rotation relative to the reference IMU, independent of the board that
 // it sees.
-std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const GyroRotation& gyro,
-                                        const InitialisationOptions& options, const RunContext& context,
-                                        std::size_t& told, Initialisation& result) {
+std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const StatedSigns& stated,
+                                        const GyroRotation& gyro, const InitialisationOptions& options,
+                                        const RunContext& context, std::size_t& told,
+                                        Initialisation& result) {
   std::vector<AlignedCamera> cameras;
   for (const CameraData& camera : input.cameras) {
     context.throwIfStopped();
@@ -281,7 +283,7 @@ std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const Gyr
     // A given offset may be the error; it is reported later, with the recording's estimate.
     if (!isGiven(camera.prior.time_offset))
       checkRotationsAgree(input, result.agreements.back(), options, context);
-    checkGivenRotation(input, cameras.back(), gyro, options);
+    checkGivenRotation(input, stated, cameras.back(), gyro, options);
     tellSteps(result.steps, context.observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
@@ -346,7 +348,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
   const std::vector<ImuSample> rates = withoutRateSpikes(imu.samples);
   const GyroRotation gyro(rates, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);
-  std::vector<AlignedCamera> cameras = alignCameras(input, gyro, options, context, told, result);
+  std::vector<AlignedCamera> cameras = alignCameras(input, stated, gyro, options, context, told, result);
   const TimeRange views = viewRange(cameras);
   checkOverlap(imu, views.begin_s, views.end_s, gyro.begin_s(), gyro.end_s(), options);
   TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
@@ -369,7 +371,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }
-  result.mirror_doubt = mirrorDoubt(input, stated, all, result.state);
+  result.mirror_doubt = mirrorDoubt(input, stated, all, result.state, result.forces_show_size);
   tellSteps(result.steps, context.observer, told);
   context.progress.stageProgress(1.0);
   return result;

@@ -39,8 +39,9 @@ struct Initialisation {
   std::vector<InitialisationStep> steps;
   std::vector<CameraAgreement> agreements;  // empty without an IMU
   std::vector<std::string> warnings;
-  std::string doubt;         // about the board's size; may be empty
-  std::string mirror_doubt;  // about a mirrored image; may be empty
+  std::string doubt;              // about the board's size; may be empty
+  std::string mirror_doubt;       // about a mirrored image; may be empty
+  bool forces_show_size = false;  // accelerations determine the board's size significantly, with its sign
   double board_scale =
       1.0;  // according to accelerations: the board's size in units of the given one, if in doubt
 };

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -61,14 +62,8 @@ struct ImageEvidence {
   std::optional<Mirroring> how = {};
 };
 
-std::optional<ImageEvidence> evidenceOf(const CalibrationInput& input, const StatedSigns& stated,
-                                        const AlignedCamera& aligned) {
-  const CameraData& camera = input.cameras[aligned.camera];
-  if (stated.statesMirroring(aligned.camera))
-    return ImageEvidence{false, "the session states how it is mirrored"};
-  if (input.boardOf(aligned.camera).hasTags() && camera.observations.kind != CameraKind::Points)
-    return ImageEvidence{false, "its tags are readable"};
-  const std::optional<KnownRotation>& mount = camera.prior.rotation;
+std::optional<ImageEvidence> evidenceOfMount(const CalibrationInput& input, const AlignedCamera& aligned) {
+  const std::optional<KnownRotation>& mount = input.cameras[aligned.camera].prior.rotation;
   if (!mount || input.imus.empty())
     return std::nullopt;  // between cameras it shows only that one is mirrored
   constexpr double kNear_rad = 0.25 * pi, kSigmas = 3.0;
@@ -80,6 +75,17 @@ std::optional<ImageEvidence> evidenceOf(const CalibrationInput& input, const Sta
     return ImageEvidence{true,
                          "its rotation differs from the prior by half a turn about an axis of the image",
                          mirroringOf(*axis)};
+  return std::nullopt;
+}
+
+// A stated reversal is not evidence: it makes the images of a camera mirrored that is not.
+std::optional<ImageEvidence> evidenceOf(const CalibrationInput& input, const StatedSigns& stated,
+                                        const AlignedCamera& aligned) {
+  if (input.boardOf(aligned.camera).hasTags() &&
+      input.cameras[aligned.camera].observations.kind != CameraKind::Points)
+    return ImageEvidence{false, "its tags are readable"};
+  if (std::optional<ImageEvidence> mount = evidenceOfMount(input, aligned)) return mount;
+  if (stated.isReadable(aligned.camera)) return ImageEvidence{false, "the session states mirrored: none"};
   return std::nullopt;
 }
 
@@ -184,41 +190,101 @@ std::optional<Mirroring> mirroringOnChip(const CalibrationInput& input, const Al
   return axis ? mirroringOf(*axis) : std::nullopt;
 }
 
+// "mirrored: x"
+std::string keyWords(Mirroring reversal) {
+  return std::string("mirrored: ") + kMirroringNames[static_cast<std::size_t>(reversal)];
+}
+
 // Which mirroring it is only a mount or another camera on the chip shows; any other leads to another camera frame.
-CalibrationError mirroredImage(const CalibrationInput& input, const AlignedCamera& camera,
-                               const std::optional<Mirroring>& how, const std::string& reason) {
+CalibrationError mirroredImage(const CalibrationInput& input, const StatedSigns& stated,
+                               const AlignedCamera& camera, const std::optional<Mirroring>& how,
+                               const std::string& reason) {
   const std::string& name = input.cameras[camera.camera].name;
+  const std::string key = "cameras." + name + ".mirrored";
+  if (const auto reversal = stated.reversal(camera.camera))
+    return calibrationFailed(name,
+                             fmt::format("{} is wrong: the image is mirrored after this reversal: {}",
+                                         keyWords(*reversal), reason),
+                             "Remove the key mirrored of this camera, or set it to none")
+        .repairedBy(Repair{key, kMirroringNames.front()});
   std::optional<Repair> repair;
-  if (how) repair = Repair{"cameras." + name + ".mirrored", kMirroringNames[static_cast<std::size_t>(*how)]};
+  if (how) repair = Repair{key, kMirroringNames[static_cast<std::size_t>(*how)]};
   return calibrationFailed(name, fmt::format("the image is mirrored{}: {}", directionWords(how), reason),
                            kReverse)
       .repairedBy(repair);
 }
 
-std::string namesOf(const CalibrationInput& input, std::span<const SignedCamera> cameras, int sign) {
+std::string namesOf(const CalibrationInput& input, std::span<const std::size_t> cameras) {
   std::string names;
-  for (const SignedCamera& each : cameras)
-    if (each.sign == sign) names += (names.empty() ? "" : ", ") + input.cameras[each.camera->camera].name;
+  for (const std::size_t each : cameras) names += (names.empty() ? "" : ", ") + input.cameras[each].name;
   return names;
 }
 
-// If nothing distinguishes a mirrored image from negated accelerations.
-CalibrationError eitherOfBoth(const CalibrationInput& input, std::span<const SignedCamera> cameras) {
-  const std::string negative = namesOf(input, cameras, -1), positive = namesOf(input, cameras, 1);
-  const bool several = negative.find(',') != std::string::npos;
-  const std::string images =
-      fmt::format("the image{} of {} {} mirrored", several ? "s" : "", negative, several ? "are" : "is");
+// "mirrored: x is wrong for left", "the images of left, right are mirrored"
+std::string wrongImages(const CalibrationInput& input, const StatedSigns& stated,
+                        std::span<const std::size_t> cameras) {
+  std::string keys;
+  std::vector<std::size_t> unstated;
+  for (const std::size_t each : cameras) {
+    if (const auto reversal = stated.reversal(each))
+      keys += fmt::format("{}{} is wrong for {}", keys.empty() ? "" : " and ", keyWords(*reversal),
+                          input.cameras[each].name);
+    else
+      unstated.push_back(each);
+  }
+  if (unstated.empty()) return keys;
+  return fmt::format("{}{}the image{} of {} {} mirrored", keys, keys.empty() ? "" : " and ",
+                     unstated.size() > 1 ? "s" : "", namesOf(input, unstated),
+                     unstated.size() > 1 ? "are" : "is");
+}
+
+std::vector<std::size_t> withSign(std::span<const SignedCamera> cameras, int sign) {
+  std::vector<std::size_t> found;
+  for (const SignedCamera& each : cameras)
+    if (each.sign == sign) found.push_back(each.camera->camera);
+  return found;
+}
+
+// If nothing distinguishes a mirrored image from negated accelerations. A stated reversal comes first.
+CalibrationError eitherOfBoth(const CalibrationInput& input, const StatedSigns& stated,
+                              std::span<const SignedCamera> cameras) {
+  const std::vector<std::size_t> negative = withSign(cameras, -1), positive = withSign(cameras, 1);
+  const auto reversed =
+      std::ranges::find_if(negative, [&](std::size_t each) { return stated.reversal(each).has_value(); });
+  const bool is_stated = reversed != negative.end();
+  const std::string& imu = input.imus[input.reference_imu].name;
+  const std::string images = wrongImages(input, stated, negative);
+  constexpr const char* kBoth = "both give the same data";
+  const std::string problem =
+      !positive.empty() ? fmt::format("either {}, or {}, and the session wrongly inverts the accelerations",
+                                      images, wrongImages(input, stated, positive))
+      : is_stated       ? fmt::format("{}, or the accelerations of {} are negated: {}", images, imu, kBoth)
+                        : fmt::format("the accelerations seem negated, or {}: {}", images, kBoth);
+  const char* const readable =
+      "change the sign of the accelerations (at rest, an accelerometer measures +g "
+      "upwards)";
+  const std::string picture =
+      "Hold printed text in front of the camera and look at its picture " + howTo(HowTo::LookAtDetections);
   return calibrationFailed(
-      input.imus[input.reference_imu].name,
-      positive.empty()
-          ? fmt::format("the accelerations seem negated, or {}: both give the same data", images)
-          : fmt::format("either {}, or that of {} is, and the session wrongly inverts the accelerations",
-                        images, positive),
-      fmt::format("Hold printed text in front of the camera and look at its picture {}. If the text is "
-                  "mirrored, turn this off in the driver, or set mirrored: x, y or transposed for the "
-                  "camera. If it is readable, set mirrored: none for the camera, and change the sign of "
-                  "the accelerations (at rest, an accelerometer measures +g upwards)",
-                  howTo(HowTo::LookAtDetections)));
+      is_stated ? input.cameras[*reversed].name : imu, problem,
+      is_stated ? fmt::format("{}, which shows the reversed image. If the text is mirrored, remove the key "
+                              "mirrored. If it is readable, {}",
+                              picture, readable)
+                : fmt::format("{}. If the text is mirrored, turn this off in the driver, or set mirrored: x, "
+                              "y or transposed for the camera. If it is readable, set mirrored: none for the "
+                              "camera, and {}",
+                              picture, readable));
+}
+
+// True if a further IMU's accelerations, which the session does not invert, agree with the reference's.
+bool anotherImuConfirms(const CalibrationInput& input, const StatedSigns& stated,
+                        const CalibrationState& state) {
+  for (std::size_t k = 0; k < input.imus.size(); ++k)
+    if (k != input.reference_imu && !stated.invertsForces(k) &&
+        !forcesOppose(input.imus[input.reference_imu], input.imus[k],
+                      state.imus[k].reference_from_imu.rotation, state.imus[k].time_offset_s))
+      return true;
+  return false;
 }
 
 }  // namespace
@@ -255,12 +321,12 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
   if (!evidence && right != all.end() && !stated.invertsForces(input.reference_imu))
     evidence = SignEvidence{false, fmt::format("accelerations contradict it, but agree with {}",
                                                input.cameras[right->camera->camera].name)};
-  if (!evidence) return eitherOfBoth(input, all);
+  if (!evidence) return eitherOfBoth(input, stated, all);
   if (evidence->negated) return negatedAccelerations(input.imus[input.reference_imu].name, evidence->reason);
   std::optional<Mirroring> how = mirrored->evidence ? mirrored->evidence->how : std::optional<Mirroring>();
   for (const SignedCamera& other : all)
     if (!how && other.sign > 0) how = mirroringOnChip(input, *mirrored->camera, *other.camera);
-  return mirroredImage(input, *mirrored->camera, how,
+  return mirroredImage(input, stated, *mirrored->camera, how,
                        mirrored->evidence ? mirrored->evidence->reason : evidence->reason);
 }
 
@@ -289,7 +355,6 @@ bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& came
 CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns& stated,
                                const AlignedCamera& first, const AlignedCamera& camera) {
   const auto of_first = evidenceOf(input, stated, first), of_camera = evidenceOf(input, stated, camera);
-  const std::string &one = input.cameras[first.camera].name, &other = input.cameras[camera.camera].name;
   const auto cause = [&](const AlignedCamera& mirrored, const AlignedCamera& right,
                          const std::optional<ImageEvidence>& of_mirrored,
                          const std::optional<ImageEvidence>& of_right) {
@@ -297,7 +362,7 @@ CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns&
     if (!how) how = mirroringOnChip(input, mirrored, right);
     const std::string& name = input.cameras[right.camera].name;
     return mirroredImage(
-        input, mirrored, how,
+        input, stated, mirrored, how,
         fmt::format("it shows the board as if seen from behind, compared with {}, and {}", name,
                     of_mirrored
                         ? of_mirrored->reason
@@ -307,18 +372,23 @@ CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns&
     return cause(camera, first, of_camera, of_first);
   if ((of_first && of_first->mirrored) || (of_camera && !of_camera->mirrored && !of_first))
     return cause(first, camera, of_first, of_camera);
+  const bool first_is_reversed = stated.reversal(first.camera).has_value();
+  const bool is_reversed = first_is_reversed || stated.reversal(camera.camera).has_value();
+  const std::array pair =
+      first_is_reversed ? std::array{first.camera, camera.camera} : std::array{camera.camera, first.camera};
   return calibrationFailed(
-      other,
-      fmt::format("the image of {} or of {} is mirrored: one shows the board as if seen from behind", other,
-                  one),
-      fmt::format("Hold printed text in front of both and look at their pictures {}. Turn the mirroring "
-                  "off in the driver, or set mirrored: x, y or transposed for the camera whose text is not "
-                  "readable",
-                  howTo(HowTo::LookAtDetections)));
+      input.cameras[pair[0]].name,
+      fmt::format("either {}, or {}: one shows the board as if seen from behind",
+                  wrongImages(input, stated, {pair.data(), 1}), wrongImages(input, stated, {&pair[1], 1})),
+      fmt::format("Hold printed text in front of both and look at their pictures {}. {} for the camera whose "
+                  "text is not readable",
+                  howTo(HowTo::LookAtDetections),
+                  is_reversed ? "These show reversed images. Remove or correct mirrored"
+                              : "Turn the mirroring off in the driver, or set mirrored: x, y or transposed"));
 }
 
-void checkGivenRotation(const CalibrationInput& input, const AlignedCamera& camera, const GyroRotation& gyro,
-                        const InitialisationOptions& options) {
+void checkGivenRotation(const CalibrationInput& input, const StatedSigns& stated, const AlignedCamera& camera,
+                        const GyroRotation& gyro, const InitialisationOptions& options) {
   const CameraData& data = input.cameras[camera.camera];
   if (!isGiven(data.prior.rotation)) return;
   SensorPrior free = data.prior;
@@ -329,18 +399,22 @@ void checkGivenRotation(const CalibrationInput& input, const AlignedCamera& came
   const Eigen::Quaterniond turn = data.prior.rotation->value.conjugate() * found->reference_from_sensor;
   const auto axis = halfTurnInImage(turn);
   if (!axis) return;
+  const auto reversal = stated.reversal(camera.camera);
   throw MirrorError(calibrationFailed(
       data.name,
-      fmt::format("the image seems mirrored{}, or the given rotation is wrong: it differs by {:.0f} deg from "
-                  "that of the images",
-                  directionWords(mirroringOf(*axis)),
+      fmt::format("{}, or the given rotation is wrong: it differs by {:.0f} deg from that of the images",
+                  reversal ? keyWords(*reversal) + " is wrong"
+                           : "the image seems mirrored" + directionWords(mirroringOf(*axis)),
                   kDegPerRad * rotationAngleBetween_rad(turn, Eigen::Quaterniond::Identity())),
-      std::string("Check whether writing is readable in the camera's picture. If not: ") + kReverse +
-          ". Otherwise correct prior.cameras." + data.name + ".rotation"));
+      fmt::format("Check whether writing is readable in the camera's picture. {}. Otherwise correct "
+                  "prior.cameras.{}.rotation",
+                  reversal ? "If so, remove the key mirrored" : std::string("If not: ") + kReverse,
+                  data.name)));
 }
 
 std::string mirrorDoubt(const CalibrationInput& input, const StatedSigns& stated,
-                        std::span<const AlignedCamera> cameras, const CalibrationState& state) {
+                        std::span<const AlignedCamera> cameras, const CalibrationState& state,
+                        bool forces_confirm) {
   std::vector<SignedCamera> all;
   for (const AlignedCamera& camera : cameras) all.push_back({&camera, 1, evidenceOf(input, stated, camera)});
   for (const SignedCamera& each : all)
@@ -348,23 +422,27 @@ std::string mirrorDoubt(const CalibrationInput& input, const StatedSigns& stated
       return fmt::format("the image of {} seems mirrored{}, and the accelerations negated: {}",
                          input.cameras[each.camera->camera].name, directionWords(each.evidence->how),
                          each.evidence->reason);
-  const ImuData& reference = input.imus[input.reference_imu];
-  if (!stated.invertsForces(input.reference_imu) || signFromCameras(input, all)) return {};
-  for (std::size_t k = 0; k < input.imus.size(); ++k) {
-    const ImuState& imu = state.imus[k];
-    if (k != input.reference_imu && !stated.invertsForces(k) &&
-        !forcesOppose(reference, input.imus[k], imu.reference_from_imu.rotation, imu.time_offset_s))
-      return {};
-  }
+  if (signFromCameras(input, all)) return {};
+  const std::vector<std::size_t> seeing = withSign(all, 1);
+  const auto reversed =
+      std::ranges::find_if(seeing, [&](std::size_t each) { return stated.reversal(each).has_value(); });
+  const bool inverts = stated.invertsForces(input.reference_imu) && !anotherImuConfirms(input, stated, state);
+  if (!inverts && (forces_confirm || reversed == seeing.end())) return {};
+  if (reversed == seeing.end())
+    return fmt::format(
+        "{}: the session inverts the accelerations, and nothing shows that the image of {} is not mirrored: "
+        "with recorded accelerations and a mirrored image the data are the same, but the rotation differs by "
+        "180 deg; hold printed text in front of the camera: if it is readable in the picture, set mirrored: "
+        "none for the camera, otherwise mirrored: x, y or transposed, without inverting the accelerations",
+        input.imus[input.reference_imu].name, namesOf(input, seeing));
   return fmt::format(
-      "{}: the session inverts the accelerations, and nothing shows that the image of {} is not mirrored: "
-      "with "
-      "recorded accelerations and a mirrored image the data are the same, but the rotation differs by 180 "
-      "deg; "
-      "hold printed text in front of the camera: if it is readable in the picture, set mirrored: none for "
-      "the "
-      "camera, otherwise mirrored: x, y or transposed, without inverting the accelerations",
-      reference.name, namesOf(input, all, 1));
+      "{}: {} may be wrong: {}, and nothing else shows how the image is mirrored; if it is not, the rotation "
+      "is wrong by 180 deg; hold printed text in front of the camera: if it is readable in the picture of "
+      "the driver, remove the key mirrored{}; otherwise turn the mirroring off in the driver, or confirm the "
+      "mount by prior.cameras.{}.rotation",
+      input.cameras[*reversed].name, keyWords(*stated.reversal(*reversed)),
+      inverts ? "the session also inverts the accelerations" : "the accelerations do not confirm it",
+      inverts ? ", and do not invert the accelerations" : "", input.cameras[*reversed].name);
 }
 
 }  // namespace evical

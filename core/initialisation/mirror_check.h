@@ -6,6 +6,7 @@
 #include "core/base/progress.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
+#include "core/data/mirroring.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/world_rotation.h"
 
@@ -18,11 +19,17 @@ namespace evical {
 
 // Statements of a session about signs; by default there are none.
 struct StatedSigns {
-  std::vector<bool> mirroring;  // by camera: stated and reversed on reading, so that it is not mirrored
+  std::vector<std::optional<Mirroring>> mirroring;  // by camera: stated, and reversed on reading
   std::vector<bool>
       inverted_forces;  // by IMU: the recorded accelerations were given another sign or handedness
 
-  bool statesMirroring(std::size_t camera) const { return camera < mirroring.size() && mirroring[camera]; }
+  bool isReadable(std::size_t camera) const {
+    return camera < mirroring.size() && mirroring[camera] == Mirroring::None;
+  }
+  // Absent for images that are not reversed. Unlike the statement that text is readable, it may be a guess.
+  std::optional<Mirroring> reversal(std::size_t camera) const {
+    return camera < mirroring.size() && !isReadable(camera) ? mirroring[camera] : std::nullopt;
+  }
   bool invertsForces(std::size_t imu) const { return imu < inverted_forces.size() && inverted_forces[imu]; }
 };
 
@@ -51,13 +58,15 @@ CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns&
                                const AlignedCamera& first, const AlignedCamera& camera);
 
 // Throws CalibrationFailed if a given rotation contradicts the gyroscope as if the image were mirrored.
-void checkGivenRotation(const CalibrationInput& input, const AlignedCamera& camera, const GyroRotation& gyro,
-                        const InitialisationOptions& options);
+void checkGivenRotation(const CalibrationInput& input, const StatedSigns& stated, const AlignedCamera& camera,
+                        const GyroRotation& gyro, const InitialisationOptions& options);
 
-// Doubt about a state whose accelerations agree: the session inverts them, and nothing shows that images are
-// not mirrored; or a prior shows that they are. May be empty.
+// Doubt about a state whose accelerations agree: the session inverts them, or it reverses an image that their sign does
+// not confirm (`forces_confirm`), and nothing else shows that images are not mirrored; or a prior shows that they
+// are. May be empty.
 std::string mirrorDoubt(const CalibrationInput& input, const StatedSigns& stated,
-                        std::span<const AlignedCamera> cameras, const CalibrationState& state);
+                        std::span<const AlignedCamera> cameras, const CalibrationState& state,
+                        bool forces_confirm);
 
 // True if the specific forces of two IMUs, after this rotation, have opposite signs.
 bool forcesOppose(const ImuData& reference, const ImuData& imu, const Eigen::Quaterniond& reference_from_imu,

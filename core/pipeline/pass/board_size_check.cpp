@@ -96,7 +96,8 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board,
     if (fault.kind == FaultKind::BoardSize && fault.text.starts_with(prefix))
       throw calibrationFailed(observations.camera, never + ": " + fault.text.substr(prefix.size()),
                               "Correct the board " + howTo(HowTo::EditBoard) +
-                                  ", the printed board or the driver of the camera accordingly");
+                                  ", the printed board, or the driver or the key mirrored of the camera "
+                                  "accordingly");
   int lattices = 0;
   for (const WindowReport& window : observations.windows) {
     lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||

@@ -47,7 +47,7 @@ CalibrationInput makeInput(const Session& session, DetectionResult& pass) {
 
 StatedSigns statedSigns(const Session& session) {
   StatedSigns stated;
-  for (const SessionCamera& camera : session.cameras) stated.mirroring.push_back(camera.mirrored.has_value());
+  for (const SessionCamera& camera : session.cameras) stated.mirroring.push_back(camera.mirrored);
   for (const SessionImu& imu : session.imus) {
     Eigen::Matrix3d axes;
     for (Eigen::Index i = 0; i < 3; ++i)

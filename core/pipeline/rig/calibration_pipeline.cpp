@@ -505,8 +505,8 @@ class Calibration {
     for (const SessionCamera& camera : session_.cameras)
       if (camera.mirrored.value_or(Mirroring::None) != Mirroring::None)
         result.notes.push_back(
-            fmt::format("{}: its image is mirrored ({}), which is reversed on reading; reverse it before "
-                        "using this result, too",
+            fmt::format("{}: the session states that its image is mirrored ({}), which is reversed on "
+                        "reading; reverse it before using this result, too",
                         camera.name, kMirroringNames[static_cast<std::size_t>(*camera.mirrored)]));
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());

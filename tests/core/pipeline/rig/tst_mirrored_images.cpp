@@ -2,7 +2,10 @@
 // a wrong result is never ok, the true cause is named, and a repair is offered only if nothing else explains
 // the data.
 #include "core/base/error.h"
+#include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/report/report_options.h"
@@ -17,6 +20,9 @@ namespace {
 using namespace evical;
 using test::SimulatedPass;
 
+const char* nameOf(Mirroring how) {
+  return kMirroringNames[static_cast<std::size_t>(how)];
+}
 constexpr Mirroring kAll[] = {Mirroring::X, Mirroring::Y, Mirroring::Transposed};
 
 void negate(ImuData& imu) {
@@ -24,6 +30,11 @@ void negate(ImuData& imu) {
 }
 void mirror(Mirroring how, std::size_t camera, SimulatedPass& rig) {
   test::mirrorImage(how, camera, false, rig.session, rig.pass);
+}
+// The session reverses a camera's image that is not mirrored.
+void stateWrongly(Mirroring how, std::size_t camera, SimulatedPass& rig) {
+  mirror(how, camera, rig);
+  rig.session.cameras[camera].mirrored = how;
 }
 // The session's reading of the accelerometer, which has been applied to the samples.
 void declareNegated(SessionImu& imu) {
@@ -107,6 +118,11 @@ class TestMirroredImages : public QObject {
       QVERIFY2(!outcome.ok(), scenario);
       QVERIFY2(!outcome.repair.contains("axes"), qPrintable(outcome.repair));
       if (!outcome.failure.isEmpty()) VERIFY_NAMES(outcome.failure, "negated", "mirrored");
+      mirrored.session.cameras.front().mirrored = Mirroring::Y;
+      const Outcome stated = outcomeOf(mirrored);
+      QVERIFY2((stated.failure + stated.reason).startsWith("left: mirrored: y"),
+               qPrintable(stated.failure + stated.reason));
+      QCOMPARE(stated.repair, QString());
     }
   }
 
@@ -155,6 +171,73 @@ class TestMirroredImages : public QObject {
     negated.session.cameras.front().mirrored = Mirroring::None;
     negate(negated.pass.imus.front());
     QCOMPARE(outcomeOf(negated).repair, QString("imus.left_imu.accelerometer_axes=-x,-y,-z"));
+  }
+
+  // A stated reversal may be a guess, so it does not show that accelerations are negated. It is named first.
+  void wrongReversal_fails() {
+    for (const Mirroring how : kAll) {
+      SimulatedPass wrong = single_;
+      stateWrongly(how, 0, wrong);
+      const Outcome outcome = outcomeOf(wrong);
+      QVERIFY2(
+          outcome.failure.startsWith(QString("left: mirrored: %1 is wrong for left, or").arg(nameOf(how))),
+          qPrintable(outcome.failure));
+      VERIFY_NAMES(outcome.failure, "the accelerations of left_imu are negated", "remove the key mirrored");
+      QCOMPARE(outcome.repair, QString());
+      stateMount(wrong, 5.0);
+      const Outcome mounted = outcomeOf(wrong);
+      VERIFY_NAMES(mounted.failure, "left: mirrored:", "is wrong", "prior");
+      QCOMPARE(mounted.repair, QString("cameras.left.mirrored=none"));
+      stateMount(wrong, {});
+      VERIFY_NAMES(outcomeOf(wrong).failure, "left: mirrored:", "is wrong, or the given rotation is",
+                   "180 deg");
+    }
+  }
+
+  void wrongReversalWithNegation_isDoubtful_unlessConfirmed() {
+    SimulatedPass wrong = single_;
+    stateWrongly(Mirroring::Y, 0, wrong);
+    negate(wrong.pass.imus.front());
+    declareNegated(wrong.session.imus.front());
+    const Outcome misled = outcomeOf(wrong);
+    QVERIFY(errorOf_deg(wrong, misled) > 179.0);
+    QVERIFY2(misled.reason.startsWith("left: mirrored: y may be wrong"), qPrintable(misled.reason));
+    VERIFY_NAMES(misled.reason, "the session also inverts the accelerations", "prior.cameras.left.rotation");
+    QCOMPARE(misled.repair, QString());
+
+    SimulatedPass right = single_;  // a mirrored image that was reversed, and an inverted accelerometer
+    right.session.cameras.front().mirrored = Mirroring::Y;
+    declareNegated(right.session.imus.front());
+    VERIFY_NAMES(outcomeOf(right).reason, "mirrored: y may be wrong");
+    stateMount(right, 5.0);
+    Outcome confirmed = outcomeOf(right);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+    right.session.cameras.front().prior = {};
+    right.session.imus.front().accelerometer_axes = kIdentityAxes;  // recorded accelerations confirm it
+    confirmed = outcomeOf(right);
+    QVERIFY2(confirmed.ok(), qPrintable(confirmed.failure + confirmed.reason));
+  }
+
+  void wrongReversalOfOneOfTwo_isNamed() {
+    SimulatedPass stereo = rig("stereo_two_imus");
+    stereo.session.imus.resize(1);
+    stereo.pass.imus.resize(1);
+    for (const std::size_t camera : {0U, 1U}) {
+      SimulatedPass wrong = stereo;
+      stateWrongly(Mirroring::X, camera, wrong);
+      const QString name = QString::fromStdString(stereo.session.cameras[camera].name);
+      const Outcome outcome = outcomeOf(wrong);
+      QVERIFY2(outcome.failure.startsWith(name + ": mirrored: x is wrong"), qPrintable(outcome.failure));
+      QCOMPARE(outcome.repair, QString("cameras.%1.mirrored=none").arg(name));
+      wrong.session.imus.clear();
+      wrong.pass.imus.clear();
+      wrong.session.reference = stereo.session.cameras.front().name;
+      const Outcome alone = outcomeOf(wrong);
+      QVERIFY2(alone.failure.startsWith(name + ": either mirrored: x is wrong for " + name),
+               qPrintable(alone.failure));
+      wrong.session.cameras[1 - camera].mirrored = Mirroring::None;
+      QCOMPARE(outcomeOf(wrong).repair, QString("cameras.%1.mirrored=none").arg(name));
+    }
   }
 
   // Accelerations that are negated to make a mirrored camera fit do not give an ok result.
@@ -227,6 +310,30 @@ class TestMirroredImages : public QObject {
     QVERIFY(outcomeOf(hybrid).repair.endsWith("accelerometer_axes=-x,-y,-z"));
   }
 
+  // A lens alone has no motion to contradict it: it is that of the image that the driver delivers, or of the reversed one.
+  void lensAlone_isThatOfTheImage() {
+    for (const Mirroring how : kAll) {
+      SimulatedPass mirrored = single_;
+      mirror(how, 0, mirrored);
+      const CameraIntrinsics delivered = *mirrored.session.cameras.front().intrinsics;
+      const IntrinsicsResult found =
+          estimateIntrinsics({mirrored.session.board, delivered.resolution_px, mirrored.pass.cameras.front(),
+                              delivered, std::nullopt},
+                             *mirrored.session.options.intrinsics, RunContext{});
+      QVERIFY2(projectionDifference(found.intrinsics, delivered).rms_px < 0.5, nameOf(how));
+    }
+  }
+
+  // Rows count in the reversed image. A mirror in front of the camera, unlike a driver, reverses the order of the read-out.
+  void readOutFromBelow_hasANegativeLineDelay() {
+    SimulatedPass rolling = rig("rolling_shutter");
+    for (BoardView& view : rolling.pass.cameras.front().views)
+      for (CircleObservation& circle : view.circles) circle.rows_below_middle *= -1.0;
+    const CalibrationRun run = calibrate(rolling.session, rolling.pass, RunContext{});
+    QVERIFY(run.result.status == CalibrationStatus::Ok);
+    QVERIFY(std::abs(run.result.state.cameras.front().line_delay_us + 30.0) < 0.5);  // us
+  }
+
   void framesOfTheSensor_showTheDirection() {
     const SimulatedPass davis = rig("davis346_frames");
     for (const Mirroring how : {Mirroring::X, Mirroring::Y}) {
@@ -234,7 +341,11 @@ class TestMirroredImages : public QObject {
       test::mirrorImage(how, 0, true, mirrored.session, mirrored.pass);
       const Outcome outcome = outcomeOf(mirrored);
       VERIFY_NAMES(outcome.failure, "left: the image is mirrored");
-      QCOMPARE(outcome.repair, QString("cameras.left.mirrored=%1").arg(how == Mirroring::X ? "x" : "y"));
+      QCOMPARE(outcome.repair, QString("cameras.left.mirrored=%1").arg(nameOf(how)));
+      mirrored.session.cameras.front().mirrored = how;  // wrongly: it mirrors what was right
+      const Outcome stated = outcomeOf(mirrored);
+      VERIFY_NAMES(stated.failure, "left: mirrored:", "is wrong", "agree with");
+      QCOMPARE(stated.repair, QString("cameras.left.mirrored=none"));
     }
   }
 
