@@ -198,6 +198,17 @@ void bindSensors(py::module_& module) {
           "accelerometer_noise_density", [](const SessionImu& i) { return i.noise.accelerometer_density; },
           [](SessionImu& i, double density) { i.noise.accelerometer_density = density; }, "m/s^2/sqrt(Hz).")
       .def_readwrite("recording", &SessionImu::recording, "Separate recording; empty: the session's.")
+      .def_readwrite("accelerometer_recording", &SessionImu::accelerometer_recording,
+                     "The accelerometer's own file; empty: `recording` has both sensors.")
+      .def_readwrite("columns", &SessionImu::columns,
+                     "Header of a text table that replaces the file's; empty: the file's.")
+      .def_readwrite("accelerometer_columns", &SessionImu::accelerometer_columns,
+                     "The same for the accelerometer's own file.")
+      .def_readonly("acceleration_factor", &SessionImu::acceleration_factor,
+                    "Of the unit, for raw counts; Session.set(\"imus.NAME.acceleration_unit\", \"0.002 g\") "
+                    "sets both.")
+      .def_readonly("angular_rate_factor", &SessionImu::angular_rate_factor,
+                    "Of the unit, for raw counts; Session.set sets both.")
       .def_readwrite("clock_offset_s", &SessionImu::clock_offset_s,
                      "Known offset that is added to the stream's times.");
 }

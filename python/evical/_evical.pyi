@@ -136,6 +136,13 @@ class SessionImu:
     gyroscope_noise_density: float
     accelerometer_noise_density: float
     recording: _Path
+    accelerometer_recording: _Path
+    columns: str
+    accelerometer_columns: str
+    @property
+    def acceleration_factor(self) -> float: ...
+    @property
+    def angular_rate_factor(self) -> float: ...
     clock_offset_s: float
 
 class Session:

@@ -29,6 +29,24 @@ def test_a_session_saved_is_the_session_loaded(session, tmp_path):
     assert pathlib.Path(loaded.source) == file
 
 
+def test_an_imu_of_two_files_and_raw_counts_is_saved(session, tmp_path):
+    imu = session.imus["left_imu"]
+    assert imu.acceleration_factor == 1 and not str(imu.columns)
+    imu.stream, imu.accelerometer_stream = "gyr.csv", "acc.csv"
+    imu.recording, imu.accelerometer_recording = tmp_path / "gyr.csv", tmp_path / "acc.csv"
+    imu.columns, imu.accelerometer_columns = "t_ns,gx,gy,gz", "t_ns,ax,ay,az"
+    session.set("imus.left_imu.acceleration_unit", "0.0005 g")
+    session.set("imus.left_imu.angular_rate_unit", "0.03 deg/s")
+    assert (imu.acceleration_factor, imu.angular_rate_factor) == (0.0005, 0.03)
+    for name in ("gyr.csv", "acc.csv"):
+        (tmp_path / name).write_text("")
+    session.save(tmp_path / "session.yaml")
+    loaded = evical.Session.load(tmp_path / "session.yaml").imus["left_imu"]
+    for key in ("columns", "accelerometer_columns", "acceleration_factor", "angular_rate_factor"):
+        assert getattr(loaded, key) == getattr(imu, key)
+    assert pathlib.Path(loaded.accelerometer_recording) == tmp_path / "acc.csv"
+
+
 def test_intrinsics_are_taken_and_taken_away(session):
     lens = session.cameras["left"].intrinsics
     session.cameras["left"].intrinsics = None
