@@ -63,6 +63,18 @@ bool isClock(const TableColumn& time) {
                      [&](std::string_view cell) { return parseClock(cell, ignored_ns); });
 }
 
+// The column of dates that belongs to times of day; absent if the table has none.
+std::optional<std::size_t> dateColumn(std::span<const TableColumn> table) {
+  constexpr std::size_t kDate = 10;
+  const auto is_date = [](std::string_view cell) {
+    std::int64_t ignored_ns = 0;
+    return cell.size() == kDate && parseDate(cell, ignored_ns);
+  };
+  for (std::size_t i = 0; i < table.size(); ++i)
+    if (!table[i].cells.empty() && std::ranges::all_of(table[i].cells, is_date)) return i;
+  return std::nullopt;
+}
+
 void noteImpossibleRate(const TableColumn& time, std::int64_t unit_ns, TextColumns& columns) {
   const std::vector<double>& values = time.values;
   if (values.size() < kFewestForRate) return;
@@ -169,7 +181,10 @@ TimeChoice chooseTime(const TableHeader& header, std::span<const TableColumn> ta
   const bool doubtful = std::any_of(order.begin(), order.end(), [&](const std::string& group) {
     return group != best && rank(group) == rank(best);
   });
-  return {groups[best], doubtful};
+  std::vector<std::size_t>& chosen = groups[best];
+  if (chosen.size() == 1 && chosen.front() < table.size() && isClock(table[chosen.front()]))
+    if (const std::optional<std::size_t> date = dateColumn(table)) chosen.insert(chosen.begin(), *date);
+  return {chosen, doubtful};
 }
 
 std::int64_t guessUnit_ns(const TableColumn& time, StreamType type) {
@@ -214,7 +229,7 @@ void checkTimes(const TableHead& head, TextColumns& columns) {
   if (head.rows == 0 || columns.type == StreamType::Other) return;
   for (TimeColumn& part : columns.time) {
     const TableColumn& time = head.columns[part.column];
-    columns.clock_times = columns.clock_times || isClock(time);
+    columns.clock_times = columns.time.size() == 1 && isClock(time);  // not with a column of dates
     if (columns.time.size() > 1 || part.unit_ns != kSecond_ns) continue;
     part.fraction_digits = digitsWithoutZeros(time);
     if (part.fraction_digits == 0) continue;

@@ -13,6 +13,22 @@ namespace {
 constexpr unsigned kBuffer_bytes = 1U << 17;
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // zlib counts in int
 
+// Place of the high byte in units of UTF-16 without a mark: the bytes there are 0, and the others are ASCII. -1 for other texts.
+int highByteOf(std::string_view first_bytes) {
+  constexpr std::size_t kFewest = 8;
+  const auto all = [&](std::size_t from, auto is) {
+    for (std::size_t i = from; i < first_bytes.size(); i += 2)
+      if (!is(first_bytes[i])) return false;
+    return true;
+  };
+  const auto is_zero = [](char c) { return c == '\0'; };
+  const auto is_ascii = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r' || c == '\n'; };
+  if (first_bytes.size() < kFewest) return -1;
+  for (const std::size_t high : {0U, 1U})
+    if (all(high, is_zero) && all(1 - high, is_ascii)) return static_cast<int>(high);
+  return -1;
+}
+
 }  // namespace
 
 bool isGzip(std::string_view first_bytes) {
@@ -29,17 +45,16 @@ void TextBytes::Closing::operator()(gzFile_s* file) const {
   gzclose(file);
 }
 
-// Files that are not packed are read unchanged. A byte order mark identifies UTF-16.
+// Files that are not packed are read unchanged. A byte order mark, or zeros, identify UTF-16.
 TextBytes::TextBytes(const std::filesystem::path& path) : file_(gzopen(path.c_str(), "rb")) {
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   gzbuffer(file_.get(), kBuffer_bytes);
   size_ = std::filesystem::file_size(path);
-  std::array<char, 2> mark{};
-  const bool marked = readUnpacked(mark.data(), mark.size()) == mark.size();
-  high_byte_ = marked && mark == std::array{'\xFF', '\xFE'}   ? 1
-               : marked && mark == std::array{'\xFE', '\xFF'} ? 0
-                                                              : -1;
-  if (high_byte_ < 0) gzrewind(file_.get());
+  std::array<char, 64> begin{};
+  const std::string_view first(begin.data(), readUnpacked(begin.data(), begin.size()));
+  const bool marked = first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF");
+  high_byte_ = !marked ? highByteOf(first) : first.front() == '\xFF' ? 1 : 0;
+  gzseek(file_.get(), marked ? 2 : 0, SEEK_SET);
   damaged_ = false;
 }
 

@@ -1,5 +1,5 @@
 // Bytes of a text file from begin to end, unpacked if it is packed with gzip. UTF-16, as PowerShell and Excel write it,
-// becomes UTF-8.
+// becomes UTF-8, also without a byte order mark.
 #pragma once
 
 #include <cstddef>

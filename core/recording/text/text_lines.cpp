@@ -125,7 +125,13 @@ int digitsOf(std::int64_t unit_ns) {
 
 bool parseDate(std::string_view text, std::int64_t& time_ns) {
   // "2026-03-01T10:00:00"
-  constexpr std::size_t kSeconds = 17;
+  constexpr std::size_t kSeconds = 17, kDate = 10;
+  constexpr std::string_view kMidnight = "T00:00:00";
+  if (text.size() == kDate) {
+    std::array<char, kDate + kMidnight.size()> whole{};
+    std::ranges::copy(kMidnight, std::ranges::copy(text, whole.begin()).out);
+    return parseDate({whole.data(), whole.size()}, time_ns);
+  }
   if (text.size() < kSeconds + 2 || (text[4] != '-' && text[4] != '/' && text[4] != '.') ||
       text[7] != text[4] || (text[10] != 'T' && text[10] != ' ') || text[13] != ':' || text[16] != ':')
     return false;

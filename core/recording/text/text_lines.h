@@ -53,7 +53,7 @@ bool parseTime(std::string_view text, int digits, std::int64_t& time_ns);
 int digitsOf(std::int64_t unit_ns);
 
 // ISO 8601 date and time, "2026-03-01T10:00:00.25Z" or with a blank for the T, as ns since 1970; UTC without
-// a zone.
+// a zone. A date alone is its midnight.
 bool parseDate(std::string_view text, std::int64_t& time_ns);
 
 // Time of day, "12:34:56.789", also with a decimal comma, with AM or PM, or with ":789" for milliseconds, as ns since

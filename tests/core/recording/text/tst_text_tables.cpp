@@ -219,6 +219,20 @@ void TestTextTables::times_areRead_data() {
       table("timestamp_ns,ax,ay,az,gx,gy,gz", 200,
             [](int i) { return fmt::format("2026/03/01 10:00:00.{:03}", 5 * i); }),
       1'772'359'200'000'000'000);
+  const auto dated = [&](const char* form, char separator) {
+    std::string header = "Date,Time,ax,ay,az,gx,gy,gz";
+    std::ranges::replace(header, ',', separator);
+    return table(header, 300, clock(36'000, form), numberAt, separator);
+  };
+  row("dates and times of day", dated("2026-03-01,{:02}:{:02}:{:02}.{:03}", ','), 1'772'359'200'000'000'000);
+  row("dates with slashes", dated("2026/03/01;{:02}:{:02}:{:02}.{:03}", ';'), 1'772'359'200'000'000'000);
+  row("dates and times of day across midnight",
+      table("Date,Time,ax,ay,az,gx,gy,gz", 400,
+            [](int i) {
+              return fmt::format("{}.{:03}", i < 200 ? "2026-02-28,23:59:59" : "2026-03-01,00:00:00",
+                                 5 * i % 1000);
+            }),
+      1'772'323'199'000'000'000);
   const auto parts = [](std::int64_t unit) {
     return [unit](int i) { return fmt::format("{}.{}", 100 + i / 200, i % 200 * 5 * unit); };
   };
@@ -242,6 +256,8 @@ void TestTextTables::times_areRead_data() {
   const std::string plain = table(kHeader, 300, [](int i) { return fmt::format("{:.3f}", 1.0 + 0.005 * i); });
   row("UTF-16, little endian", utf16(plain, false), 1'000'000'000);
   row("UTF-16, big endian", utf16(plain, true), 1'000'000'000);
+  row("UTF-16 without a mark", utf16(plain, false).substr(2), 1'000'000'000);
+  row("UTF-16 without a mark, big endian", utf16(plain, true).substr(2), 1'000'000'000);
 }
 
 void TestTextTables::times_areRead() {
