@@ -1,5 +1,6 @@
 #include "core/data/imu_stamps.h"
 
+#include "core/base/option_table.h"
 #include "core/base/time.h"
 #include "core/data/second_clock.h"
 #include "core/numerics/robust.h"
@@ -18,19 +19,35 @@ namespace {
 
 using Times = std::vector<std::int64_t>;
 
-constexpr std::int64_t kFineImuStamps_ns = 100'000;  // a tenth of a good recording's time offset sigma
+constexpr std::tuple kStampFields{
+    Field{"finest_step_ms", &StampOptions::finest_step_ms, 0.1, within(0.01, 10.0), "ms",
+          "Steps of stamps up to this size are not coarse: a tenth of a good recording's sigma of time "
+          "offsets."},
+    Field{"share_on_grid", &StampOptions::share_on_grid, 0.98, within(0.5, 1.0), "",
+          "Smallest share of the intervals that are multiples of a step; others are strays."},
+    Field{"share_of_equal", &StampOptions::share_of_equal, 0.1, within(0.0, 1.0), "",
+          "Smallest share of stamps that equal the one before; fewer are a driver's mistake."},
+    Field{"share_of_bends", &StampOptions::share_of_bends, 0.1, within(0.0, 1.0), "",
+          "Largest share of samples at which a steady rate bends; more if the samples' own times scatter."},
+    Field{"beat_scatter", &StampOptions::beat_scatter, 0.35, within(0.0, 1.0), "",
+          "Largest relative scatter of the distances between unusual intervals of a beat; 1 for losses."},
+    Field{"beat_share", &StampOptions::beat_share, 0.5, within(0.0, 1.0), "",
+          "Smallest share of the recording with a beat; a stretch of it may have another rate or clock."},
+    Field{"longest_beat", &StampOptions::longest_beat, 10.0, within(1.0, 1000.0), "samples",
+          "Longest constant distance between unusual intervals of a beat; a driver may drop each fiftieth "
+          "sample."},
+    Field{"gap_periods", &StampOptions::gap_periods, 2.5, within(1.0, 100.0), "periods",
+          "Smallest interval in which samples are missing, in addition to 1.5 steps."},
+    Field{"lost_periods", &StampOptions::lost_periods, 0.7, within(0.1, 1.0), "periods",
+          "Smallest delay of all later stamps that shows a lost sample without a gap."}};
+constexpr auto kStampDefaults = defaultsOf<StampOptions, kStampFields>();
+
 constexpr std::int64_t kStampError_ns =
     2'000;                                 // of a multiple of a step: times since 1970 in double precision
 constexpr std::size_t kFewestStamps = 50;  // that show a step
-constexpr double kShareOnGrid = 0.98;      // of intervals that are multiples of the step; others are strays
-constexpr double kShareOfEqual = 0.1;  // of stamps that equal the one before; fewer are a driver's mistake
 constexpr std::size_t kFewestBetween = 3;  // intervals that no number of lost samples explains
-constexpr double kShareOfBends =
-    0.1;  // of samples at which a steady rate bends, if their own times scatter by steps
 // Longer and shorter intervals at nearly equal distances are a beat between two rates; losses come at any distance.
 constexpr std::size_t kFewestRegular = 8;
-constexpr double kLeastVariance = 1e-3, kLongestOfTicks = 10.0, kLeastPart = 0.5;
-constexpr double kRegularScatter = 0.35;  // of the distances, relative to their mean; 1 for losses
 
 bool isMultiple(std::int64_t interval_ns, std::int64_t step_ns) {
   const std::int64_t rest_ns = interval_ns % step_ns;
@@ -57,12 +74,13 @@ struct Intervals {
 };
 
 // The largest step of which recurring intervals are multiples: Euclid's algorithm with a tolerance. 0 if it is fine.
-std::int64_t gridOf(const Intervals& intervals) {
+std::int64_t gridOf(const Intervals& intervals, const StampOptions& options) {
   if (intervals.recurring.empty()) return 0;
+  const double finest_ns = 1e6 * options.finest_step_ms;
   double step_ns = static_cast<double>(intervals.recurring.front());
   for (const std::int64_t interval_ns : intervals.recurring) {
     double longer_ns = static_cast<double>(interval_ns);
-    while (step_ns > static_cast<double>(kFineImuStamps_ns)) {
+    while (step_ns > finest_ns) {
       const double count = std::round(longer_ns / step_ns);
       const double rest_ns = std::abs(longer_ns - count * step_ns);
       if (rest_ns <= static_cast<double>(kStampError_ns)) {
@@ -73,16 +91,18 @@ std::int64_t gridOf(const Intervals& intervals) {
     }
   }
   const std::int64_t grid_ns = std::llround(step_ns);
-  if (grid_ns <= kFineImuStamps_ns + kStampError_ns) return 0;
+  if (grid_ns <= std::llround(finest_ns) + kStampError_ns) return 0;
   const auto on_grid =
       std::ranges::count_if(intervals.positive, [&](std::int64_t each) { return isMultiple(each, grid_ns); });
-  return static_cast<double>(on_grid) >= kShareOnGrid * static_cast<double>(intervals.positive.size())
+  return static_cast<double>(on_grid) >=
+                 options.share_on_grid * static_cast<double>(intervals.positive.size())
              ? grid_ns
              : 0;
 }
 
 // True if intervals that differ from the median come at nearly equal distances.
-bool haveBeat(const Intervals& intervals) {
+bool haveBeat(const Intervals& intervals, const StampOptions& options) {
+  constexpr double kConstant = 1e-3;  // variance
   std::vector<double> distances;
   std::size_t last = 0;
   for (std::size_t i = 0; i < intervals.all.size(); ++i) {
@@ -96,13 +116,14 @@ bool haveBeat(const Intervals& intervals) {
     squares += each * each;
   }
   // A stretch of a recording may have another rate or clock.
-  if (distances.size() < kFewestRegular || sum < kLeastPart * static_cast<double>(intervals.all.size()))
+  if (distances.size() < kFewestRegular ||
+      sum < options.beat_share * static_cast<double>(intervals.all.size()))
     return false;
   const double count = static_cast<double>(distances.size()), mean = sum / count;
   const double variance = squares / count - mean * mean;
   // A driver that drops every fiftieth sample has constant distances, a beat of two clocks hardly ever.
-  if (variance < kLeastVariance && mean > kLongestOfTicks) return false;
-  return variance < kRegularScatter * kRegularScatter * mean * mean;
+  if (variance < kConstant && mean > options.longest_beat) return false;
+  return std::sqrt(variance) < options.beat_scatter * mean;
 }
 
 // Equal stamps in a row that no longer interval next to them makes up for: more samples than a steady rate has.
@@ -120,36 +141,38 @@ std::size_t samplesTooMany(const Intervals& intervals) {
 }
 
 // 0 for stamps that are not coarse. `repeats`: samples that are sent twice, with the same values.
-std::int64_t stepOf(std::span<const std::int64_t> times_ns, std::size_t repeats) {
+std::int64_t stepOf(std::span<const std::int64_t> times_ns, std::size_t repeats,
+                    const StampOptions& options) {
   if (times_ns.size() < kFewestStamps) return 0;
   const Intervals intervals(times_ns);
   if (intervals.positive.size() < 2) return 0;
   const std::size_t zeros = intervals.all.size() - intervals.positive.size();
   const bool equal = static_cast<double>(zeros - std::min(zeros, repeats)) >=
-                     kShareOfEqual * static_cast<double>(intervals.all.size());
-  const std::int64_t grid_ns = gridOf(intervals);
+                     options.share_of_equal * static_cast<double>(intervals.all.size());
+  const std::int64_t grid_ns = gridOf(intervals, options);
   if (equal) return std::max(grid_ns, intervals.median_ns);
   if (grid_ns == 0) return 0;
   const auto between = static_cast<std::size_t>(std::ranges::count_if(
       intervals.positive, [&](std::int64_t each) { return !isMultiple(each, intervals.median_ns); }));
   const bool coarse = between >= kFewestBetween || samplesTooMany(intervals) >= repeats + kFewestBetween ||
-                      haveBeat(intervals);
+                      haveBeat(intervals, options);
   return coarse ? grid_ns : 0;
 }
 
 // Steps of parts of a recording: times with five digits become coarser as time goes on.
 class StampSteps {
  public:
-  StampSteps(const Times& times_ns, const std::vector<bool>& is_repeat) : size_(times_ns.size()) {
+  StampSteps(const Times& times_ns, const std::vector<bool>& is_repeat, const StampOptions& options)
+      : size_(times_ns.size()) {
     const auto repeatsIn = [&](std::size_t from, std::size_t to) {
       return static_cast<std::size_t>(std::count(is_repeat.begin() + static_cast<std::ptrdiff_t>(from),
                                                  is_repeat.begin() + static_cast<std::ptrdiff_t>(to), true));
     };
-    const std::int64_t whole_ns = stepOf(times_ns, repeatsIn(0, size_));
+    const std::int64_t whole_ns = stepOf(times_ns, repeatsIn(0, size_), options);
     for (std::size_t k = 0; k < kParts; ++k) {
       const std::size_t from = k * size_ / kParts, to = (k + 1) * size_ / kParts;
-      steps_ns_[k] =
-          std::max(whole_ns, stepOf(std::span(times_ns).subspan(from, to - from), repeatsIn(from, to)));
+      steps_ns_[k] = std::max(
+          whole_ns, stepOf(std::span(times_ns).subspan(from, to - from), repeatsIn(from, to), options));
     }
     // A change within a part.
     const std::array<std::int64_t, kParts> found_ns = steps_ns_;
@@ -167,13 +190,14 @@ class StampSteps {
 };
 
 // Number of each sample, with those missing in gaps.
-std::vector<double> sampleNumbers(const Times& times_ns, const StampSteps& steps) {
-  constexpr double kGap_periods = 2.5, kGap_steps = 1.5;
+std::vector<double> sampleNumbers(const Times& times_ns, const StampSteps& steps,
+                                  const StampOptions& options) {
+  constexpr double kGap_steps = 1.5;
   const double period_ns =
       static_cast<double>(times_ns.back() - times_ns.front()) / static_cast<double>(times_ns.size() - 1);
   const auto isGap = [&](std::size_t i, double usual_ns) {
     return static_cast<double>(times_ns[i] - times_ns[i - 1]) >
-           kGap_periods * usual_ns + kGap_steps * static_cast<double>(steps.at_ns(i));
+           options.gap_periods * usual_ns + kGap_steps * static_cast<double>(steps.at_ns(i));
   };
   double sum_ns = 0.0, count = 0.0;
   for (std::size_t i = 1; i < times_ns.size(); ++i) {
@@ -192,8 +216,8 @@ std::vector<double> sampleNumbers(const Times& times_ns, const StampSteps& steps
 
 // Adds samples that are lost without a gap in the stamps: from there on, all are later by a period. Means of some steps before
 // and after average the rounding.
-void addLost(const Times& times_ns, std::int64_t step_ns, std::vector<double>& numbers) {
-  constexpr double kFewest = 16.0, kLeast = 1.5, kLoss = 0.7, kNoise_medians = 6.0;
+void addLost(const Times& times_ns, std::int64_t step_ns, double least_loss, std::vector<double>& numbers) {
+  constexpr double kFewest = 16.0, kLeast = 1.5, kNoise_medians = 6.0;
   const std::size_t size = times_ns.size();
   const double mean_ns = static_cast<double>(times_ns.back() - times_ns.front()) / numbers.back();
   const double per_step = static_cast<double>(step_ns) / mean_ns;
@@ -217,12 +241,12 @@ void addLost(const Times& times_ns, std::int64_t step_ns, std::vector<double>& n
     late[i] = rise(stamp_sums, i) / period_ns - rise(number_sums, i);
     errors.push_back(std::abs(late[i]));
   }
-  if (!(period_ns > 0.0) || kNoise_medians * medianOf(std::move(errors)) > kLoss) return;
+  if (!(period_ns > 0.0) || kNoise_medians * medianOf(std::move(errors)) > least_loss) return;
   double lost = 0.0;
   std::size_t next = width;
   for (std::size_t i = 0; i < size; ++i) {
     const auto around = late.begin() + static_cast<std::ptrdiff_t>(i);
-    if (i >= next && late[i] >= kLoss && i + width <= size &&
+    if (i >= next && late[i] >= least_loss && i + width <= size &&
         late[i] >= *std::max_element(around, around + static_cast<std::ptrdiff_t>(width))) {
       lost += std::round(late[i]);
       next = i + width;
@@ -272,19 +296,19 @@ std::vector<LinePoint> steadiestLine(const Times& times_ns, const StampSteps& st
 }
 
 // Replaces coarse stamps by times of a steady rate. `is_repeat`: samples that were sent twice.
-CoarseStamps reconstruct(Times& times_ns, const std::vector<bool>& is_repeat) {
+CoarseStamps reconstruct(Times& times_ns, const std::vector<bool>& is_repeat, const StampOptions& options) {
   if (times_ns.size() < kFewestStamps) return {};
-  const StampSteps steps(times_ns, is_repeat);
+  const StampSteps steps(times_ns, is_repeat, options);
   CoarseStamps result{1e-9 * static_cast<double>(steps.largest_ns()), false};
   if (steps.largest_ns() == 0) return result;
-  std::vector<double> numbers = sampleNumbers(times_ns, steps);
-  addLost(times_ns, steps.largest_ns(), numbers);
+  std::vector<double> numbers = sampleNumbers(times_ns, steps, options);
+  addLost(times_ns, steps.largest_ns(), options.lost_periods, numbers);
   const std::vector<LinePoint> bends = steadiestLine(times_ns, steps, numbers);
   const double size = static_cast<double>(times_ns.size());
   const auto equal =
       std::ranges::count_if(Intervals(times_ns).all, [](std::int64_t each) { return each == 0; });
-  if (static_cast<double>(bends.size()) > kShareOfBends * size &&
-      static_cast<double>(equal) < kShareOfEqual * size)
+  if (static_cast<double>(bends.size()) > options.share_of_bends * size &&
+      static_cast<double>(equal) < options.share_of_equal * size)
     return result;
   const std::int64_t start_ns = times_ns.front();
   std::size_t piece = 1;
@@ -303,7 +327,7 @@ bool sameValues(const ImuSample& a, const ImuSample& b) {
   return a.angular_rate_rad_s == b.angular_rate_rad_s && a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-CoarseStamps reconstructAll(std::vector<ImuSample>& samples) {
+CoarseStamps reconstructAll(std::vector<ImuSample>& samples, const StampOptions& options) {
   Times times_ns;
   std::vector<bool> is_repeat;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -311,7 +335,7 @@ CoarseStamps reconstructAll(std::vector<ImuSample>& samples) {
     is_repeat.push_back(i > 0 && samples[i].time_ns == samples[i - 1].time_ns &&
                         sameValues(samples[i], samples[i - 1]));
   }
-  const CoarseStamps stamps = reconstruct(times_ns, is_repeat);
+  const CoarseStamps stamps = reconstruct(times_ns, is_repeat, options);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].time_ns = times_ns[i];
   return stamps;
 }
@@ -330,10 +354,10 @@ std::vector<ImuSample> samplesOf(const std::vector<ImuSample>& samples, Measured
 }
 
 // Two sensors with separate times: equal stamps do not mean that both measured at the same time.
-CoarseStamps reconstructApart(std::vector<ImuSample>& samples) {
+CoarseStamps reconstructApart(std::vector<ImuSample>& samples, const StampOptions& options) {
   std::vector<ImuSample> rates = samplesOf(samples, MeasuredBy::Gyroscope);
   std::vector<ImuSample> forces = samplesOf(samples, MeasuredBy::Accelerometer);
-  const CoarseStamps of_rates = reconstructAll(rates), of_forces = reconstructAll(forces);
+  const CoarseStamps of_rates = reconstructAll(rates, options), of_forces = reconstructAll(forces, options);
   const CoarseStamps stamps{std::max(of_rates.step_s, of_forces.step_s),
                             of_rates.reconstructed || of_forces.reconstructed};
   if (!stamps.reconstructed) return stamps;
@@ -385,10 +409,17 @@ void leaveOutEqualStamps(const std::string& stream, std::int64_t first_ns, std::
 
 }  // namespace
 
-CoarseStamps reconstructStamps(std::vector<ImuSample>& samples) {
+StampOptions::StampOptions() : StampOptions(kStampDefaults) {}
+
+const OptionTable<StampOptions>& StampOptions::table() {
+  static const OptionTable<StampOptions> table(kStampFields);
+  return table;
+}
+
+CoarseStamps reconstructStamps(std::vector<ImuSample>& samples, const StampOptions& options) {
   const bool whole = std::ranges::all_of(
       samples, [](const ImuSample& sample) { return sample.measured_by == MeasuredBy::Both; });
-  return whole ? reconstructAll(samples) : reconstructApart(samples);
+  return whole ? reconstructAll(samples, options) : reconstructApart(samples, options);
 }
 
 RecordingFault faultOf(const std::string& stream, const CoarseStamps& stamps) {
@@ -401,13 +432,13 @@ RecordingFault faultOf(const std::string& stream, const CoarseStamps& stamps) {
 }
 
 double putInOrder(const std::string& stream, std::int64_t first_ns, std::vector<ImuSample>& samples,
-                  std::vector<RecordingFault>& faults) {
+                  std::vector<RecordingFault>& faults, const StampOptions& options) {
   leaveOutSecondClocks(stream, first_ns, samples, faults);
   if (!std::ranges::is_sorted(samples, kEarlier)) {
     faults.push_back({stream, FaultKind::BackwardTime, 0.0, stream + ": samples out of order were sorted"});
     std::ranges::stable_sort(samples, kEarlier);
   }
-  const CoarseStamps stamps = reconstructStamps(samples);
+  const CoarseStamps stamps = reconstructStamps(samples, options);
   if (stamps.step_s > 0.0) {
     faults.push_back(faultOf(stream, stamps));
     faults.back().text.insert(0, stream + ": ");

@@ -157,8 +157,9 @@ class CharucoFinder : public PatternFinder {
       markers.push_back(marker);
       places.push_back(place);
     }
-    constexpr double kLeast = 0.4;  // share of neighbours; false detections are neighbours, too
-    if (agreementOfNeighbours(markers, places) < kLeast) return {};
+    if (agreementOfNeighbours(markers, places, options_.tag_neighbour_error) <
+        options_.least_marker_agreement)
+      return {};
     std::vector<ReadPoint> points;
     double side_px = 0.0;
     for (std::size_t k = 0; k < markers.size(); ++k) {

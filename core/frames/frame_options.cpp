@@ -34,7 +34,21 @@ constexpr std::tuple kFrameFields{
     Field{"prediction_gate_px", &FrameOptions::prediction_gate_px, 6.0, within(1.0, 50.0), "px",
           "Largest distance from the prediction in tracking; beyond it the whole frame is searched."},
     Field{"search_every_frames", &FrameOptions::search_every_frames, 20, within(1, 10000), "",
-          "Number of tracked frames after which the whole frame is searched again."}};
+          "Number of tracked frames after which the whole frame is searched again."},
+    Field{
+        "tag_neighbour_error", &FrameOptions::tag_neighbour_error, 0.35, within(0.01, 1.0), "",
+        "Largest error of a neighbouring tag's place that agrees, relative to its distance; wrong places and "
+        "rotations exceed 0.7."},
+    Field{"least_tag_agreement", &FrameOptions::least_tag_agreement, 0.65, within(0.0, 1.0), "",
+          "Smallest share of neighbouring tags that agree with an order and rotation of the tags.",
+          Level::Tuning, Applies::WithAprilGrid},
+    Field{"same_tag_agreement", &FrameOptions::same_tag_agreement, 0.1, within(0.0, 1.0), "",
+          "Largest difference of that share between orders and rotations that are equally good.",
+          Level::Tuning, Applies::WithAprilGrid},
+    Field{"least_marker_agreement", &FrameOptions::least_marker_agreement, 0.4, within(0.0, 1.0), "",
+          "Smallest share of neighbouring markers that agree with the board; false detections are "
+          "neighbours, too.",
+          Level::Tuning, Applies::WithCharuco}};
 constexpr auto kFrameDefaults = defaultsOf<FrameOptions, kFrameFields>();
 
 }  // namespace

@@ -21,6 +21,10 @@ struct FrameOptions {
   double least_contrast;
   double prediction_gate_px;
   int search_every_frames;
+  double tag_neighbour_error;
+  double least_tag_agreement;
+  double same_tag_agreement;
+  double least_marker_agreement;
 
   FrameOptions();  // the defaults
   constexpr explicit FrameOptions(NoDefaults) {}

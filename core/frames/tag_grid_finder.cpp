@@ -212,17 +212,17 @@ class TagGridFinder : public PatternFinder {
 
   // The layouts that agree best with the tags, in the order of the possible ones; none if no layout agrees.
   std::vector<TagLayout> agreeingLayouts(const std::vector<SeenTag>& tags) const {
-    constexpr double kLeast = 0.65, kSame = 0.1;  // share of neighbours, and its difference
     std::vector<double> agreements;
     for (const TagLayout& layout : possible_) {
       std::vector<TagCorners> places;
       for (const SeenTag& tag : tags) places.push_back(placeOf(layout, tag.id));
-      agreements.push_back(agreementOfNeighbours(tags, places));
+      agreements.push_back(agreementOfNeighbours(tags, places, options_.tag_neighbour_error));
     }
     const double best = *std::max_element(agreements.begin(), agreements.end());
     std::vector<TagLayout> agreeing;
     for (std::size_t k = 0; k < possible_.size(); ++k)
-      if (best >= kLeast && agreements[k] >= best - kSame) agreeing.push_back(possible_[k]);
+      if (best >= options_.least_tag_agreement && agreements[k] >= best - options_.same_tag_agreement)
+        agreeing.push_back(possible_[k]);
     return agreeing;
   }
 

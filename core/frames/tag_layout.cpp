@@ -66,8 +66,8 @@ TagCorners rotatedCorners(const TagCorners& square, int quarter_turns) {
   return corners;
 }
 
-double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector<TagCorners>& places_m) {
-  constexpr double kNear = 0.35;  // of the distance; a wrong place or rotation of a neighbour exceeds 0.7
+double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector<TagCorners>& places_m,
+                             double largest_error) {
   std::vector<Eigen::Vector2d> middles_px;
   for (const SeenTag& tag : tags) middles_px.push_back(middleOf(tag.corners_px));
   int pairs = 0, agreeing = 0;
@@ -78,7 +78,8 @@ double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector
     for (const std::size_t other : neighboursOf(k, middles_px)) {
       const double distance_px = (middles_px[other] - middles_px[k]).norm();
       ++pairs;
-      if (meanDistance(*picture_from_board, places_m[other], tags[other].corners_px) < kNear * distance_px)
+      if (meanDistance(*picture_from_board, places_m[other], tags[other].corners_px) <
+          largest_error * distance_px)
         ++agreeing;
     }
   }

@@ -82,14 +82,12 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
   if (rotation.pairs == 0 || rotation.rest_rad < kBeyondNoise_rad) return;
   // If motion about one axis dominates, wrong handedness leaves a small residual, but a reflection a smaller
   // one. A mirrored gyroscope left 33 % of such a motion, of 40 % that are allowed, and its reflection less
-  // than a fifth of that. Half of the residual, and a quarter of the limit from which handedness is tested,
-  // are chosen, not measured.
-  constexpr double kFarBetter = 0.5, kMuchBetter = 0.2, kSuspicious = 0.25;
+  // than a fifth of that (much_better). far_better and suspicious_motion are chosen, not measured.
   const bool unexplained = rotation.rotated >= options.largest_unexplained_motion;
-  const bool left_handed = unexplained
-                               ? rotation.reflected < kFarBetter * rotation.rotated
-                               : rotation.rotated >= kSuspicious * options.largest_unexplained_motion &&
-                                     rotation.reflected < kMuchBetter * rotation.rotated;
+  const bool left_handed =
+      unexplained ? rotation.reflected < options.far_better * rotation.rotated
+                  : rotation.rotated >= options.suspicious_motion * options.largest_unexplained_motion &&
+                        rotation.reflected < options.much_better * rotation.rotated;
   if (!unexplained && !left_handed) return;
   if (left_handed) {
     const std::string proof = fmt::format(
@@ -118,10 +116,9 @@ void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& s
   const ImuData& imu = input.imus[input.reference_imu];
   // Gravity dominates the spread and agrees even if only the motion is wrong: test from a low limit on
   // (chosen, not measured).
-  constexpr double kSuspicious = 0.25;
   const bool negative = signOfScale(gravity, options) < 0;
   if (!negative && gravity.acceleration_misfit_m_s2 <
-                       kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))
+                       options.suspicious_motion * options.largest_unexplained_motion * forceSpread_m_s2(imu))
     return;
   const auto cause = findWrongAxes(input, false, options, context);
   if (cause && !cause->negated)

@@ -139,14 +139,13 @@ std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_
     for (ImuSample& sample : tried.imus[tried.reference_imu].samples) sample.angular_rate_rad_s *= -1.0;
   try {
     const AxesTrial trial(std::move(tried), options, context);
-    constexpr double kFarBetter = 0.5;
     const std::vector<Eigen::Matrix3d> all = readings();
     const double as_is_m_s2 = trial.misfit_m_s2(all.front());
     double least_m_s2 = as_is_m_s2;
     Eigen::Matrix3d best = all.front();
     for (const Eigen::Matrix3d& reading : all) {
       const double misfit_m_s2 = trial.misfit_m_s2(reading);
-      if (misfit_m_s2 >= least_m_s2 * (best.isIdentity() ? kFarBetter : 1.0)) continue;
+      if (misfit_m_s2 >= least_m_s2 * (best.isIdentity() ? options.far_better : 1.0)) continue;
       least_m_s2 = misfit_m_s2;
       best = reading;
     }

@@ -14,10 +14,8 @@
 namespace evical {
 namespace {
 
-constexpr double kLeastAgreement = 0.75;  // the gyroscope has removed most misidentified views
-
-bool agrees(const std::optional<BoardAlignment>& found) {
-  return found && found->agreeing >= kLeastAgreement;
+bool agrees(const std::optional<BoardAlignment>& found, const InitialisationOptions& options) {
+  return found && found->agreeing >= options.least_board_agreement;
 }
 
 void checkAlignment(const std::string& board, const CalibrationInput& input,
@@ -32,7 +30,7 @@ void checkAlignment(const std::string& board, const CalibrationInput& input,
             options.least_views, gap_s, input.boardName(0)),
         "Keep each board in its camera's view at the same time, for most of the recording");
   }
-  if (agrees(found)) return;
+  if (agrees(found, options)) return;
   throw calibrationFailed(
       board,
       fmt::format("only {:.0f} % of its views agree on its pose relative to '{}'", 100.0 * found->agreeing,
@@ -58,9 +56,9 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
     }
     const std::string& name = input.boardName(board);
     const auto found = alignBoard(body, sights, gap_s, options.least_views);
-    constexpr double kFarBetter = 0.5;
     const auto negated = alignBoard(body, sights, gap_s, options.least_views, -1.0);
-    if (agrees(negated) && (!agrees(found) || negated->position_rms_m < kFarBetter * found->position_rms_m))
+    if (agrees(negated, options) &&
+        (!agrees(found, options) || negated->position_rms_m < options.far_better * found->position_rms_m))
       throw calibrationFailed(
           name,
           fmt::format("its views agree with '{}' only if the images of the cameras of one of the two boards "

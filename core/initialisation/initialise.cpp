@@ -129,7 +129,7 @@ bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& i
                       const So3Spline& rotation, const InitialisationOptions& options,
                       const RunContext& context, GravityAlignment& gravity) {
   constexpr int kMostRounds = 6;
-  constexpr double kSettled = 0.02, kLeast = 1e-3;
+  constexpr double kLeast = 1e-3;
   double step = gravity.board_scale, scale = 1.0;
   const bool far = step > options.wrong_size_ratio || step < 1.0 / options.wrong_size_ratio;
   if (!far || std::abs(step - 1.0) < options.scale_error_sigmas * gravity.board_scale_std) return true;
@@ -140,7 +140,7 @@ bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& i
                                                 input.start_ns, rotation, options, context);
     scale *= step;
     step = again.board_scale;
-    if (std::abs(step - 1.0) > kSettled) continue;
+    if (std::abs(step - 1.0) > options.settled_size) continue;
     gravity.board_scale = scale * step;
     gravity.board_scale_std = scale * again.board_scale_std;
     gravity.acceleration_misfit_m_s2 = again.acceleration_misfit_m_s2;

@@ -109,7 +109,6 @@ int signOf(const CalibrationInput& input, const AlignedCamera& camera, const Gyr
   const GravityAlignment gravity = alignGravity({&track, 1}, withFitForces(imu.samples), input.start_ns,
                                                 rotation, options, {silentProgress(), context.stop});
   if (const int sign = signOfScale(gravity, options); sign != 0) return sign;
-  constexpr double kFarBetter = 0.5;
   std::vector<ImuSample> samples = withFitForces(imu.samples);
   const auto misfit = [&] {
     return accelerationMisfit_m_s2({&track, 1}, samples, input.start_ns, rotation, options, context);
@@ -117,8 +116,8 @@ int signOf(const CalibrationInput& input, const AlignedCamera& camera, const Gyr
   const double as_is_m_s2 = misfit();
   for (ImuSample& sample : samples) sample.specific_force_m_s2 *= -1.0;
   const double negated_m_s2 = misfit();
-  if (negated_m_s2 < kFarBetter * as_is_m_s2) return -1;
-  return as_is_m_s2 < kFarBetter * negated_m_s2 ? 1 : 0;
+  if (negated_m_s2 < options.far_better * as_is_m_s2) return -1;
+  return as_is_m_s2 < options.far_better * negated_m_s2 ? 1 : 0;
 }
 
 // Evidence that accelerations are negated, or that they are not: then images are mirrored.

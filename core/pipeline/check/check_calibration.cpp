@@ -106,11 +106,11 @@ class Check {
 
   // A copy of the old recording has its start, and the same noise.
   bool isCopy() const {
-    constexpr double kSame = 0.2;  // sigmas; a copy of 6 s gave 0.07
     const std::vector<Finding>& findings = out_.check.findings;
     return out_.run->result.start_ns == input_.before.result->start_ns && !findings.empty() &&
-           std::all_of(findings.begin(), findings.end(),
-                       [](const Finding& finding) { return finding.sigmas < kSame; });
+           std::ranges::all_of(findings, [&](const Finding& finding) {
+             return finding.sigmas < input_.session.options.check->copy_sigmas;
+           });
   }
 
   // Joint solution of the old result and the recording. It is not a separate test that both agree.

@@ -228,6 +228,7 @@ void checkOverlap(const Session& session, const DetectionResult& pass) {
 std::vector<OptionRow> detectionOptions(const Session& session) {
   const CalibrationOptions usual;
   CalibrationOptions deciding = session.options;
+  deciding.stamps = usual.stamps;  // IMU samples are read again
   deciding.initialisation = usual.initialisation;
   deciding.optimisation = usual.optimisation;
   deciding.report = usual.report;

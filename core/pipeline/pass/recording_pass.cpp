@@ -209,8 +209,8 @@ class ReadingPass {
     imu.name = session.name;
     imu.noise = session.noise;
     if (imu.samples.empty()) return 0.0;
-    const double step_s =
-        putInOrder(session.joinedStream(), imu.samples.front().time_ns, imu.samples, result_.faults);
+    const double step_s = putInOrder(session.joinedStream(), imu.samples.front().time_ns, imu.samples,
+                                     result_.faults, *session_.options.stamps);
     imu.samples.shrink_to_fit();
     return step_s;
   }

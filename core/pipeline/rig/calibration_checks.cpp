@@ -39,8 +39,8 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
   }
   const double norm = medianOf(std::move(norms));
   if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
-    constexpr double kShaken = 0.3;  // of the norm, by motion
-    const LikelyUnit unit = likelyUnitOfForces(session, norm / options.gravity_m_s2, kShaken);
+    const LikelyUnit unit =
+        likelyUnitOfForces(session, norm / options.gravity_m_s2, 2.0 * options.force_unit_tolerance);
     throw badInput(
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,

@@ -41,9 +41,6 @@ double readAsForce_m_s2(const SessionImu* imu) {
                                               AccelerationUnit::MetresPerSecond2)));
 }
 
-constexpr double kCertain_sigmas = 6.0;
-constexpr double kUnitTolerance = 0.1;  // of ratios of rates, which a slightly wrong lens changes, too
-
 // "3.2 times too large", "57 times too small"
 std::string timesWords(double times) {
   return times >= 1.0 ? fmt::format("{:.3g} times too large", times)
@@ -59,15 +56,14 @@ struct WrongRates {
 std::optional<WrongRates> wrongRates(const Session& session, const CalibrationInput& input,
                                      const RunContext& context) {
   const CameraData& camera = input.cameras.front();
+  const InitialisationOptions& options = *session.options.initialisation;
   if (!camera.lens.detection_intrinsics) return std::nullopt;
   for (std::size_t k = 0; k < std::min(input.imus.size(), session.imus.size()); ++k) {
     const ImuData& imu = input.imus[k];
-    const std::optional<RateRatio> found = rateRatio(camera, input.boardAt(camera.board), imu, input.start_ns,
-                                                     *session.options.initialisation, context);
-    if (!found ||
-        std::abs(std::log(found->ratio)) < std::log(session.options.initialisation->wrong_rate_ratio))
-      continue;
-    const LikelyUnit unit = likelyUnitOfRates(&session.imus[k], found->ratio, kUnitTolerance);
+    const std::optional<RateRatio> found =
+        rateRatio(camera, input.boardAt(camera.board), imu, input.start_ns, options, context);
+    if (!found || std::abs(std::log(found->ratio)) < std::log(options.wrong_rate_ratio)) continue;
+    const LikelyUnit unit = likelyUnitOfRates(&session.imus[k], found->ratio, options.rate_unit_tolerance);
     std::string problem = fmt::format("the gyroscope's rates are {} compared with the rotation of {}",
                                       timesWords(found->ratio), camera.name);
     if (!unit.words.empty()) problem += ": their unit seems to be " + unit.words;
@@ -88,21 +84,20 @@ std::optional<WrongRates> wrongRates(const Session& session, const CalibrationIn
 
 // Accelerations whose norm is not gravity's, neither at the median nor as the mean in a frame that does not rotate.
 std::optional<CalibrationError> wrongForces(const Session& session, const CalibrationInput& input) {
-  const InspectionOptions options;
-  constexpr double kShaken = 0.15;  // of the norm, by motion
+  const InspectionOptions limits;
+  const InitialisationOptions& options = *session.options.initialisation;
   for (std::size_t k = 0; k < std::min(input.imus.size(), session.imus.size()); ++k) {
     const ImuData& imu = input.imus[k];
     if (deadAxis(imu) != nullptr) continue;  // this is the cause
     std::vector<ImuSample> forces;           // without those of separate gyroscopes
     std::ranges::copy_if(imu.samples, std::back_inserter(forces), measuresForce<ImuSample>);
     const double norm = medianForceNorm(forces);
-    // Motion shifts the norm of short recordings by a tenth; wrong units and ranges have a factor of two or more.
-    constexpr double kByMotion = 1.5;
-    if (forces.empty() || isGravity(norm, options) ||
-        std::abs(std::log(norm / input.gravity_norm_m_s2)) < std::log(kByMotion) ||
-        isGravity(steadyForceNorm(forces).value_or(norm), options))
+    if (forces.empty() || isGravity(norm, limits) ||
+        std::abs(std::log(norm / input.gravity_norm_m_s2)) < std::log(options.wrong_force_ratio) ||
+        isGravity(steadyForceNorm(forces).value_or(norm), limits))
       continue;
-    const LikelyUnit unit = likelyUnitOfForces(&session.imus[k], norm / input.gravity_norm_m_s2, kShaken);
+    const LikelyUnit unit =
+        likelyUnitOfForces(&session.imus[k], norm / input.gravity_norm_m_s2, options.force_unit_tolerance);
     return calibrationFailed(
         imu.name,
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about {:.3g}{}{}", norm,
@@ -124,7 +119,8 @@ std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics
   const double times = std::sqrt((given_px.array() / focal_px.array()).prod());
   const double off_px =
       difference.places > 0 ? difference.rms_px : std::abs(std::log(times)) * 0.5 * diagonal_px;
-  if (off_px < std::max(options.wrong_lens_share * diagonal_px, kCertain_sigmas * sigma_px)) return {};
+  if (off_px < std::max(options.wrong_lens_share * diagonal_px, options.wrong_lens_sigmas * sigma_px))
+    return {};
   const Eigen::Vector2d centre_px = found.principal_point_px;
   const double centre_times = given.principal_point_px.norm() / std::max(centre_px.norm(), 1.0);
   constexpr double kNoticeable = 1.05, kAlike = 0.1;
@@ -144,13 +140,13 @@ std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics
 
 // True if a number of the lens differs by more than its sigma explains: a recording may not determine the lens.
 bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
-             const std::optional<std::array<double, 9>>& sigmas) {
+             const std::optional<std::array<double, 9>>& sigmas, double limit_sigmas) {
   if (!sigmas || given.model != found.model) return true;
   std::array<double, 9> a{}, b{};
   writeIntrinsics(given, a.data());
   writeIntrinsics(found, b.data());
   for (std::size_t k = 0; k < a.size(); ++k)
-    if ((*sigmas)[k] > 0.0 && std::abs(a[k] - b[k]) > kCertain_sigmas * (*sigmas)[k]) return true;
+    if ((*sigmas)[k] > 0.0 && std::abs(a[k] - b[k]) > limit_sigmas * (*sigmas)[k]) return true;
   return false;
 }
 
@@ -301,10 +297,10 @@ constexpr NoiseInput kAccelerometerNoise = {"accelerometer_noise_density", "m/s^
                                             1e-3 * kStandardGravity_m_s2};
 
 // `times`: the given density in units of the recording's.
-QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, double given, double found) {
+QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, double given, double found,
+                            double unit_ratio) {
   const double times = given / found;
-  constexpr double kNear = 1.5;
-  const bool other_unit = !isFar(times * input.other, kNear);
+  const bool other_unit = !isFar(times * input.other, unit_ratio);
   return {fmt::format(
               "{}: {} ({:.3g} {}) is {}: the samples have about {:.2g}{}. Give the data sheet's value in {}",
               imu, input.key, given, input.unit, timesWords(times), found,
@@ -362,7 +358,8 @@ std::vector<QualityWarning> wrongInputs(const Session& session, const Calibratio
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const CameraLens& lens = solution.state.cameras[k].lens;
     if (!lens.given || !lens.solved || input.sensorOf(k) != k) continue;
-    if (!differs(*lens.given, *lens.solved, uncertainty.cameras[k].intrinsics_std)) continue;
+    if (!differs(*lens.given, *lens.solved, uncertainty.cameras[k].intrinsics_std, options.wrong_lens_sigmas))
+      continue;
     const std::string words = wrongLensWords(*lens.given, *lens.solved, 0.0, options);
     if (!words.empty())
       wrong.push_back(
@@ -388,19 +385,19 @@ std::optional<QualityWarning> wrongUnit(const Session& session, const Calibratio
 
 std::vector<QualityWarning> wrongNoise(const Session& session, const CalibrationInput& input,
                                        const BatchSolution& solution) {
-  const double ratio = session.options.initialisation->wrong_noise_ratio;
+  const InitialisationOptions& options = *session.options.initialisation;
+  const double ratio = options.wrong_noise_ratio;
   const double misfit = session.options.optimisation->doubtful_imu_misfit;
-  constexpr double kAlike = 3.0;  // noise in differences of samples, and residuals
   std::vector<QualityWarning> wrong;
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     const ImuData& imu = input.imus[k];
     const auto test = [&](const NoiseInput& noise, bool of_gyroscope, double given, double residual_times) {
       const double white = sampleDensity(imu, of_gyroscope) / given;
       const bool too_large = std::max(white, residual_times) * ratio < 1.0;
-      const bool too_small =
-          white > ratio && residual_times > misfit && !isFar(white / residual_times, kAlike);
+      const bool too_small = white > ratio && residual_times > misfit &&
+                             !isFar(white / residual_times, options.noise_agreement_ratio);
       if (white > 0.0 && (too_large || too_small))
-        wrong.push_back(noiseWarning(imu.name, noise, given, given * white));
+        wrong.push_back(noiseWarning(imu.name, noise, given, given * white, options.noise_unit_ratio));
     };
     const ImuFit& fit = solution.imus[k];
     test(kGyroscopeNoise, true, imu.noise.gyroscope_density,

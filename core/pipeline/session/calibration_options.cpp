@@ -1,6 +1,7 @@
 #include "core/pipeline/session/calibration_options.h"
 
 #include "core/base/option_table.h"
+#include "core/data/imu_stamps.h"
 #include "core/egomotion/egomotion_options.h"
 #include "core/frames/blink_options.h"
 #include "core/frames/frame_options.h"
@@ -42,6 +43,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   using enum Applies;
   auto& front_end = optionsOf(all.front_end);
   auto& batch = optionsOf(all.optimisation);
+  visit("stamps", WithImu, "Coarse time stamps of IMUs", optionsOf(all.stamps));
   visit("detection", WithEvents, "General settings of the front end", front_end.detection);
   visit("bursts", WithEvents, "Edge timing: events of one edge at one pixel", front_end.bursts);
   visit("ring_vote", WithRingVotes, "Circle candidates from ring votes", front_end.ring_vote);
@@ -69,10 +71,9 @@ void forEachGroup(Options& all, Visitor&& visit) {
         partOf<VerdictOptions>(batch));
   visit("report", Always, "Additional analyses for the report", optionsOf(all.report));
   visit("check", InCheck, "Check of an old calibration", optionsOf(all.check));
-  visit("edge_slopes", InCheckWithoutBoard, "Check without a board: speed of edges in the scene",
+  visit("edge_slopes", InCheckWithoutBoard, "Check without a board: speed of edges",
         optionsOf(all.edge_slopes));
-  visit("egomotion", InCheckWithoutBoard,
-        "Check without a board: rotation of the camera compared with the gyroscope",
+  visit("egomotion", InCheckWithoutBoard, "Check without a board: the camera's rotation and the gyroscope's",
         optionsOf(all.egomotion));
   visit("maintain", InMaintain, "IMU logs over time: changes since the calibration", optionsOf(all.maintain));
 }

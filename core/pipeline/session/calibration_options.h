@@ -21,9 +21,11 @@ struct IntrinsicsOptions;
 struct MaintenanceOptions;
 struct OptimisationOptions;
 struct ReportOptions;
+struct StampOptions;
 
 // Groups are shared pointers: only sources that use a group include its header and are rebuilt if it changes.
 struct CalibrationOptions {
+  SharedOptions<StampOptions> stamps;
   SharedOptions<FrontEndOptions> front_end;
   SharedOptions<FrameOptions> frames;
   SharedOptions<BlinkOptions> blink;

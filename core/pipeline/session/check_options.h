@@ -24,6 +24,7 @@ struct CheckOptions {
   double without_board_misfit;
   double without_board_scale;
   double least_board_share;
+  double copy_sigmas;
 
   CheckOptions();  // the defaults
   constexpr explicit CheckOptions(NoDefaults) {}

@@ -84,6 +84,7 @@ class TestImuStamps : public QObject {
  private slots:
   void coarseStamps_becomeSteadyTimes_data();
   void coarseStamps_becomeSteadyTimes();
+  void finestStep_isAnOption();
   void otherStamps_areKept_data();
   void otherStamps_areKept();
   void regularLossesAndUnsetClocks_areNoBeat();
@@ -148,6 +149,15 @@ void TestImuStamps::coarseStamps_becomeSteadyTimes() {
     QVERIFY(std::abs(secondsSince(before[i].time_ns, samples[i].time_ns)) < 0.51 * found.step_s);
     QVERIFY(i == 0 || samples[i].time_ns > samples[i - 1].time_ns);
   }
+}
+
+void TestImuStamps::finestStep_isAnOption() {
+  std::vector<double> times_s;
+  Samples samples = Stamped{.rate_hz = 200.3, .stamp = down(0.001)}.samples(times_s);
+  StampOptions options;
+  options.finest_step_ms = 2.0;
+  QCOMPARE(reconstructStamps(samples, options).step_s, 0.0);
+  QVERIFY(reconstructStamps(samples).reconstructed);
 }
 
 void TestImuStamps::otherStamps_areKept_data() {
