@@ -3,6 +3,7 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 
@@ -32,8 +33,8 @@ Resolution resolutionIn(const std::string& text) {
 }
 
 void printSummary(const ConversionRequest& request, const ConversionSummary& made) {
-  print("{} events, {} IMU samples{} in {} ({})\n", made.events, made.imu_samples,
-        made.frames > 0 ? fmt::format(", {} frames", made.frames) : "", request.output.string(), made.format);
+  print("{}, {}{} in {} ({})\n", counted(made.events, "event"), counted(made.imu_samples, "IMU sample"),
+        made.frames > 0 ? ", " + counted(made.frames, "frame") : "", request.output.string(), made.format);
   for (const RecordingFault& fault : made.faults)
     print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
 }

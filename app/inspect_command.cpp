@@ -2,6 +2,7 @@
 #include "app/command_line.h"
 #include "app/output.h"
 
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/inspection.h"
 #include "core/recording/inspection_json.h"
@@ -90,14 +91,12 @@ void printStream(const StreamSummary& stream, bool checksum) {
   if (stream.count == 0) return;
   print("    {:<22} {} .. {} ns ({:.3f} s)\n", "time", stream.first_ns, stream.last_ns,
         secondsSince(stream.first_ns, stream.last_ns));
-  print("    {:<22} {:.3f} ms; time runs backwards {} time{}\n", "largest gap",
-        1e-6 * static_cast<double>(stream.largest_gap_ns), stream.backward_steps,
-        stream.backward_steps == 1 ? "" : "s");
+  print("    {:<22} {:.3f} ms; time runs backwards {}\n", "largest gap",
+        1e-6 * static_cast<double>(stream.largest_gap_ns), counted(stream.backward_steps, "time"));
 }
 
 void printForPeople(const std::string& recording, const Inspection& inspection, bool checksum) {
-  print("{} ({}, {} stream{})\n", recording, inspection.format, inspection.streams.size(),
-        inspection.streams.size() == 1 ? "" : "s");
+  print("{} ({}, {})\n", recording, inspection.format, counted(inspection.streams.size(), "stream"));
   for (const StreamSummary& stream : inspection.streams) printStream(stream, checksum);
   print("\n{}\n", inspection.faults.empty() ? "No faults found." : "Faults:");
   for (const RecordingFault& fault : inspection.faults) {

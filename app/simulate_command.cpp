@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
+#include "core/base/number.h"
 #include "core/pipeline/simulate/drive_simulation.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/recording/recording_writer.h"
@@ -46,8 +47,9 @@ void addSimulateCommand(Command& app, int& exit_code) {
     const SimulationSummary made = drive ? simulateDrive(imus, arguments->folder, context, arguments->format)
                                          : simulate(scenario, arguments->folder, context, arguments->format);
     console.stageStarted("done");
-    print("{} events, {} frames, {} IMU samples\n{}\n{}\n{}\n", made.events, made.frames, made.imu_samples,
-          made.recording.string(), made.session.string(), made.truth.string());
+    print("{}, {}, {}\n{}\n{}\n{}\n", counted(made.events, "event"), counted(made.frames, "frame"),
+          counted(made.imu_samples, "IMU sample"), made.recording.string(), made.session.string(),
+          made.truth.string());
     exit_code = kDone;
   });
 }

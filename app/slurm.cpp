@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/base/shell_word.h"
 #include "core/base/yaml_node.h"
 
@@ -117,7 +118,7 @@ std::string submitToSlurm(const Batch& batch, const SlurmRequest& request) {
   std::string yaml = fmt::format("evical_slurm: 1\nid: {}\njobs:\n", yamlText(id));
   for (const std::string& name : names) yaml += fmt::format("  - {}\n", yamlText(name));
   writeFileWhole(submittedOf(request.folder), yaml);
-  return fmt::format("Submitted {} jobs as Slurm's job {}", names.size(), id);
+  return fmt::format("Submitted {} as Slurm's job {}", counted(names.size(), "job"), id);
 }
 
 void addQueueStates(const Batch& batch, const std::filesystem::path& folder, std::span<JobOutcome> outcomes) {

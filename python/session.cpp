@@ -1,5 +1,6 @@
 // evical.Session: the sensors to calibrate, and their recording.
 #include "core/pipeline/session/session.h"
+#include "core/base/number.h"
 
 #include "core/base/error.h"
 #include "core/pipeline/session/session_guess.h"
@@ -258,8 +259,8 @@ void bindSession(py::module_& module) {
                         return session;
                       }))
       .def("__repr__", [](const Session& s) {
-        return fmt::format("<evical.Session of '{}': {} cameras, {} IMUs>", s.recording.string(),
-                           s.cameras.size(), s.imus.size());
+        return fmt::format("<evical.Session of '{}': {}, {}>", s.recording.string(),
+                           counted(s.cameras.size(), "camera"), counted(s.imus.size(), "IMU"));
       });
 }
 

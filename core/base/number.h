@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ inline std::optional<double> realFrom(std::string_view text) {
 
 // Number of decimals that shows a value to its sigma's second digit; `without` if it has no sigma.
 int decimalsFor(double sigma, int most = 6, int without = 4);
+
+// "1 event", "3 events"; with verbs "1 event was", "3 events were".
+std::string counted(std::uint64_t count, std::string_view one, std::string_view verb_of_one = {},
+                    std::string_view verb_of_several = {});
 
 // "12.345 +- 0.012"; only the value if it has no sigma.
 std::string withSigma(double value, double sigma, std::string_view between = " +- ");

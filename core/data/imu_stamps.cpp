@@ -1,5 +1,6 @@
 #include "core/data/imu_stamps.h"
 
+#include "core/base/number.h"
 #include "core/base/option_table.h"
 #include "core/base/time.h"
 #include "core/data/second_clock.h"
@@ -402,9 +403,9 @@ void leaveOutEqualStamps(const std::string& stream, std::int64_t first_ns, std::
   const double at_s = secondsSince(first_ns, at_ns);
   faults.push_back(
       {stream, FaultKind::BackwardTime, at_s,
-       fmt::format("{}: {} samples have the stamp of the sample before, but other values (the first "
-                   "at {:.3f} s): they are excluded",
-                   stream, different, at_s)});
+       fmt::format(
+           "{}: {} the stamp of the sample before, but other values (the first at {:.3f} s): excluded",
+           stream, counted(different, "sample", "has", "have"), at_s)});
 }
 
 }  // namespace

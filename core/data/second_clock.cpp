@@ -1,5 +1,6 @@
 #include "core/data/second_clock.h"
 
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/numerics/robust.h"
 
@@ -50,10 +51,10 @@ RecordingFault faultOf(const std::string& stream, std::int64_t first_ns, std::sp
                        const SecondClock& clock) {
   const double at_s = secondsSince(first_ns, samples[clock.begin - 1].time_ns);
   return {stream, FaultKind::SecondClock, at_s,
-          fmt::format(
-              "{} samples from {:.3f} s on are stamped by a second clock, which runs {:.2f} times as fast: "
-              "they are excluded from calibrations.",
-              clock.end - clock.begin, at_s, clock.rate)};
+          fmt::format("{} from {:.3f} s on {} stamped by a second clock, which runs {:.2f} times as fast: "
+                      "excluded from calibrations.",
+                      counted(clock.end - clock.begin, "sample"), at_s,
+                      clock.end - clock.begin == 1 ? "is" : "are", clock.rate)};
 }
 
 }  // namespace evical

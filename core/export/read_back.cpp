@@ -1,6 +1,7 @@
 #include "core/export/read_back.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/export/imu_frames.h"
 #include "core/export/rig.h"
 #include "core/geometry/camera_model.h"
@@ -253,16 +254,13 @@ class Comparison {
 
 std::string checkTextOf(const ReadBackDifference& difference) {
   std::vector<std::string> parts;
-  const auto plural = [](std::size_t count, const char* what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
-  std::string cameras = plural(difference.cameras, "camera");
+  std::string cameras = counted(difference.cameras, "camera");
   if (difference.lens_px) cameras += fmt::format(" within {:.1g} px", *difference.lens_px);
   if (difference.refitted_px)
     cameras += fmt::format("{} {:.2g} px after refitting", difference.lens_px ? "," : " within",
                            *difference.refitted_px);
   parts.push_back(cameras);
-  if (difference.imus > 0) parts.push_back(plural(difference.imus, "IMU"));
+  if (difference.imus > 0) parts.push_back(counted(difference.imus, "IMU"));
   if (difference.rotation_deg)
     parts.push_back(fmt::format("poses within {:.1g} deg and {:.1g} mm", *difference.rotation_deg,
                                 *difference.translation_mm));

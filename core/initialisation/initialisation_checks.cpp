@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/number.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/knot_spacing.h"
 
@@ -41,7 +42,7 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
     const std::size_t usable =
         std::min(withoutRateSpikes(imu.samples).size(), withFitForces(imu.samples).size());
     if (usable >= static_cast<std::size_t>(options.least_imu_samples)) continue;
-    throw calibrationFailed(imu.name, fmt::format("has only {} usable samples", usable),
+    throw calibrationFailed(imu.name, "has only " + counted(usable, "usable sample"),
                             "Check the IMU's stream, and record for 30 s");
   }
 }

@@ -1,6 +1,7 @@
 #include "core/intrinsics/estimate_intrinsics.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/geometry/camera_model.h"
 #include "core/intrinsics/bundle.h"
 #include "core/intrinsics/intrinsics_checks.h"
@@ -24,8 +25,8 @@ void checkCount(const std::vector<SensorView>& views, std::size_t count, const c
   const std::string missing = missingPlaces(views, input.resolution_px);
   throw calibrationFailed(
       input.observations.camera,
-      fmt::format("only {} {} show at least {:.0f} % of the board, but {} are needed for intrinsics{}", count,
-                  what, 100.0 * options.least_circles, options.least_views,
+      fmt::format("only {} at least {:.0f} % of the board, but {} are needed for intrinsics{}",
+                  counted(count, what, "shows", "show"), 100.0 * options.least_circles, options.least_views,
                   missing.empty() ? "" : "; none reaches " + missing),
       "Move the board through the whole image for at least 20 s, and keep it completely in view most of the "
       "time");
@@ -154,12 +155,12 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
                                     const RunContext& context, IntrinsicsStory* story) {
   const std::vector<SensorView> all =
       sensorViews(input.observations, input.board, input.detection_intrinsics, options);
-  checkCount(all, all.size(), "views", input, options);
+  checkCount(all, all.size(), "view", input, options);
   const CameraIntrinsics rough =
       input.start ? *input.start
                   : roughStart(all, input.board, input.resolution_px, input.detection_intrinsics);
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
-  checkCount(views, views.size(), "views with enough spacing in time", input, options);
+  checkCount(views, views.size(), "well-spaced view", input, options);
   const Estimation given{input.board, input.resolution_px, input.detection_intrinsics, options, context};
   Solution solution = input.start ? Solution{bestOf({*input.start}, views, given), {}} : solve(views, given);
   const Bundle& bundle = solution.bundle;
@@ -169,7 +170,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   result.edge_localisation_bias_px = bundle.edge_localisation_bias_px;
   result.views_found = static_cast<int>(input.observations.views.size());
   addFit(bundle, result);
-  checkCount(views, static_cast<std::size_t>(result.views_used), "consistent views", input, options);
+  checkCount(views, static_cast<std::size_t>(result.views_used), "consistent view", input, options);
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
   // Only moving edges in events have a lead; otherwise the value would be the prior's.

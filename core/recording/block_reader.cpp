@@ -1,6 +1,7 @@
 #include "core/recording/block_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/recording/event_order.h"
 
 #include <fmt/format.h>
@@ -152,12 +153,12 @@ void BlockReader::finish() {
   if (found.rolling_frames > 0)
     faults_.push_back(
         {format_.streams.at(frames_stream_).name, FaultKind::Metadata, 0.0,
-         fmt::format("{} frames are of a rolling shutter that exposes column by column; each gets "
-                     "the middle of its exposures.",
-                     found.rolling_frames)});
+         counted(found.rolling_frames, "frame", "is", "are") +
+             " of a rolling shutter that exposes column by column; each gets the middle of its exposures."});
   if (disordered_ > 0) {
-    addFault(FaultKind::Unsorted, fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",
-                                              disordered_, 1e-6 * static_cast<double>(largest_disorder_ns_)));
+    addFault(FaultKind::Unsorted,
+             fmt::format("Time runs backwards {} by {:.3f} ms at most; sorted.", counted(disordered_, "time"),
+                         1e-6 * static_cast<double>(largest_disorder_ns_)));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/recording_writer.h"
 #include "core/recording/stray_stamps.h"
@@ -119,8 +120,9 @@ void sayStrays(const StampFilter<Event>& stamps, const RunContext& context) {
   if (stamps.strays() == 0) return;
   context.progress.log(
       LogLevel::Warning,
-      fmt::format("{} events are left out: their timestamps differ by {:.3g} s from those of the others.",
-                  stamps.strays(), std::abs(secondsSince(stamps.strayFrom_ns(), stamps.strayTime_ns()))));
+      fmt::format("{} left out: their timestamps differ by {:.3g} s from those of the others.",
+                  counted(stamps.strays(), "event", "is", "are"),
+                  std::abs(secondsSince(stamps.strayFrom_ns(), stamps.strayTime_ns()))));
 }
 
 void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::vector<std::size_t>& targets,

@@ -1,5 +1,7 @@
 #include "core/recording/event_order.h"
 
+#include "core/base/number.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,8 +31,8 @@ void EventOrder::split(std::vector<Event>& events, std::vector<Event>& rest) {
 }
 
 std::string EventOrder::text() const {
-  return fmt::format("Time runs backwards {} times within packets, by {:.3f} ms at most; sorted.",
-                     disordered_, 1e-6 * static_cast<double>(largest_ns_));
+  return fmt::format("Time runs backwards {} within packets, by {:.3f} ms at most; sorted.",
+                     counted(disordered_, "time"), 1e-6 * static_cast<double>(largest_ns_));
 }
 
 }  // namespace evical

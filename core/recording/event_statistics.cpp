@@ -1,6 +1,7 @@
 #include "core/recording/event_statistics.h"
 
 #include "core/base/nearest_name.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/numerics/robust.h"
 
@@ -102,7 +103,7 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
   if (outside_ > 0 && summary.info.resolution_px.known()) {
     faults.push_back(
         {name, FaultKind::Outside, 0.0,
-         fmt::format("{} events are outside of {} x {} pixels.", outside_,
+         fmt::format("{} outside of {} x {} pixels.", counted(outside_, "event", "is", "are"),
                      summary.info.resolution_px.width_px, summary.info.resolution_px.height_px)});
   }
   if (const double step_s = stamp_step_.step_s(); step_s > 0.0)

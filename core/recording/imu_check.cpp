@@ -1,3 +1,4 @@
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
 #include "core/data/second_clock.h"
@@ -145,10 +146,10 @@ void checkSaturated(const std::string& name, const Samples& samples, const ImuAx
   faults.push_back(
       {name, FaultKind::SaturatedAxis,
        secondsSince(samples.front().time_ns, samples[saturated.front()].time_ns),
-       fmt::format(
-           "{} is at its limit of {:.4g} for {} samples, which calibrations leave out: move more slowly, "
-           "or increase the IMU's range.",
-           axis.name, std::abs(axis.of(samples[saturated.front()])), saturated.size())});
+       fmt::format("{} is at its limit of {:.4g} for {}, which calibrations leave out: move more slowly, "
+                   "or increase the IMU's range.",
+                   axis.name, std::abs(axis.of(samples[saturated.front()])),
+                   counted(saturated.size(), "sample"))});
 }
 
 void checkSpikes(const std::string& name, const Samples& samples, const char* sensor, Measures measures,
@@ -232,8 +233,8 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
   if (good.size() < samples.size()) {
     const auto found = std::find_if_not(samples.begin(), samples.end(), isMeasurable);
     faults.push_back({name, FaultKind::NotFinite, secondsSince(samples.front().time_ns, found->time_ns),
-                      fmt::format("{} samples have values that are not finite, or that no sensor measures.",
-                                  samples.size() - good.size())});
+                      counted(samples.size() - good.size(), "sample", "has", "have") +
+                          " values that are not finite, or that no sensor measures."});
   }
   checkTimesOfSensors(name, samples, options, faults);
   const UnfitSamples unfit = findUnfitSamples(good);

@@ -405,7 +405,8 @@ std::string assessmentTable(const Maintenance& maintenance) {
   for (const MaintenanceStep& step : maintenance.steps) text += stepText(step);
   for (const MaintainedImu& imu : maintenance.imus)
     if (!imu.stops.empty())
-      text += fmt::format("{}: {} stops; weakest direction: {}\n", imu.name, imu.stops.size(), imu.weakest);
+      text += fmt::format("{}: {}; weakest direction: {}\n", imu.name, counted(imu.stops.size(), "stop"),
+                          imu.weakest);
   return text + endText(maintenance);
 }
 

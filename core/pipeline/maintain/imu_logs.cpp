@@ -3,8 +3,10 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
+#include "core/pipeline/pass/session_recording.h"
 #include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
@@ -347,7 +349,7 @@ std::vector<RecordingFault> ImuLogs::faults() const {
   if (immeasurable > 0)
     all.push_back(
         {"imu", FaultKind::NotFinite, 0.0,
-         fmt::format("{} IMU samples excluded, whose values are not finite or not plausible", immeasurable)});
+         counted(immeasurable, "IMU sample") + " excluded, whose values are not finite or not plausible"});
   return all;
 }
 

@@ -76,7 +76,7 @@ std::vector<TimedPose> readTrajectory(const std::filesystem::path& file, std::in
   }
   constexpr std::size_t kFewest = 20;
   if (poses.size() < kFewest)
-    throw badInput(file.string(), fmt::format("has only {} poses", poses.size()),
+    throw badInput(file.string(), "has only " + counted(poses.size(), "pose"),
                    "Give trajectory.csv of a calibration, or lines 'time x y z qx qy qz qw'");
   return poses;
 }

@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/event_intake.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 
 #include <fmt/format.h>
 
@@ -44,12 +45,13 @@ std::optional<CameraBatch> EventIntake::flush() {
 void EventIntake::report(std::vector<RecordingFault>& faults) const {
   if (unsorted_ > 0) {
     faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
-                      fmt::format("{}: {} events out of order were sorted", session_.stream, unsorted_)});
+                      fmt::format("{}: {} out of order {} sorted", session_.stream,
+                                  counted(unsorted_, "event"), unsorted_ == 1 ? "was" : "were")});
   }
   if (late_ > 0) {
-    faults.push_back(
-        {session_.stream, FaultKind::BackwardTime, 0.0,
-         fmt::format("{}: time runs backwards: {} events were excluded", session_.stream, late_)});
+    faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
+                      fmt::format("{}: time runs backwards: {} excluded", session_.stream,
+                                  counted(late_, "event", "was", "were"))});
   }
   if (const double step_s = stampStep_s(); step_s > 0.0)
     faults.push_back({session_.stream, FaultKind::Encoding, 0.0,
@@ -65,9 +67,10 @@ void EventIntake::report(std::vector<RecordingFault>& faults) const {
              "time offset. Move more slowly, or increase the camera's contrast thresholds",
              session_.stream, 100.0 * limit.share, 1e-6 * limit.rate_hz)});
   if (outside_ > 0) {
-    faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
-                      fmt::format("{}: {} events outside {} x {} px were excluded", session_.stream, outside_,
-                                  resolution_px_.width_px, resolution_px_.height_px)});
+    faults.push_back(
+        {session_.stream, FaultKind::OutsideResolution, 0.0,
+         fmt::format("{}: {} outside {} x {} px {} excluded", session_.stream, counted(outside_, "event"),
+                     resolution_px_.width_px, resolution_px_.height_px, outside_ == 1 ? "was" : "were")});
   }
 }
 

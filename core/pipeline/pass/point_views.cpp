@@ -1,6 +1,7 @@
 #include "core/pipeline/pass/point_views.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
@@ -101,7 +102,8 @@ BoardObservations PointViews::finish(std::vector<RecordingFault>& faults) {
   const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
   const auto say = [&](FaultKind kind, std::uint64_t count, const char* what) {
     if (count > 0)
-      faults.push_back({stream_, kind, 0.0, fmt::format("{}: {} points {}", stream_, count, what)});
+      faults.push_back(
+          {stream_, kind, 0.0, fmt::format("{}: {} {}", stream_, counted(count, "point"), what)});
   };
   if (!std::is_sorted(frames_.begin(), frames_.end(), earlier))
     faults.push_back({stream_, FaultKind::BackwardTime, 0.0, stream_ + ": views out of order were sorted"});

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/frames/gray_image.h"
 #include "core/recording/joined_reader.h"
@@ -234,26 +235,26 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
   const auto at = [&](std::int64_t own_ns) {
     return secondsSince(start_ns_, gate.sessionTime_ns(own_ns).value_or(own_ns));
   };
-  const auto sayStrays = [&](const auto& filter, const char* items) {
+  const auto sayStrays = [&](const auto& filter, const char* item) {
     if (filter.strays() == 0) return;
     const double away_s = secondsSince(filter.strayFrom_ns(), filter.strayTime_ns());
     faults.push_back(
         {stream, FaultKind::Corrupt, at(filter.strayFrom_ns()),
-         fmt::format("{}: {} {} excluded, whose timestamps are far from neighbouring ones (the first is "
+         fmt::format("{}: {} excluded, whose timestamps are far from neighbouring ones (the first is "
                      "{:.3f} s {}, at {:.3f} s)",
-                     stream, filter.strays(), items, std::abs(away_s), away_s < 0.0 ? "behind" : "ahead",
-                     at(filter.strayFrom_ns()))});
+                     stream, counted(filter.strays(), item), std::abs(away_s),
+                     away_s < 0.0 ? "behind" : "ahead", at(filter.strayFrom_ns()))});
   };
-  sayStrays(gate.events, "events");
-  sayStrays(gate.samples, "IMU samples");
-  sayStrays(gate.frames, "frames");
-  sayStrays(gate.points, "points");
+  sayStrays(gate.events, "event");
+  sayStrays(gate.samples, "IMU sample");
+  sayStrays(gate.frames, "frame");
+  sayStrays(gate.points, "point");
   if (gate.immeasurable == 0) return;
   const double at_s = at(gate.immeasurable_ns);
-  faults.push_back({stream, FaultKind::NotFinite, at_s,
-                    fmt::format("{}: {} IMU samples excluded, whose values are not finite or not plausible "
-                                "(the first at {:.3f} s)",
-                                stream, gate.immeasurable, at_s)});
+  faults.push_back(
+      {stream, FaultKind::NotFinite, at_s,
+       fmt::format("{}: {} excluded, whose values are not finite or not plausible (the first at {:.3f} s)",
+                   stream, counted(gate.immeasurable, "IMU sample"), at_s)});
 }
 
 }  // namespace evical

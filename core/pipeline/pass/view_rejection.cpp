@@ -1,5 +1,7 @@
 #include "core/pipeline/pass/view_rejection.h"
 
+#include "core/base/number.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -109,8 +111,8 @@ std::string rejectedSentence(const BoardObservations& camera) {
   const std::vector<double> times_s = rejectedTimes_s(camera);
   if (times_s.empty()) return {};
   const std::size_t shown = std::min(times_s.size(), kMostTimes);
-  std::string text = fmt::format("{}: {} window{} with the board rejected by hand, at", camera.camera,
-                                 times_s.size(), times_s.size() == 1 ? "" : "s");
+  std::string text = fmt::format("{}: {} with the board rejected by hand, at", camera.camera,
+                                 counted(times_s.size(), "window"));
   for (std::size_t i = 0; i < shown; ++i) text += fmt::format("{} {:.3f}", i == 0 ? "" : ",", times_s[i]);
   if (times_s.size() > shown) text += fmt::format(" and {} more", times_s.size() - shown);
   return text + " s";

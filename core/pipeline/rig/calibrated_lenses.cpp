@@ -1,5 +1,6 @@
 #include "core/pipeline/rig/calibrated_lenses.h"
 
+#include "core/base/number.h"
 #include "core/data/quality_warning.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_options.h"
@@ -48,8 +49,9 @@ void tellLenses(const Session& session, CalibrationRun& run) {
           lens.solved ? jointIntrinsics(*run.intrinsics[k], k, *lens.solved, run.result.uncertainty,
                                         *session.options.intrinsics)
                       : *run.intrinsics[k];
-      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection sigma {:.3f} px",
-                                  name, found.views_used, found.elapsed_s, found.image.rms_px));
+      notes.push_back(fmt::format("{}: calibrated from {} in {:.1f} s, projection sigma {:.3f} px", name,
+                                  counted(static_cast<std::uint64_t>(found.views_used), "view"),
+                                  found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
       if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
       if (found.status != CalibrationStatus::Ok && doubt.empty())

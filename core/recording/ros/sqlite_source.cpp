@@ -1,6 +1,7 @@
 #include "core/recording/ros/sqlite_source.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/recording/ros/compression.h"
 
 #include <fmt/format.h>
@@ -196,9 +197,9 @@ void SqliteSource::countMessages() {
     largest_id_ = std::max(largest_id_, statement.integer(2));
     if (found == topic_of_id_.end()) {
       sink_(FaultKind::Corrupt,
-            fmt::format(
-                "{} messages are of a topic with id {}, which the file does not list; they are left out.",
-                statement.integer(1), statement.integer(0)));
+            fmt::format("{} of a topic with id {}, which the file does not list; left out.",
+                        counted(static_cast<std::uint64_t>(statement.integer(1)), "message", "is", "are"),
+                        statement.integer(0)));
       continue;
     }
     topics_[found->second].messages = static_cast<std::uint64_t>(statement.integer(1));

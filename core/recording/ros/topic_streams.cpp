@@ -1,6 +1,7 @@
 #include "core/recording/ros/topic_streams.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/event_order.h"
 #include "core/recording/ros/image_messages.h"
@@ -293,8 +294,9 @@ void TopicStreams::putInOrder(std::size_t stream, std::vector<Event>& events) {
   addFault(name, FaultKind::Unsorted, "");
   for (RecordingFault& fault : faults_) {
     if (fault.stream != name || fault.kind != FaultKind::Unsorted) continue;
-    fault.text = fmt::format("Time runs backwards {} times within messages, by {:.3f} ms at most; sorted.",
-                             state.disordered, 1e-6 * static_cast<double>(state.largest_disorder_ns));
+    fault.text =
+        fmt::format("Time runs backwards {} within messages, by {:.3f} ms at most; sorted.",
+                    counted(state.disordered, "time"), 1e-6 * static_cast<double>(state.largest_disorder_ns));
   }
 }
 
@@ -316,17 +318,20 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
   const State& state = states_[stream];
   StreamInfo& info = streams_[stream];
   if (state.decoder.lostMessages() > 0) {
-    addFault(info.name, FaultKind::LostMessages,
-             fmt::format("{} messages are missing between those recorded.", state.decoder.lostMessages()));
+    addFault(
+        info.name, FaultKind::LostMessages,
+        counted(state.decoder.lostMessages(), "message", "is", "are") + " missing between those recorded.");
   }
   const Evt3Counts& counts = state.decoder.evt3Counts();
   if (counts.outside > 0) {
     addFault(info.name, FaultKind::Outside,
-             fmt::format("{} events outside of the sensor are left out.", counts.outside));
+             fmt::format("{} outside of the sensor {} left out.", counted(counts.outside, "event"),
+                         counts.outside == 1 ? "is" : "are"));
   }
   if (state.decoder.triggers() > 0 && !state.trigger_stream)
     addFault(info.name, FaultKind::Triggers,
-             fmt::format("There are {} external triggers.", state.decoder.triggers()));
+             fmt::format("There {} {}.", state.decoder.triggers() == 1 ? "is" : "are",
+                         counted(state.decoder.triggers(), "external trigger")));
   const std::optional<HostClockOffset> offset = state.decoder.hostClock().offset();
   if (!offset) return;
   info.host_clock_offset_s = offset->offset_s;

@@ -1,6 +1,7 @@
 #include "core/recording/text/text_table_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/column_names.h"
 
@@ -264,10 +265,9 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
 void TextTableReader::finish(Source& source, std::size_t stream) {
   source.finished = true;
   if (source.other_types > 0)
-    faults_.push_back(
-        {streams_[stream].name, FaultKind::Triggers, 0.0,
-         fmt::format("{} lines are left out: their type is neither 0 (darker) nor 1 (brighter).",
-                     source.other_types)});
+    faults_.push_back({streams_[stream].name, FaultKind::Triggers, 0.0,
+                       counted(source.other_types, "line", "is", "are") +
+                           " left out: their type is neither 0 (darker) nor 1 (brighter)."});
   if (!source.lines.isDamaged()) return;
   faults_.push_back(
       {streams_[stream].name, FaultKind::Truncated, 0.0,

@@ -1,4 +1,5 @@
 #include "core/base/nearest_name.h"
+#include "core/base/number.h"
 #include "core/report/assessment_report.h"
 #include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"
@@ -136,8 +137,8 @@ void writeStops(const Maintenance& maintenance, ReportPage& page) {
     ++picture;
     if (imu.stops.empty()) continue;
     page.heading(imu.name);
-    page.text(paragraph(
-        "", fmt::format("{} stops. Weakest direction: {}.", imu.stops.size(), escaped(imu.weakest))));
+    page.text(paragraph("", fmt::format("{}. Weakest direction: {}.", counted(imu.stops.size(), "stop"),
+                                        escaped(imu.weakest))));
     drawStops(imu, fmt::format("plots/stops{}.csv", picture), page);
   }
   page.endSection();

@@ -1,4 +1,6 @@
 #include "core/base/nearest_name.h"
+
+#include "core/base/number.h"
 #include "tests/support/test_program.h"
 
 using namespace evical;
@@ -27,6 +29,13 @@ class TestNearestName : public QObject {
     QFETCH(QString, b);
     QTEST(editDistance(a.toStdString(), b.toStdString()), "distance");
     QTEST(editDistance(b.toStdString(), a.toStdString()), "distance");
+  }
+
+  void counted_hasAPlural() {
+    QCOMPARE(counted(1, "view"), std::string("1 view"));
+    QCOMPARE(counted(0, "view"), std::string("0 views"));
+    QCOMPARE(counted(1, "event", "was", "were"), std::string("1 event was"));
+    QCOMPARE(counted(2, "event", "was", "were"), std::string("2 events were"));
   }
 
   void nearestName_findsWhatWasMeant() {
