@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/time.h"
-#include "core/data/likely_unit.h"
+#include "core/data/wrong_input.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialisation_options.h"

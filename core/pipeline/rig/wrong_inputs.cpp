@@ -329,11 +329,6 @@ LikelyUnit likelyUnitOfForces(const SessionImu* imu, double times, double tolera
   return unit;
 }
 
-bool isWrongInput(const QualityWarning& reason) {
-  constexpr std::array kNames = {kWrongUnit, kWrongLens, kWrongBoard, kWrongNoise};
-  return std::ranges::any_of(kNames, [&](const char* name) { return reason.name == name; });
-}
-
 CalibrationError withWrongInput(const CalibrationError& error, const Session& session,
                                 const CalibrationInput& input, const Initialisation& initial,
                                 bool recording_is_there, const RunContext& context) {

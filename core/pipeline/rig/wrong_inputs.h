@@ -5,8 +5,8 @@
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/data/calibration_result.h"
-#include "core/data/likely_unit.h"
 #include "core/data/quality_warning.h"
+#include "core/data/wrong_input.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/pipeline/session/session.h"
@@ -16,17 +16,9 @@
 
 namespace evical {
 
-// Names of wrong inputs as causes, the ones that explain the others first.
-inline constexpr const char* kWrongUnit = "unit";
-inline constexpr const char* kWrongLens = "given_lens";
-inline constexpr const char* kWrongBoard = "board_dimensions";
-inline constexpr const char* kWrongNoise = "noise_density";
-
 // Units of an IMU's numbers that are `times` too large. If the session states no unit, the recording's format has one.
 LikelyUnit likelyUnitOfRates(const SessionImu* imu, double times, double tolerance);
 LikelyUnit likelyUnitOfForces(const SessionImu* imu, double times, double tolerance);
-
-bool isWrongInput(const QualityWarning& reason);
 
 // The wrong input that caused a failure; the error itself if there is none. Looks for the lens in the recording if
 // `recording_is_there`: this takes as long as a calibration of the lens.

@@ -1,5 +1,6 @@
 #include "core/report/html/advice.h"
 
+#include "core/data/wrong_input.h"
 #include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
@@ -250,12 +251,17 @@ std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures) 
 }
 
 void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page) {
-  const std::vector<Advice> all = adviceFor(data, measures);
+  std::vector<Advice> all = adviceFor(data, measures);
+  const std::vector<QualityWarning>& causes = data.named.result->causes;
+  const bool wrong_input = !causes.empty() && isWrongInput(causes.front());
+  if (wrong_input) all.clear();  // measured with that input
   const bool failed = data.named.result->status == CalibrationStatus::Failed;
   if (failed && all.empty()) return;
   page.beginSection("advice", "Advice for the next recording");
   if (failed) page.text(paragraph("", "First fix the problem above. The data also suggest:"));
-  if (all.empty()) page.text(paragraph("", "No improvement is needed: a similar recording is suitable."));
+  if (all.empty())
+    page.text(paragraph("", wrong_input ? "Correct the input above first, and calibrate this recording again."
+                                        : "No improvement is needed: a similar recording is suitable."));
   std::string items;
   for (const Advice& each : all)
     items += element("li", "", escaped(each.what) + " <small>" + escaped(each.evidence) + "</small>");
