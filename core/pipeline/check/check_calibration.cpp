@@ -100,7 +100,6 @@ class Check {
     for (const std::string& one : compared.not_told)
       out_.check.notes.push_back(one +
                                  " is not checked: it is given, or the recording does not determine it");
-    if (isCopy()) noteDuplicate(out_.check.notes);
     solveTogether(session);
   }
 
@@ -142,6 +141,7 @@ class Check {
       return;
     }
     judgeFindings(out_.check);
+    if (input_.duplicate || isCopy()) return judgeDuplicate(out_.check);
     if (out_.check.verdict == Verdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
   }
 

@@ -140,16 +140,8 @@ void weighLens(const UncertaintyReport& before, std::size_t camera, double stabi
 
 }  // namespace
 
-void noteDuplicate(std::vector<std::string>& notes) {
-  const char* const kNote =
-      "duplicates the recording of the old result: it adds no information and cannot show a change. Check "
-      "with "
-      "a new recording";
-  if (std::find(notes.begin(), notes.end(), kNote) == notes.end()) notes.emplace_back(kNote);
-}
-
 CheckInput checkInputOf(NamedResult before, Session session) {
-  CheckInput input{std::move(before), std::move(session), true, {}, {}};
+  CheckInput input{std::move(before), std::move(session), true, false, {}, {}};
   if (input.session.reference != input.before.reference)
     throw badInput(
         input.session.source.string() + ": reference",
@@ -176,7 +168,7 @@ CheckInput checkInputIn(const std::filesystem::path& result, NamedResult before,
   CheckInput input = checkInputOf(std::move(before), std::move(session));
   const std::optional<Session> stored = storedSession(result);
   input.same_board = stored && stored->board == input.session.board;
-  if (stored && sharedRecording(*stored, input.session)) noteDuplicate(input.notes);
+  input.duplicate = stored && sharedRecording(*stored, input.session);
   input.before_name = result.string();
   return input;
 }

@@ -20,6 +20,7 @@ struct CheckInput {
   NamedResult before;
   Session session;
   bool same_board = true;
+  bool duplicate = false;  // the new recording is the old one
   std::vector<std::string> notes;
   std::string before_name;  // displayed name
 };
@@ -33,9 +34,6 @@ CheckInput readCheckInput(const std::filesystem::path& result, Session session);
 
 // The same with a given result and session, whose lenses are replaced by the result's. Throws as above.
 CheckInput checkInputOf(NamedResult before, Session session);
-
-// Adds a note that the new recording is the old one, unless there is one.
-void noteDuplicate(std::vector<std::string>& notes);
 
 // Session with the result as prior; each sigma includes the quantity's allowed drift.
 Session withPriorOf(const NamedResult& before, Session session);

@@ -71,6 +71,14 @@ void setCannotTell(const std::string& reason, CalibrationCheck& check) {
   check.reason = reason;
 }
 
+void judgeDuplicate(CalibrationCheck& check) {
+  if (check.verdict == Verdict::Changed) return;
+  check.advice.clear();
+  setCannotTell(
+      "this is the recording of the old result, which agrees with itself even if the rig has changed", check);
+  addAdvice("Check with a new recording", check);
+}
+
 void addAdvice(const std::string& advice, CalibrationCheck& check) {
   if (advice.empty()) return;
   const std::string sentence = advice.ends_with('.') ? advice : advice + ".";

@@ -16,6 +16,8 @@ void testQuantities(const ComparedQuantities& compared, const CheckOptions& opti
 void judgeFindings(CalibrationCheck& check);
 
 void setCannotTell(const std::string& reason, CalibrationCheck& check);
+// The verdict on the recording of the old result itself, which agrees with it unless the session differs.
+void judgeDuplicate(CalibrationCheck& check);
 // Adds advice as a sentence, without duplicates.
 void addAdvice(const std::string& advice, CalibrationCheck& check);
 

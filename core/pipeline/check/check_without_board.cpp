@@ -212,6 +212,7 @@ class BoardlessCheck {
       judgeFindings(out_.check);
       if (out_.check.verdict == Verdict::CannotTell) advise();
     }
+    if (input_.duplicate) judgeDuplicate(out_.check);
     if (failures_.empty() || out_.check.verdict == Verdict::Changed) return;
     setCannotTell(joined(failures_), out_.check);
   }
