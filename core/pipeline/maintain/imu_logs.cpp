@@ -59,8 +59,8 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
       throw badInput(howTo(HowTo::NameLogOfImu, {name, stream}), "the old result has no IMU of this name",
                      names.empty() ? "It has no IMUs" : nameAdvice(name, names));
   std::size_t streams = 0;
-  for (const std::filesystem::path& log : logs)
-    streams += imuStreams(streams_.files().emplace_back(Log{log, openLog(log)}));
+  for (const LogFiles& files : paired(logs))
+    streams += imuStreams(streams_.files().emplace_back(Log{files.log, openLog(files)}));
   match(streams == 1);
   const std::optional<std::int64_t> first_ns = streams_.begin();
   streams_.checkClocks([](double) {
@@ -72,9 +72,52 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   start_ns_ = *first_ns;
 }
 
+// Each table of a gyroscope with that of its accelerometer, in the same folder if possible. Their names are those of the
+// calibration's files, or of --imu.
+std::vector<ImuLogs::LogFiles> ImuLogs::paired(const std::vector<std::filesystem::path>& logs) const {
+  std::vector<LogFiles> all;
+  for (const std::filesystem::path& log : logs) all.push_back({log, {}});
+  for (const SeparateImu& imu : separateImus()) {
+    std::vector<std::filesystem::path> taken;
+    for (LogFiles& files : all) {
+      if (files.log.filename() != imu.gyroscope || !files.accelerometer.empty()) continue;
+      for (const LogFiles& other : all) {
+        const bool fits = other.log != files.log && std::ranges::find(taken, other.log) == taken.end() &&
+                          accelerometerTable(files.log, other.log) == imu.accelerometer;
+        const bool closer = other.log.parent_path() == files.log.parent_path();
+        if (fits && (files.accelerometer.empty() || closer)) files.accelerometer = other.log;
+      }
+      taken.push_back(files.accelerometer);
+    }
+    std::erase_if(all, [&](const LogFiles& files) {
+      return !files.log.empty() && std::ranges::find(taken, files.log) != taken.end();
+    });
+  }
+  return all;
+}
+
+std::unique_ptr<RecordingReader> ImuLogs::openPair(const LogFiles& files) const {
+  const SeparateImu tables{files.log.filename().string(), accelerometerTable(files.log, files.accelerometer)};
+  try {
+    return withSeparateImus(openBoth(files.log, files.accelerometer), {tables});
+  } catch (const CalibrationError&) {
+    for (const auto& [name, reading] : readings_)
+      if (reading.stream == tables.gyroscope && !reading.columns.empty())
+        return withSeparateImus(openBoth(files.log, files.accelerometer,
+                                         {{tables.gyroscope, reading.columns},
+                                          {tables.accelerometer, reading.accelerometer_columns.empty()
+                                                                     ? reading.columns
+                                                                     : reading.accelerometer_columns}}),
+                                {tables});
+    throw;
+  }
+}
+
 // A table whose header does not identify its columns is assumed to have those of the calibration. If the
 // calibration used separate streams for the two sensors and the log has both, they are joined.
-std::unique_ptr<RecordingReader> ImuLogs::openLog(const std::filesystem::path& log) const {
+std::unique_ptr<RecordingReader> ImuLogs::openLog(const LogFiles& files) const {
+  if (!files.accelerometer.empty()) return openPair(files);
+  const std::filesystem::path& log = files.log;
   try {
     std::unique_ptr<RecordingReader> reader = openRecording(log);
     const auto has = [&](const std::string& name) {

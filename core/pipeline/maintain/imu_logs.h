@@ -60,7 +60,12 @@ class ImuLogs {
     double stamp_step_s = 0.0;
   };
 
-  std::unique_ptr<RecordingReader> openLog(const std::filesystem::path& log) const;
+  struct LogFiles {
+    std::filesystem::path log, accelerometer;  // the latter is empty unless two tables have the sensors
+  };
+  std::vector<LogFiles> paired(const std::vector<std::filesystem::path>& logs) const;
+  std::unique_ptr<RecordingReader> openLog(const LogFiles& files) const;
+  std::unique_ptr<RecordingReader> openPair(const LogFiles& files) const;
   enum class MatchedBy { Setting, Stream, Name, Default };  // the most certain first
   struct Match {
     std::size_t imu = 0;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -258,7 +259,8 @@ std::vector<DetectionKey> detectionKeys(const SessionCamera& camera) {
 
 bool isOfImu(const RecordingFault& fault, const Session& session) {
   return std::any_of(session.imus.begin(), session.imus.end(), [&](const SessionImu& imu) {
-    return fault.stream == imu.stream || fault.stream == imu.joinedStream() || fault.stream == imu.name;
+    const std::array names = {imu.stream, imu.accelerometer_stream, imu.joinedStream(), imu.name};
+    return !fault.stream.empty() && std::ranges::find(names, fault.stream) != names.end();
   });
 }
 

@@ -55,23 +55,31 @@ std::filesystem::path accelerometerFile(const SessionImu& imu) {
   return imu.accelerometer_recording.empty() ? std::filesystem::path() : fileAt(imu.accelerometer_recording);
 }
 
-// Two files as one recording.
-std::unique_ptr<RecordingReader> openBoth(const std::filesystem::path& first,
-                                          const std::filesystem::path& second, const ColumnNames& names) {
+}  // namespace
+
+std::string reversalNote(const SessionCamera& camera) {
+  const Mirroring mirroring = camera.mirrored.value_or(Mirroring::None);
+  if (mirroring == Mirroring::None) return {};
+  return fmt::format(
+      "{}: the session states that its image is mirrored ({}), which is reversed on reading; reverse "
+      "it before using this result, too",
+      camera.name, kMirroringNames[static_cast<std::size_t>(mirroring)]);
+}
+
+std::unique_ptr<RecordingReader> openBoth(const std::filesystem::path& gyroscope,
+                                          const std::filesystem::path& accelerometer,
+                                          const ColumnNames& names) {
   std::vector<JoinedReader::Part> parts;
-  const std::string second_name = accelerometerTable(first, second);
+  const std::string own_name = accelerometerTable(gyroscope, accelerometer);
   for (const auto& [file, name] :
-       {std::pair{first, first.filename().string()}, std::pair{second, second_name}}) {
+       {std::pair{gyroscope, gyroscope.filename().string()}, std::pair{accelerometer, own_name}}) {
     const auto own = names.find(name);
     const ColumnNames columns =
         own == names.end() ? ColumnNames{} : ColumnNames{{file.filename().string(), own->second}};
-    parts.push_back(
-        {openRecording(file, columns), name == second_name && name != file.filename() ? name : ""});
+    parts.push_back({openRecording(file, columns), name == own_name && name != file.filename() ? name : ""});
   }
   return std::make_unique<JoinedReader>(std::move(parts));
 }
-
-}  // namespace
 
 SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
     : session_(session), streams_(stop) {

@@ -6,12 +6,23 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace evical {
+
+// States that images are reversed, for the notes of a result; empty if they are not.
+std::string reversalNote(const SessionCamera& camera);
+
+// Tables of a gyroscope and an accelerometer as one recording. `names`: header lines by table.
+std::unique_ptr<RecordingReader> openBoth(const std::filesystem::path& gyroscope,
+                                          const std::filesystem::path& accelerometer,
+                                          const ColumnNames& names = {});
 
 // Sensor numbers of packets: cameras from 0, then IMUs.
 class SessionRecording {

@@ -27,6 +27,7 @@ class TestImuLogs : public QObject {
   void disorderAndSecondClocks_areRemoved();
   void coarseStamps_becomeSteadyTimes();
   void severalImus_stayTogether();
+  void twoTablesOfAnImu_areJoined();
 
  private:
   using Times = std::vector<std::int64_t>;
@@ -101,6 +102,37 @@ void TestImuLogs::coarseStamps_becomeSteadyTimes() {
   QCOMPARE(logs.faults().size(), std::size_t{1});
   QVERIFY(logs.faults().front().kind == FaultKind::Encoding);
   QVERIFY(std::abs(logs.stampStep_s(0) - 0.01) < 1e-6);
+}
+
+void TestImuLogs::twoTablesOfAnImu_areJoined() {
+  constexpr int kRows = 4000;
+  const auto writeTable = [&](const char* name, const char* header, std::int64_t later_ns) {
+    const std::filesystem::path path = folder_.filePath(name).toStdString();
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream file(path);
+    file << header;
+    for (int i = 0; i < kRows; ++i) file << fmt::format("{},0.1,{},9.8\n", later_ns + 5'000'000LL * i, i % 7);
+    return path;
+  };
+  std::vector<std::filesystem::path> logs;
+  for (const auto& [day, from_ns] :
+       {std::pair{"1", std::int64_t{1'000'000}}, std::pair{"2", 100 * kSecond_ns}}) {
+    logs.push_back(writeTable(fmt::format("{}/Accelerometer.csv", day).c_str(), "t_ns,ax,ay,az\n", from_ns));
+    logs.push_back(
+        writeTable(fmt::format("{}/Gyroscope.csv", day).c_str(), "t_ns,gx,gy,gz\n", from_ns + 700));
+  }
+  NamedResult before = resultOf({"imu"});
+  before.imus[0].stream = "Gyroscope.csv";
+  before.imus[0].accelerometer_stream = "Accelerometer.csv";
+  SessionImu reading;
+  reading.stream = "Gyroscope.csv";
+  reading.accelerometer_stream = "Accelerometer.csv";
+  ImuLogs joined(logs, before, {}, {{"imu", reading}});
+  QCOMPARE(read(joined).size(), std::size_t{4 * kRows});
+  QVERIFY(joined.notes().empty());
+  const NamedResult other = resultOf({"imu"});
+  ImuLogs named(logs, other, {.streams = {{"imu", "Gyroscope.csv + Accelerometer.csv"}}});
+  QCOMPARE(read(named).size(), std::size_t{4 * kRows});
 }
 
 // A comparison of two IMUs takes one that is 3 s behind for one with a gap.
