@@ -53,8 +53,7 @@ struct Found {
 void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera, bool alone,
                const IntrinsicsRun& run, const RunContext& context, Found& found) {
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result, run.story};
-  for (const RecordingFault& fault : run.pass.faults) named.notes.push_back(fault.text);
+  const NamedIntrinsics named = namedIntrinsics(camera, run, kVersion);
   std::filesystem::path folder = arguments.output;
   if (!alone) makeOutputFolder(folder /= camera.name);
   for (FileContent& file : intrinsicsFiles(folder, named, run.pass.cameras))

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -113,8 +114,10 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
     text += fmt::format("  - {{model: {}, errors: {:.4g}, circles: {{used: {}, of: {}}}}}\n",
                         cameraModelName(tried.model), tried.spread_sigma, tried.circles_used, tried.circles);
   text += fmt::format("passes: {}\nmoved_px: {:.6g}\n", r.passes, r.moved_px);
-  text += r.advice.empty() ? "advice: []\n" : "advice:\n";
-  for (const std::string& advice : r.advice) text += fmt::format("  - {}\n", yamlText(advice));
+  for (const auto& [key, texts] : {std::pair("advice", &r.advice), std::pair("notes", &named.notes)}) {
+    text += fmt::format("{}:{}\n", key, texts->empty() ? " []" : "");
+    for (const std::string& each : *texts) text += fmt::format("  - {}\n", yamlText(each));
+  }
   return text + fmt::format("timing_s: {{total: {:.3f}}}\nprogram: {{version: {}}}\n", r.elapsed_s,
                             yamlText(named.version));
 }

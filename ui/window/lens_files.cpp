@@ -29,8 +29,7 @@ std::vector<FileContent> lensFilesOf(const LensRecord& record, const QString& ve
 }  // namespace
 
 NamedIntrinsics namedLens(const LensRecord& record, const QString& version) {
-  const SessionCamera& camera = record.session.cameras.at(record.camera);
-  return {camera.name, camera.stream, version.toStdString(), record.run->result, record.run->story};
+  return namedIntrinsics(record.session.cameras.at(record.camera), *record.run, version.toStdString());
 }
 
 LensFiles::LensFiles(Workbench& workbench, QWidget* window)

@@ -2,10 +2,12 @@
 
 #include "core/export/kalibr_text.h"
 #include "core/export/ros_camera.h"
+#include "core/pipeline/pass/session_recording.h"
 #include "core/report/detections_csv.h"
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace evical {
 
@@ -17,6 +19,14 @@ std::vector<FileContent> intrinsicsFiles(const std::filesystem::path& folder, co
           {folder / "camchain.yaml", camchainYaml(named.stream, camera)},
           {folder / "projection_std.csv", imageMapCsv(named.result.image)},
           {folder / "detections.csv", detectionsCsv(seen)}};
+}
+
+NamedIntrinsics namedIntrinsics(const SessionCamera& camera, const IntrinsicsRun& run,
+                                const std::string& version) {
+  NamedIntrinsics named{camera.name, camera.stream, version, run.result, run.story};
+  if (std::string note = reversalNote(camera); !note.empty()) named.notes.push_back(std::move(note));
+  for (const RecordingFault& fault : run.pass.faults) named.notes.push_back(fault.text);
+  return named;
 }
 
 NamedResult lensAsResult(const NamedIntrinsics& named, CameraKind kind) {

@@ -19,6 +19,7 @@
 #include "core/optimisation/uncertainty/shared_sensors.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/pass_input.h"
+#include "core/pipeline/pass/session_recording.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/rig/calibrated_lenses.h"
 #include "core/pipeline/rig/calibration_checks.h"
@@ -503,11 +504,7 @@ class Calibration {
           fmt::format("{}: therefore, the option {} was set", freed.text, freed.repair->text()));
     tellRejected();
     for (const SessionCamera& camera : session_.cameras)
-      if (camera.mirrored.value_or(Mirroring::None) != Mirroring::None)
-        result.notes.push_back(
-            fmt::format("{}: the session states that its image is mirrored ({}), which is reversed on "
-                        "reading; reverse it before using this result, too",
-                        camera.name, kMirroringNames[static_cast<std::size_t>(*camera.mirrored)]));
+      if (std::string note = reversalNote(camera); !note.empty()) result.notes.push_back(std::move(note));
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());

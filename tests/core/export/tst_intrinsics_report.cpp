@@ -98,8 +98,10 @@ class TestIntrinsicsReport : public QObject {
   }
 
   void map_hasSigmasAndCorrelations() {
-    const YamlNode root = YamlNode::parse(
-        intrinsicsResultYaml(sampleForIntrinsicsReport(CameraModel::PinholeRadtan)), "x.yaml");
+    NamedIntrinsics named = sampleForIntrinsicsReport(CameraModel::PinholeRadtan);
+    named.notes = {"left: the tags are rotated"};
+    const YamlNode root = YamlNode::parse(intrinsicsResultYaml(named), "x.yaml");
+    QCOMPARE(root["notes"].items()[0].text(), named.notes[0]);
     QCOMPARE(root["status"].text(), std::string("ok"));
     QCOMPARE(root["intrinsics_std"]["focal_length_px"].reals(2)[0], 0.05);
     QCOMPARE(root["intrinsics_std"]["distortion"].reals(4)[3], 0.05);
