@@ -89,12 +89,13 @@ MainWindow::~MainWindow() = default;
 
 void MainWindow::makeCentre() {
   stack_ = new PageStack(this);
-  stack_->setMinimumSize(700, 380);  // the largest screen would exceed small displays
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
   exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
+  // The largest page would exceed small displays. An error takes its place from the page, not from the display.
+  pages->setMinimumSize(716, 396);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
