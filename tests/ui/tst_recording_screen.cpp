@@ -189,6 +189,7 @@ class TestRecordingScreen : public QObject {
     card.setUnconfirmedBoard({});
     test.screen.setProblems(
         {{"board.radius_m", "must be less than half"}, {"cameras.left.intrinsics", "bad"}, {"imus", "x"}});
+    QVERIFY(places() == before);
     QVERIFY(test.problems().contains("bad") && test.problems().contains("x"));
     test.screen.setProblems({});
     card.clear();

@@ -5,6 +5,7 @@
 #include "ui/forms/form_label.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_drawing.h"
+#include "ui/screens/wrapped_label.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -104,7 +105,7 @@ BoardForm::BoardForm(QWidget* parent)
       circles_(new QComboBox(this)),
       seen_by_(new FormLabel({}, "", this)),
       name_problem_(new FormLabel({}, "problem", this)),
-      problem_(new FormLabel({}, "problem", this)),
+      problem_(wrappedLabel({}, "problem", this)),
       drawing_(new BoardDrawing(this)) {
   type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"),
                    tr("ChArUco"), tr("Points of a table")});
@@ -128,13 +129,15 @@ BoardForm::BoardForm(QWidget* parent)
   form_->addRow(tr("Circles"), circles_);
   addMore();
   form_->setContentsMargins(0, 0, 4, 0);
-  auto* const row = new QHBoxLayout;
+  // A problem takes its place from the drawing: fields must not move under the mouse.
+  problem_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  auto* const beside = new QVBoxLayout;
+  beside->addWidget(drawing_, 1);
+  beside->addWidget(problem_);
+  auto* const row = new QHBoxLayout(this);
+  row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(new FieldsArea(form_, this));
-  row->addWidget(drawing_, 1);
-  auto* const layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(row, 1);
-  layout->addWidget(problem_);  // below: fields must not move under the mouse
+  row->addLayout(beside, 1);
 
   connect(type_, &QComboBox::activated, this, [this] { say("type"); });
   connect(circles_, &QComboBox::activated, this, [this] { say("circles"); });

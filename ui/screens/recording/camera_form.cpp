@@ -26,12 +26,6 @@ namespace {
 constexpr int kNotKnown = static_cast<int>(kCameraModelNames.size());  // last entry in the list of models
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
-QLabel* hiddenProblemLabel(QWidget* parent) {
-  auto* const label = new FormLabel({}, "problem", parent);
-  label->hide();
-  return label;
-}
-
 void showText(QLabel* label, const QString& text) {
   label->setText(text);
   label->setVisible(!text.isEmpty());
@@ -56,8 +50,7 @@ CameraForm::CameraForm(QWidget* parent)
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       coefficient_names_(new QLabel(this)),
       take_over_(new QPushButton(tr("Use the last run's estimate"), this)),
-      file_problem_(hiddenProblemLabel(this)),
-      problem_(hiddenProblemLabel(this)) {
+      file_problem_(new FormLabel({}, "problem", this)) {
   for (int model = 0; model < kNotKnown; ++model)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
   model_->addItem(tr("Unknown: calibrated first"));
@@ -88,6 +81,7 @@ CameraForm::CameraForm(QWidget* parent)
   take_over_->setObjectName("take_over");
   take_over_->setToolTip(tr("Saves these intrinsics with the session, for use in the next runs"));
   take_over_->hide();
+  file_problem_->hide();
   connect(take_over_, &QPushButton::clicked, this, &CameraForm::takeOver);
   auto* const coefficients = new QWidget(this);
   auto* const row = new QHBoxLayout(coefficients);
@@ -135,7 +129,6 @@ CameraForm::CameraForm(QWidget* parent)
   form_->addRow(tr("Shutter"), shutter_);
   form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
-  form_->addRow(problem_);  // below: fields must not move under the mouse
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
@@ -333,10 +326,6 @@ void CameraForm::loadIntrinsics(const QString& file) {
   changed.resolution_px = own;
   showText(file_problem_, {});
   emit edited(changed, "intrinsics_file");
-}
-
-void CameraForm::setProblem(const QString& text) {
-  showText(problem_, text);
 }
 
 }  // namespace evical::ui

@@ -31,7 +31,6 @@ class CameraForm : public QWidget {
   // several.
   void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {},
                  const std::vector<std::string>& boards = {});
-  void setProblem(const QString& text);
   void offerShutter(bool offered);  // for cameras that may have frames
   // Intrinsics of the last run; offered while the camera has none.
   void setFound(const std::optional<CameraIntrinsics>& found);
@@ -66,7 +65,7 @@ class CameraForm : public QWidget {
   QLabel* coefficient_names_;
   std::optional<CameraIntrinsics> found_;
   QPushButton* take_over_;
-  QLabel *file_problem_, *problem_;
+  QLabel* file_problem_;
 };
 
 }  // namespace evical::ui

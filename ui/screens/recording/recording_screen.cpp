@@ -354,19 +354,22 @@ std::optional<CameraIntrinsics> RecordingScreen::foundIntrinsics(std::size_t cam
   return camera < found_intrinsics_.size() ? found_intrinsics_[camera] : std::nullopt;
 }
 
+// Problems are on the card and below the board's drawing, which have room for them: fields must not move.
 void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
-  QStringList on_card;  // on the card, which has room for them: fields must not move
-  std::vector<QString> at_cameras(cameras_.size());
+  QStringList on_card;
+  std::vector<bool> wrong(cameras_.size(), false);
   for (const auto& [field, text] : field_and_text) {
-    bool placed = false;
+    QString said = text;
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      if (!field.startsWith(QString::fromStdString("cameras." + session_.cameras[i].name + "."))) continue;
-      at_cameras[i] = text;
-      placed = true;
+      const QString name = QString::fromStdString(session_.cameras[i].name);
+      if (!field.startsWith("cameras." + name + ".")) continue;
+      wrong[i] = true;
+      if (cameras_.size() > 1) said = name + ": " + text;
     }
-    if (placed || !BoardsForm::isOfBoards(field)) on_card << text;
+    if (!BoardsForm::isOfBoards(field)) on_card << said;
   }
-  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
+  for (std::size_t i = 0; i < cameras_.size(); ++i)
+    sensors_->setTabIcon(static_cast<int>(i), icon(wrong[i] ? "warning" : "camera"));
   boards_->setProblems(field_and_text);
   check_->setMissing(inFormWords(on_card.join('\n')));
   problems_ = field_and_text.size();
