@@ -4,6 +4,7 @@
 #include "core/base/time.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/ideal_views.h"
+#include "tests/support/rendered_board.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
 #include "tests/ui/screenshots.h"
@@ -189,6 +190,30 @@ class TestDetectionFrames : public QObject {
                                      [](const auto& s) { return s.verdict == StageVerdict::Failed; });
     QVERIFY(failed != analysis.stages.rend());
     QCOMPARE(QString::fromStdString(failed->stage), stage);
+  }
+
+  void analysis_tellsHowTagsDifferFromUsualOnes() {
+    PrintedBoard printed;
+    printed.board.type = BoardType::AprilGrid;
+    printed.board.rows = printed.board.cols = 4;
+    printed.board.spacing_m = 0.1;
+    printed.board.tag_size_m = 0.075;
+    printed.clockwise_turns = 1;
+    const GrayImage picture = renderBoard(printed, distortingCamera(), lookAt(printed.board, 0.6, {}), {});
+    DetectionFramesAsked asked(*recorded_);
+    asked.question.board = printed.board;
+    asked.change(recorded_->folder.path().toStdString(), [&](Frame& frame) {
+      frame.format = FrameFormat::Gray8;
+      frame.size_px = picture.size_px;
+      frame.row_bytes = static_cast<std::size_t>(picture.size_px.width_px);
+      frame.bytes = picture.pixels;
+    });
+    const WindowAnalysis analysis = asked.at(foundAt_s());
+    QCOMPARE(analysis.outcome, WindowOutcome::Complete);
+    const auto said = std::find_if(analysis.stages.begin(), analysis.stages.end(),
+                                   [](const StageReport& stage) { return stage.stage == "print"; });
+    QVERIFY(said != analysis.stages.end());
+    QVERIFY2(said->text.find("rotated by 90 deg clockwise") != std::string::npos, said->text.c_str());
   }
 
   void screen_showsTheFrameAtTheCursorAndItsPoints() {

@@ -75,7 +75,7 @@ class Tracking {
     }
   }
   BoardObservations finish() { return tracker_.finish(); }
-  std::string doubt() const { return tracker_.doubt(); }
+  const FrameTracker& tracker() const { return tracker_; }
 
  private:
   // Blurred views are shown, too.
@@ -96,7 +96,8 @@ void track(const FrameQuestion& question, const Neighbourhood& neighbours, Windo
   for (const std::size_t k : neighbours.after) tracking.pass(k);
   const BoardObservations seen = tracking.finish();
   FrameFinding& frame = *analysis.frame;
-  frame.doubt = tracking.doubt();
+  frame.doubt = tracking.tracker().doubt();
+  frame.remark = tracking.tracker().remark();
   const auto here = [&](const auto& item) { return item.time_s == analysis.time_s; };
   const auto window = std::find_if(seen.windows.begin(), seen.windows.end(), here);
   if (window == seen.windows.end()) return;

@@ -82,6 +82,7 @@ std::vector<StageReport> describeFrame(const WindowAnalysis& analysis, const Fra
   stages.push_back(searchStage(analysis));
   stages.push_back(pointsStage(analysis, options));
   stages.push_back(blurStage(analysis, options));
+  if (!frame.remark.empty()) stages.push_back({"print", StageVerdict::Note, frame.remark});
   if (!frame.doubt.empty()) stages.push_back({"board", StageVerdict::Failed, frame.doubt});
   return stages;
 }

@@ -51,6 +51,7 @@ struct FrameFinding {
   std::vector<CircleObservation> points;    // in sensor pixels; also unused ones
   std::string problem;                      // reason why it cannot be read
   std::string doubt;                        // evidence against the board's numbers
+  std::string remark;                       // on the print: rotated or renumbered tags
 };
 
 struct WindowAnalysis {
