@@ -74,8 +74,8 @@ CameraForm::CameraForm(QWidget* parent)
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
   centre_y_px_->setToolTip(tr("cy"));
-  auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
-  file->setToolTip(tr("Map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
+  auto* const file = new QPushButton(icon("open"), tr("From a file..."), this);
+  file->setToolTip(tr("Intrinsics: map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
   coefficient_names_->setObjectName("coefficient_names");
   take_over_->setObjectName("take_over");
@@ -115,17 +115,17 @@ CameraForm::CameraForm(QWidget* parent)
   label->setBuddy(model_);
   line->addWidget(label);
   line->addWidget(model_, 1);
+  line->addWidget(file);
   // The rows that most people need are visible in a small window.
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
   form_->addRow(tr("Board"), board_);
   form_->addRow(line);
+  form_->addRow(file_problem_);
   form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
   form_->addRow(tr("Distortion"), coefficient_names_);
   form_->addRow(coefficients);
   form_->addRow(take_over_);
-  form_->addRow(file);
-  form_->addRow(file_problem_);
   form_->addRow(tr("Shutter"), shutter_);
   form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
