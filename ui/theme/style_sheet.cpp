@@ -36,6 +36,7 @@ QListView::item, QTreeView::item { padding: 3px; }
 QTableView::item { padding: 0 8px; }
 QHeaderView::section { background: @window; border: none; border-bottom: 1px solid @line; padding: 5px 6px; }
 QListView#navigation { border: none; border-radius: 0; background: @window; padding: 6px; }
+QTreeView QHeaderView::section { padding: 5px 3px; }
 QListView#navigation::item { border-radius: 6px; padding: 0 6px; margin: 1px 0; }
 QListView#navigation::item:hover { background: @hover; }
 QListView#navigation::item:selected { background: @selected; color: @text; }
