@@ -18,6 +18,7 @@ QToolButton[primary="true"]:disabled { background: @line; color: @faint; }
 QToolButton#cancel { padding: 6px 14px; font-weight: 600; }
 QToolButton[popupMode="2"] { padding-right: 22px; }
 QToolButton::menu-indicator { subcontrol-origin: padding; subcontrol-position: right center; right: 7px; }
+QPushButton::menu-indicator { subcontrol-origin: padding; subcontrol-position: right center; right: 4px; }
 QWidget#sidebar { border-right: 1px solid @line; }
 QPushButton { border: 1px solid @border; border-radius: 6px; padding: 6px 14px; background: @panel; }
 QPushButton:hover { border-color: @accent; }
@@ -35,8 +36,8 @@ QListView, QTreeView, QTableView, QPlainTextEdit, QTextBrowser { border: 1px sol
 QListView::item, QTreeView::item { padding: 3px; }
 QTableView::item { padding: 0 8px; }
 QHeaderView::section { background: @window; border: none; border-bottom: 1px solid @line; padding: 5px 6px; }
-QListView#navigation { border: none; border-radius: 0; background: @window; padding: 6px; }
 QTreeView QHeaderView::section { padding: 5px 3px; }
+QListView#navigation { border: none; border-radius: 0; background: @window; padding: 6px; }
 QListView#navigation::item { border-radius: 6px; padding: 0 6px; margin: 1px 0; }
 QListView#navigation::item:hover { background: @hover; }
 QListView#navigation::item:selected { background: @selected; color: @text; }

@@ -15,7 +15,6 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -223,7 +222,6 @@ QWidget* LensScreen::makeContent() {
   parameters_->setRootIsDecorated(false);
   parameters_->setIndentation(10);
   parameters_->setSelectionMode(QAbstractItemView::ExtendedSelection);
-  parameters_->header()->setStretchLastSection(false);
   auto* const left = new QWidget(content);
   auto* const column = new QVBoxLayout(left);
   column->setContentsMargins(0, 0, 0, 0);
