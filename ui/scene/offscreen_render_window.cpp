@@ -7,6 +7,7 @@
 #include <vtkRect.h>
 
 #include <array>
+#include <utility>
 
 namespace evical::ui {
 
@@ -63,7 +64,7 @@ QImage OffscreenRenderWindow::drawImage(const QSize& size_px) {
   QImage image(size_px, QImage::Format_RGB32);
   ReadPixels(vtkRecti(0, 0, size_px.width(), size_px.height()), 1, GL_BGRA, GL_UNSIGNED_BYTE, image.bits(),
              0);
-  return image.mirrored();
+  return std::move(image).mirrored();
 }
 
 }  // namespace evical::ui

@@ -46,12 +46,17 @@ void paintLegend(QPainter& painter, const std::vector<LegendEntry>& legend) {
   }
 }
 
-// Bottom left; cameras and their axes may pass behind it.
+// Bottom left; cameras and their axes may pass behind it. Without a halo: around so many letters it takes as
+// long as the frame.
 void paintHint(QPainter& painter, const TrajectoryOverlay& overlay) {
   const QFontMetricsF metrics(painter.font());
-  const QPointF centre(kMargin_px + 0.5 * metrics.horizontalAdvance(overlay.hint),
-                       overlay.screen.height() - kMargin_px - 0.5 * metrics.height());
-  paintLabel(painter, centre, overlay.hint, theme().faint_text);
+  const QRectF line(kMargin_px, overlay.screen.height() - kMargin_px - metrics.height(),
+                    metrics.horizontalAdvance(overlay.hint), metrics.height());
+  QColor behind = theme().panel;
+  behind.setAlphaF(0.85F);
+  painter.fillRect(line.adjusted(-3.0, 0.0, 3.0, 0.0), behind);
+  painter.setPen(theme().faint_text);
+  painter.drawText(line, Qt::AlignLeft | Qt::AlignVCenter, overlay.hint);
 }
 
 void paintMessage(QPainter& painter, const TrajectoryOverlay& overlay) {
