@@ -186,7 +186,10 @@ void bindSensors(py::module_& module) {
           "List [width, height] in px, assigned from a list or tuple; None: the recording states it.")
       .def_readwrite("recording", &SessionCamera::recording, "Separate recording; empty: the session's.")
       .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s,
-                     "Known offset that is added to the stream's times.");
+                     "Known offset that is added to the stream's times.")
+      .def_readwrite("rejected_windows_s", &SessionCamera::rejected_windows_s,
+                     "Calibrations of the rig exclude the event windows and frames at these times since the "
+                     "recording's start. This is a copy: assign a list to change it.");
   py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
       .def_readonly("name", &SessionImu::name)
       .def_readwrite("stream", &SessionImu::stream)

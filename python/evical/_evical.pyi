@@ -127,6 +127,7 @@ class SessionCamera:
     resolution_px: Optional[Sequence[int]]
     recording: _Path
     clock_offset_s: float
+    rejected_windows_s: Sequence[float]
 
 class SessionImu:
     @property

@@ -91,7 +91,7 @@ class TestMainWindowWindows : public QObject {
     const int rejected = test.rejectedInList();
     QVERIFY(rejected >= 1);
     QVERIFY(test.document().rejectionsArePending());
-    QVERIFY(!test.window.isWindowModified());  // nothing to be saved with the session
+    QVERIFY(test.window.isWindowModified());
     test.press(Qt::Key_Z, Qt::ControlModifier);
     QCOMPARE(test.rejectedInList(), 0);
     test.press(Qt::Key_Y, Qt::ControlModifier);
@@ -169,6 +169,27 @@ class TestMainWindowWindows : public QObject {
     QVERIFY(count->text().isEmpty());
     test.document().undoStack().setClean();
     QVERIFY(test.window.close());
+  }
+
+  void rejectedWindows_areSavedWithTheSession() {
+    const QString session = copyOfSimulatedSession(scratch_.path());
+    int rejected = 0;
+    {
+      Story test(session);
+      test.rejectRows(20, 22);
+      rejected = test.rejectedInList();
+      answerQuestion(QMessageBox::Cancel);
+      QVERIFY(!test.window.close());
+      test.press(Qt::Key_S, Qt::ControlModifier);
+      QVERIFY(!test.window.isWindowModified());
+      QVERIFY(test.window.close());
+    }
+    Story again(session);
+    QVERIFY(rejected > 0);
+    QCOMPARE(again.rejectedInRun(), rejected);
+    QCOMPARE(again.rejectedInList(), rejected);
+    QVERIFY(!again.document().rejectionsArePending() && !again.window.isWindowModified());
+    QVERIFY(again.window.close());
   }
 
   void everyKeyOfDetection_isOnThePageOfKeys() {

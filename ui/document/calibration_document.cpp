@@ -21,8 +21,13 @@ std::filesystem::path pathOf(const QString& file) {
   return std::filesystem::path(file.toStdString());
 }
 
-RejectedTimes rejectionsOf(const RunRecord& record) {
-  return record.run ? rejectedTimes_s(record.run->pass) : RejectedTimes{};
+// The session's camera with a run's stream, which may have another name and place; null: none.
+SessionCamera* sameStream(const Session& of_run, std::size_t camera, Session& session) {
+  for (SessionCamera& each : session.cameras)
+    if (camera < of_run.cameras.size() && each.stream == of_run.cameras[camera].stream &&
+        each.recording == of_run.cameras[camera].recording)
+      return &each;
+  return nullptr;
 }
 
 // Key of a place in a session: "cameras.left.board" of "session: cameras.left.board".
@@ -67,8 +72,8 @@ class CalibrationDocument::RunCommand final : public QUndoCommand {
   RunCommand(CalibrationDocument& document, const RunRecord& record, const QString& what)
       : QUndoCommand(what),
         document_(document),
-        before_{document.last_, document.previous_, document.rejections_},
-        after_{record, document.last_, rejectionsOf(record)} {
+        before_{document.last_, document.previous_},
+        after_{record, document.last_} {
     document_.run_commands_.push_back(this);
   }
   ~RunCommand() override { std::erase(document_.run_commands_, this); }
@@ -79,22 +84,6 @@ class CalibrationDocument::RunCommand final : public QUndoCommand {
  private:
   CalibrationDocument& document_;
   Runs before_, after_;
-};
-
-class CalibrationDocument::RejectionCommand final : public QUndoCommand {
- public:
-  RejectionCommand(CalibrationDocument& document, RejectedTimes after, const QString& what)
-      : QUndoCommand(what), document_(document), before_(document.rejections_), after_(std::move(after)) {
-    document_.run_commands_.push_back(this);
-  }
-  ~RejectionCommand() override { std::erase(document_.run_commands_, this); }
-
-  void undo() override { document_.set(before_); }
-  void redo() override { document_.set(after_); }
-
- private:
-  CalibrationDocument& document_;
-  RejectedTimes before_, after_;
 };
 
 CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
@@ -138,13 +127,11 @@ void CalibrationDocument::replace(Session session, const QString& session_file, 
   saved_edition_ = edition_;
   last_ = std::move(run);
   previous_ = {};
-  rejections_ = rejectionsOf(last_);
   reference_.reset();
   emit sessionReplaced();
   emit sessionChanged();
   emit fileChanged();
   emit runsChanged();
-  emit rejectionsChanged();
   emit referenceChanged();
 }
 
@@ -236,48 +223,41 @@ void CalibrationDocument::set(const Session& session, int edition) {
 void CalibrationDocument::set(const Runs& runs) {
   last_ = runs.last;
   previous_ = runs.previous;
-  rejections_ = runs.rejections;
   emit runsChanged();
-  emit rejectionsChanged();
 }
 
-void CalibrationDocument::set(const RejectedTimes& rejections) {
-  rejections_ = rejections;
-  emit rejectionsChanged();
+RejectedTimes CalibrationDocument::rejections() const {
+  Session session = session_;
+  RejectedTimes rejected_s(last_.run ? last_.run->pass.cameras.size() : 0);
+  for (std::size_t k = 0; k < rejected_s.size(); ++k)
+    if (const SessionCamera* const camera = sameStream(last_.session, k, session))
+      rejected_s[k] = windowsAt(camera->rejected_windows_s, last_.run->pass.cameras[k]);
+  return rejected_s;
 }
 
 bool CalibrationDocument::rejectionsArePending() const {
-  return rejections_ != rejectionsOf(last_);
+  return last_.run && rejections() != rejectedTimes_s(last_.run->pass);
 }
 
 int CalibrationDocument::rejectedCount() const {
   std::size_t count = 0;
-  for (const std::vector<double>& times_s : rejections_) count += times_s.size();
+  for (const SessionCamera& camera : session_.cameras) count += camera.rejected_windows_s.size();
   return static_cast<int>(count);
 }
 
-RejectedTimes CalibrationDocument::forSessionsCameras(const RejectedTimes& rejected_s) const {
-  RejectedTimes by_camera(session_.cameras.size());
-  const std::vector<SessionCamera>& before = last_.session.cameras;
-  for (std::size_t k = 0; k < by_camera.size(); ++k) {
-    const SessionCamera& camera = session_.cameras[k];
-    for (std::size_t j = 0; j < std::min(before.size(), rejected_s.size()); ++j)
-      if (before[j].stream == camera.stream && before[j].recording == camera.recording)
-        by_camera[k] = rejected_s[j];
-  }
-  return by_camera;
-}
-
-void CalibrationDocument::setRejections(RejectedTimes rejected_s, const QString& what) {
-  if (rejected_s == rejections_) return;
-  undo_stack_.push(new RejectionCommand(*this, std::move(rejected_s), what));
+void CalibrationDocument::setRejections(const RejectedTimes& rejected_s, const QString& what) {
+  if (rejected_s == rejections()) return;
+  Session changed = session_;
+  for (std::size_t k = 0; k < rejected_s.size(); ++k)
+    if (SessionCamera* const camera = sameStream(last_.session, k, changed))
+      camera->rejected_windows_s = rejected_s[k];
+  edit(changed, what);
 }
 
 // If the stack has steps that restore runs, a run is a step, too: otherwise undo would lose it.
 void CalibrationDocument::addRun(RunRecord record) {
   if (!run_commands_.empty()) return addUndoableRun(record, tr("Calibrate"));
-  RejectedTimes rejections = rejectionsOf(record);
-  set(Runs{std::move(record), last_, std::move(rejections)});
+  set(Runs{std::move(record), last_});
 }
 
 void CalibrationDocument::addUndoableRun(const RunRecord& record, const QString& what) {
@@ -286,8 +266,10 @@ void CalibrationDocument::addUndoableRun(const RunRecord& record, const QString&
 
 bool CalibrationDocument::runIsOutdated() const {
   if (!last_.run) return false;
-  const std::filesystem::path folder = "/";
-  return sessionYaml(withoutNames(last_.session), folder) != sessionYaml(withoutNames(session_), folder);
+  const auto text = [](const Session& each) {
+    return sessionYaml(withoutNames(withoutRejectedWindows(each)), "/");
+  };
+  return text(last_.session) != text(session_);
 }
 
 std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {

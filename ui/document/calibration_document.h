@@ -81,15 +81,12 @@ class CalibrationDocument : public QObject {
   // The session has changed since the last run.
   bool runIsOutdated() const;
 
-  // Times that each later calibration excludes, by camera of the last run; initially those that the run
-  // excluded.
-  const RejectedTimes& rejections() const { return rejections_; }
+  // The session's rejected windows among those of the last run, by its cameras.
+  RejectedTimes rejections() const;
   bool rejectionsArePending() const;  // they differ from the last run's
-  int rejectedCount() const;          // windows of all cameras
-  // Such times by camera of the session, which may have other names and cameras than the last run's.
-  RejectedTimes forSessionsCameras(const RejectedTimes& rejected_s) const;
-  // One step of undo.
-  void setRejections(RejectedTimes rejected_s, const QString& what);
+  int rejectedCount() const;          // windows of all cameras of the session
+  // Puts such times into the session: one step of undo.
+  void setRejections(const RejectedTimes& rejected_s, const QString& what);
 
   const std::optional<ReferenceResult>& reference() const { return reference_; }
 
@@ -99,22 +96,18 @@ class CalibrationDocument : public QObject {
   void fileChanged();      // name or modified flag
   void boardConfirmationChanged();
   void runsChanged();
-  void rejectionsChanged();  // also emitted with new runs
   void referenceChanged();
 
  private:
   class EditCommand;
   class RunCommand;
-  class RejectionCommand;
   struct Runs {
     RunRecord last, previous;
-    RejectedTimes rejections;
   };
 
   void replace(Session session, const QString& session_file, RunRecord run = {});
   void set(const Session& session, int edition);
   void set(const Runs& runs);
-  void set(const RejectedTimes& rejections);
 
   Session session_;
   QString file_;
@@ -122,8 +115,7 @@ class CalibrationDocument : public QObject {
   QUndoStack undo_stack_;
   int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit has a new number
   RunRecord last_, previous_;
-  RejectedTimes rejections_;
-  std::vector<const QUndoCommand*> run_commands_;  // commands on the stack for runs and rejections
+  std::vector<const QUndoCommand*> run_commands_;  // commands on the stack for runs
   std::optional<ReferenceResult> reference_;
 };
 

@@ -71,7 +71,7 @@ bool LensDocument::runIsOutdated() const {
       camera.intrinsics_uncertainty.reset();
       camera.resolution_px = {};
     }
-    return sessionYaml(session, "/");
+    return sessionYaml(withoutRejectedWindows(std::move(session)), "/");
   };
   return without_lens(last_.session) != without_lens(document_.session());
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/calibration_job.h"
 
-#include "core/pipeline/rig/detected_recording.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -16,18 +14,6 @@ std::vector<JobStage> jobStages(RunStart start) {
   return stages;
 }
 
-// Windows are rejected after they are detected again, since their times may differ.
-CalibrationRun calibrateWithout(const RejectedTimes& rejected, const Session& session,
-                                const RunContext& context) {
-  if (std::all_of(rejected.begin(), rejected.end(), [](const auto& times_s) { return times_s.empty(); }))
-    return calibrate(session, context);
-  DetectedRecording detected = detectRecording(session, context);
-  DetectionResult pass = withRejected(detected.pass, rejected);
-  pass.read_s = detected.pass.read_s;
-  pass.detect_s = detected.pass.detect_s;
-  return calibrate(session, std::move(pass), context, std::move(detected.intrinsics));
-}
-
 }  // namespace
 
 CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {
@@ -36,15 +22,14 @@ CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(par
   connect(&runner_, &JobRunner::finished, this, &CalibrationJob::finish);
 }
 
-bool CalibrationJob::start(const Session& session, const RejectedTimes& rejected) {
+bool CalibrationJob::start(const Session& session) {
   const auto windows = make_observer_ && !runner_.running() ? make_observer_() : nullptr;
   const std::vector<CameraLens> lenses = givenLenses(session);
   const bool all_known = std::all_of(lenses.begin(), lenses.end(),
                                      [](const CameraLens& lens) { return lens.given.has_value(); });
   const RunStart from = all_known ? RunStart::KnownIntrinsics : RunStart::UnknownIntrinsics;
-  const bool begun = run(session, from, windows, [session, rejected](const RunContext& context) {
-    return calibrateWithout(rejected, session, context);
-  });
+  const bool begun = run(session, from, windows,
+                         [session](const RunContext& context) { return calibrate(session, context); });
   if (begun) emit detecting();
   return begun;
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/data/calibration_stage.h"
-#include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
 #include "ui/jobs/live_view.h"
@@ -24,8 +23,8 @@ class CalibrationJob : public QObject {
   using ObserverMaker = std::function<std::shared_ptr<CalibrationObserver>()>;
   void observeWith(ObserverMaker maker) { make_observer_ = std::move(maker); }
 
-  // Works on a copy, without the rejected windows (by camera; empty: none). False while the runner is busy.
-  bool start(const Session& session, const RejectedTimes& rejected = {});
+  // Works on a copy. False while the runner is busy.
+  bool start(const Session& session);
   // Starts from existing detections.
   bool startAgain(const Session& session, DetectionResult pass,
                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});

@@ -12,8 +12,10 @@ namespace {
 constexpr int kPause_ms = 800;  // avoids checks between key strokes
 
 bool isSame(const Session& one, const Session& other) {
-  const std::filesystem::path folder = "/";
-  return sessionYaml(withoutNames(one), folder) == sessionYaml(withoutNames(other), folder);
+  const auto text = [](const Session& each) {
+    return sessionYaml(withoutNames(withoutRejectedWindows(each)), "/");
+  };
+  return text(one) == text(other);
 }
 
 // By core's names, with shares of the time for a typical recording.

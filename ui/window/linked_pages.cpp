@@ -44,7 +44,8 @@ void wireRejections(DetectionScreen& screen, Workbench& workbench) {
     const bool of_rig = lens.aim() == CalibrationAim::Rig && document.last().run;
     screen.setRejections(of_rig ? std::optional(document.rejections()) : std::nullopt);
   };
-  QObject::connect(&document, &CalibrationDocument::rejectionsChanged, &screen, show);
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, show);
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, show);
   QObject::connect(&lens, &LensDocument::aimChanged, &screen, show);
   QObject::connect(&screen, &DetectionScreen::rejectionsWanted, &document,
                    &CalibrationDocument::setRejections);
@@ -144,7 +145,8 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
         for (const int view : views)
           times_s.push_back(run->pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
         std::sort(times_s.begin(), times_s.end());
-        calibrateRig(workbench, rejections);
+        workbench.document.setRejections(rejections, QObject::tr("Reject event windows"));
+        calibrateRig(workbench);
       });
 }
 
@@ -171,25 +173,22 @@ void linkTime(From* from, To*... to) {
 
 }  // namespace
 
-void calibrateRig(Workbench& workbench, const RejectedTimes& rejections) {
+void calibrateRig(Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   const Session& session = document.session();
   const RunRecord& last = document.last();
-  const RejectedTimes rejected = document.forSessionsCameras(rejections);
   std::optional<DetectedRecording> detected;
-  if (last.run && rejections != rejectedTimes_s(last.run->pass)) detected = lastDetectedFor(session, last);
+  if (document.rejectionsArePending()) detected = lastDetectedFor(session, last);
   if (detected) {
-    workbench.calibration.startAgain(session, withRejected(detected->pass, rejected),
+    workbench.calibration.startAgain(session, withRejected(detected->pass, document.rejections()),
                                      std::move(detected->intrinsics));
     return;
   }
   detected = workbench.check.detectedFor(session);
   if (!detected) {
-    workbench.calibration.start(session, rejected);
+    workbench.calibration.start(session);
     return;
   }
-  if (std::ranges::any_of(rejected, [](const auto& times_s) { return !times_s.empty(); }))
-    detected->pass = withRejected(detected->pass, rejected);
   workbench.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
 }
 

@@ -2,16 +2,13 @@
 // Screens that show a run, during and after it, with a common time cursor.
 #pragma once
 
-#include "core/pipeline/pass/view_rejection.h"
-
 namespace evical::ui {
 
 struct Pages;
 struct Workbench;
 
-// Calibrates the session without windows at these times, by camera of the last run. Existing detections are
-// used again if nothing that they depend on has changed.
-void calibrateRig(Workbench& workbench, const RejectedTimes& rejections);
+// Calibrates the session. Existing detections are used again if nothing that they depend on has changed.
+void calibrateRig(Workbench& workbench);
 
 void wireLinkedPages(const Pages& pages, Workbench& workbench);
 

@@ -168,7 +168,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionChanged, this, &MainWindow::showState);
   connect(&workbench_.document, &CalibrationDocument::fileChanged, this, &MainWindow::showState);
   connect(&workbench_.document, &CalibrationDocument::runsChanged, this, &MainWindow::showState);
-  connect(&workbench_.document, &CalibrationDocument::rejectionsChanged, this, &MainWindow::showRejections);
+  connect(&workbench_.document, &CalibrationDocument::sessionChanged, this, &MainWindow::showRejections);
   connect(&workbench_.lens, &LensDocument::aimChanged, this, &MainWindow::showRejections);
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
@@ -301,7 +301,7 @@ void MainWindow::calibrate() {
   if (workbench_.lens.aim() == CalibrationAim::Camera)
     workbench_.intrinsics.start(session, workbench_.lens.camera());
   else
-    calibrateRig(workbench_, workbench_.document.rejections());
+    calibrateRig(workbench_);
 }
 
 void MainWindow::repair(const Repair& repair) {

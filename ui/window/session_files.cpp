@@ -347,7 +347,8 @@ bool SessionFiles::mayDiscard() {
                            : tr("Save the changes to %1?").arg(workbench_.document.title()),
                        QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
   question.setInformativeText(
-      tr("Board, sensors and parameters are stored in the session file; the recording is not changed."));
+      tr("Board, sensors, parameters and rejected windows are stored in the session file; the recording is "
+         "not changed."));
   question.setDefaultButton(QMessageBox::Save);
   const int answer = question.exec();
   if (answer == QMessageBox::Save) return save();

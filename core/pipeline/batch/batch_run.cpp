@@ -38,7 +38,7 @@ std::string lastLineOf(const std::filesystem::path& file) {
 // Session file for the job's process: its own, or a copy with the job's recording.
 std::filesystem::path sessionFor(const BatchJob& job, const std::filesystem::path& folder) {
   if (job.recording.empty()) return job.session;
-  Session session = readSessionOfRun(job.session);
+  Session session = withoutRejectedWindows(readSessionOfRun(job.session));
   std::error_code ignored;
   if (!std::filesystem::exists(job.recording, ignored))
     throw badInput(job.recording.string(), "does not exist",

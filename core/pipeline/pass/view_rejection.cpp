@@ -26,30 +26,9 @@ void reportAs(WindowOutcome outcome, double time_s, std::vector<WindowReport>& w
   if (window != windows.end() && window->time_s == time_s) window->outcome = outcome;
 }
 
-double halfWidthAt_s(double time_s, const std::vector<WindowReport>& windows) {
-  const auto window =
-      std::lower_bound(windows.begin(), windows.end(), time_s,
-                       [](const WindowReport& each, double at_s) { return each.time_s < at_s; });
-  return window != windows.end() && window->time_s == time_s ? window->half_width_s : 0.0;
-}
-
-// By view: it is the nearest one to a rejected time, which is within its window. After another detection,
-// windows may have other centres.
-std::vector<bool> areRejected(const std::vector<double>& rejected_s, const std::vector<BoardView>& views,
-                              const std::vector<WindowReport>& windows) {
-  std::vector<bool> rejected(views.size(), false);
-  for (const double time_s : rejected_s) {
-    auto nearest = std::lower_bound(views.begin(), views.end(), time_s,
-                                    [](const BoardView& each, double at_s) { return each.time_s < at_s; });
-    if (nearest == views.end() ||
-        (nearest != views.begin() && time_s - std::prev(nearest)->time_s < nearest->time_s - time_s)) {
-      if (nearest == views.begin()) continue;
-      --nearest;
-    }
-    if (std::abs(nearest->time_s - time_s) <= halfWidthAt_s(nearest->time_s, windows))
-      rejected[static_cast<std::size_t>(nearest - views.begin())] = true;
-  }
-  return rejected;
+bool hasBoard(const WindowReport& window) {
+  return window.outcome == WindowOutcome::Complete || window.outcome == WindowOutcome::Partial ||
+         window.outcome == WindowOutcome::RejectedByHand;
 }
 
 void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
@@ -60,10 +39,9 @@ void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
              std::back_inserter(all), earlier);
   camera.views.clear();
   rejected_views.clear();
-  const std::vector<bool> are_rejected = areRejected(rejected_s, all, camera.windows);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    BoardView& view = all[i];
-    const bool rejected = are_rejected[i];
+  const std::vector<double> centres_s = windowsAt(rejected_s, camera);
+  for (BoardView& view : all) {
+    const bool rejected = std::ranges::binary_search(centres_s, view.time_s);
     const WindowOutcome found =
         view.kind == ViewKind::Complete ? WindowOutcome::Complete : WindowOutcome::Partial;
     reportAs(rejected ? WindowOutcome::RejectedByHand : found, view.time_s, camera.windows);
@@ -81,6 +59,33 @@ DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& r
     divide(rejected_s[k], divided.cameras[k], divided.rejected_views[k]);
   divided.read_s = divided.detect_s = 0.0;
   return divided;
+}
+
+std::vector<double> windowsAt(const std::vector<double>& times_s, const BoardObservations& camera) {
+  std::vector<double> centres_s;
+  for (const double time_s : times_s) {
+    const WindowReport* nearest = nullptr;
+    for (const WindowReport& window : camera.windows)
+      if (hasBoard(window) &&
+          (nearest == nullptr || std::abs(window.time_s - time_s) < std::abs(nearest->time_s - time_s)))
+        nearest = &window;
+    const bool inside = nearest != nullptr && std::abs(nearest->time_s - time_s) <= nearest->half_width_s;
+    centres_s.push_back(inside ? nearest->time_s : time_s);
+  }
+  std::ranges::sort(centres_s);
+  centres_s.erase(std::unique(centres_s.begin(), centres_s.end()), centres_s.end());
+  return centres_s;
+}
+
+void rejectAsIn(const Session& session, DetectionResult& pass) {
+  for (std::size_t k = 0; k < std::min(session.cameras.size(), pass.cameras.size()); ++k) {
+    std::vector<double> times_s = session.cameras[k].rejected_windows_s;
+    if (times_s.empty()) continue;
+    pass.rejected_views.resize(pass.cameras.size());
+    const std::vector<double> before_s = rejectedTimes_s(pass.cameras[k]);
+    times_s.insert(times_s.end(), before_s.begin(), before_s.end());
+    divide(times_s, pass.cameras[k], pass.rejected_views[k]);
+  }
 }
 
 DetectionResult withoutViews(const DetectionResult& pass, std::size_t camera, std::span<const int> views) {

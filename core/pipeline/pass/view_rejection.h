@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/session/session.h"
 
 #include <cstddef>
 #include <span>
@@ -18,6 +19,13 @@ using RejectedTimes = std::vector<std::vector<double>>;
 // views are no longer known stay rejected. Window reports are updated, so that all counts agree. Nothing was
 // read for the new pass: its read_s and detect_s are 0.
 DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& rejected_s);
+
+// Rejects the windows that the session rejects, in addition to those that are.
+void rejectAsIn(const Session& session, DetectionResult& pass);
+
+// Centres of the windows with the board that contain these times: another detection may have other centres.
+// Times without such a window stay.
+std::vector<double> windowsAt(const std::vector<double>& times_s, const BoardObservations& camera);
 
 // The pass with these views of a camera rejected as well: indices into pass.cameras[camera].views, in any
 // order, duplicates allowed.

@@ -195,6 +195,7 @@ class Calibration {
   }
 
   void prepareInput() {
+    rejectAsIn(session_, run_.pass);
     checkPass(session_, context_, run_.pass);
     input_ = makeInput(session_, run_.pass);
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);

@@ -18,7 +18,8 @@ namespace evical {
 namespace {
 
 // The session with only those settings that affect detection.
-Session withoutLaterStages(Session session) {
+Session withoutLaterStages(const Session& given) {
+  Session session = withoutRejectedWindows(given);
   session.options.initialisation = InitialisationOptions();
   session.options.optimisation = OptimisationOptions();
   session.options.report = ReportOptions();

@@ -9,6 +9,7 @@
 #include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numbers>
@@ -180,6 +181,8 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
   if (!camera.board.empty()) text += fmt::format("    board: {}\n", yamlText(camera.board));
   if (camera.mirrored)
     text += fmt::format("    mirrored: {}\n", kMirroringNames.at(static_cast<std::size_t>(*camera.mirrored)));
+  if (!camera.rejected_windows_s.empty())
+    text += fmt::format("    rejected_windows_s: [{}]\n", fmt::join(camera.rejected_windows_s, ", "));
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
   if (camera.intrinsics && camera.intrinsics_uncertainty)
     text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);
@@ -238,6 +241,11 @@ std::vector<CameraLens> givenLenses(const Session& session) {
     lenses.push_back(givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty));
   }
   return lenses;
+}
+
+Session withoutRejectedWindows(Session session) {
+  for (SessionCamera& camera : session.cameras) camera.rejected_windows_s.clear();
+  return session;
 }
 
 std::string accelerometerTable(const std::filesystem::path& gyroscope,

@@ -34,6 +34,8 @@ struct SessionCamera {
   // Mirroring by the driver, which is reversed on reading; resolution and intrinsics are those of the image
   // without it. Absent: unknown, read as not mirrored.
   std::optional<Mirroring> mirrored = {};
+  // Calibrations of the rig exclude the event windows and frames at these times since the recording's start.
+  std::vector<double> rejected_windows_s = {};
 };
 
 struct SessionImu {
@@ -92,6 +94,9 @@ struct Session {
   std::size_t referenceImu() const;                              // index into imus; 0 if there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 if the reference is an IMU
 };
+
+// For another recording, or for results that do not depend on them.
+Session withoutRejectedWindows(Session session);
 
 // Stream of an accelerometer's own table: the file's name, with its folder if the gyroscope's is the same.
 std::string accelerometerTable(const std::filesystem::path& gyroscope,

@@ -43,6 +43,7 @@ void setRecording(const std::filesystem::path& recording, Session& session) {
       std::any_of(session.imus.begin(), session.imus.end(), hasOwn) || !session.more_recordings.empty())
     throw badInput(session.source.string(), "its sensors have separate recordings",
                    "Write a session for the new recordings, and give it instead of the recording");
+  session = withoutRejectedWindows(std::move(session));
   session.recording = recording;
   session.time_range_s.reset();
 }

@@ -148,8 +148,8 @@ SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_na
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
   map.allowOnly({"recording", "stream", "points", "clock_offset_s", "clock_scale", "columns", "resolution_px",
-                 "shutter", "same_sensor_as", "same_sensor_check", "board", "mirrored", "intrinsics",
-                 "intrinsics_std", "intrinsics_correlation"});
+                 "shutter", "same_sensor_as", "same_sensor_check", "board", "mirrored", "rejected_windows_s",
+                 "intrinsics", "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readCameraSource(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
@@ -158,6 +158,10 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, co
   if (const auto node = map.find("board")) camera.board = nameFrom(*node);
   if (const auto node = map.find("mirrored"))
     camera.mirrored = static_cast<Mirroring>(node->choice(kMirroringNames));
+  if (const auto node = map.find("rejected_windows_s"))
+    for (const YamlNode& time : node->items())
+      camera.rejected_windows_s.push_back(time.real(0.0, kLargestOffset_s, "s"));
+  std::ranges::sort(camera.rejected_windows_s);
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics) throw sigmas->error("is given without intrinsics", "Give intrinsics, too");
   if (!intrinsics) return camera;
@@ -389,6 +393,10 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
       throw several->error(
           "lists recordings, but a sensor has a separate recording",
           "Write a session for each recording, and give all of them " + howTo(HowTo::CalibrateEach));
+    for (const SessionCamera& camera : session.cameras)
+      if (!camera.rejected_windows_s.empty())
+        throw several->error(fmt::format("lists recordings, but cameras.{}.rejected_windows_s is of one", camera.name),
+                             "Remove rejected_windows_s");
   }
   return sessions;
 }

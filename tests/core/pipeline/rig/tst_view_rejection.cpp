@@ -1,5 +1,6 @@
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
+#include "core/pipeline/rig/detected_recording.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 
@@ -68,6 +69,19 @@ class TestViewRejection : public QObject {
         withRejected(simulated_.pass, {{third_s + within_s, camera.windows.back().time_s + 10.0}});
     QCOMPARE(rejectedTimes_s(changed)[0], std::vector{third_s});
     QCOMPARE(changed.cameras[0].views.size(), camera.views.size() - 1);
+  }
+
+  // Together with those that are rejected in the detections, as in those of an earlier run.
+  void windowsOfTheSession_areExcluded() {
+    const std::vector<BoardView>& views = simulated_.pass.cameras[0].views;
+    Session session = simulated_.session;
+    session.cameras[0].rejected_windows_s = {views[3].time_s + 1e-4, views[9].time_s, 1e4};
+    const CalibrationRun run = calibrate(session, withoutViews(simulated_.pass, 0, std::vector{5, 9}), {});
+    QCOMPARE(rejectedTimes_s(run.pass)[0],
+             (std::vector{views[3].time_s, views[5].time_s, views[9].time_s}));
+    QCOMPARE(run.result.rejected_windows.size(), std::size_t{3});
+    QCOMPARE(run.pass.rejected_views[0].size(), std::size_t{3});
+    QVERIFY(detectsTheSame(session, simulated_.session));
   }
 
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {

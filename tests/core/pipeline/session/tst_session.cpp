@@ -246,6 +246,17 @@ class TestSession : public QObject {
     QVERIFY_THROWS_EXCEPTION(CalibrationError, setInSession(session, "cameras.left.mirrored", "z"));
   }
 
+  void rejectedWindows_areReadAndWritten() {
+    const QString stream = "    stream: /left/events\n";
+    const Session session = sessionWith(stream, stream + "    rejected_windows_s: [12.5, 3.0625]\n");
+    QCOMPARE(session.cameras[0].rejected_windows_s, (std::vector{3.0625, 12.5}));
+    writeSession(session, folder() / "again.yaml");
+    QCOMPARE(readSession(folder() / "again.yaml").cameras[0].rejected_windows_s,
+             session.cameras[0].rejected_windows_s);
+    QCOMPARE(sessionYaml(withoutRejectedWindows(session), folder()),
+             sessionYaml(sessionWith("", ""), folder()));
+  }
+
   void camerasOfOneSensor_haveOneLens() {
     const Session session =
         sessionWith("imus:\n", "  frames:\n    stream: /left/image_raw\n    same_sensor_as: left\nimus:\n");
@@ -642,6 +653,8 @@ correlation:
         {"cameras.left.points", "gone.csv' does not exist"});
     row("check of no sensor", "    stream: /left/events\n",
         "    stream: /left/events\n    same_sensor_check: true\n", {"same_sensor_check", "same_sensor_as"});
+    row("rejected window before the start", "    stream: /left/events\n",
+        "    stream: /left/events\n    rejected_windows_s: [-1]\n", {"rejected_windows_s", "below"});
     row("newer session", "evical_session: 1", "evical_session: 2", {"evical_session (line 1)", "above"});
     row("unknown key", "time_range_s:", "time_rang_s:", {"time_rang_s (line 3)", "'time_range_s'"});
     row("unknown export", "reference: left_imu", "reference: left_imu\nexport: [opnvins]",
