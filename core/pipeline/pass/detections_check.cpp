@@ -243,13 +243,14 @@ std::vector<OptionRow> detectionOptions(const Session& session) {
   return differingOptions(deciding);
 }
 
-// Compilation fails if SessionCamera has a member that is missing here. Priors, the lens's uncertainty and the shutter
-// have no effect before the initialisation. The recordings may have been moved.
+// Compilation fails if SessionCamera has a member that is missing here. Priors, the lens's uncertainty, the shutter and
+// rejected windows have no effect before the initialisation. The recordings may have been moved.
 std::vector<DetectionKey> detectionKeys(const SessionCamera& camera) {
   const auto& [name, stream, resolution_px, intrinsics, recording, clock_offset_s, clock_scale, columns,
-               prior, intrinsics_uncertainty, shutter, same_sensor_as, board, mirrored] = camera;
+               prior, intrinsics_uncertainty, shutter, same_sensor_as, board, mirrored, rejected_windows_s] =
+      camera;
   static_cast<void>(std::tie(name, resolution_px, intrinsics, recording, prior, intrinsics_uncertainty,
-                             shutter, same_sensor_as, board));
+                             shutter, same_sensor_as, board, rejected_windows_s));
   return {{"stream", stream},
           {"clock_offset_s", fmt::format("{}", clock_offset_s)},
           {"clock_scale", fmt::format("{}", clock_scale)},
