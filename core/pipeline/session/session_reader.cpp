@@ -395,8 +395,9 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
           "Write a session for each recording, and give all of them " + howTo(HowTo::CalibrateEach));
     for (const SessionCamera& camera : session.cameras)
       if (!camera.rejected_windows_s.empty())
-        throw several->error(fmt::format("lists recordings, but cameras.{}.rejected_windows_s is of one", camera.name),
-                             "Remove rejected_windows_s");
+        throw several->error(
+            fmt::format("lists recordings, but cameras.{}.rejected_windows_s is of one", camera.name),
+            "Remove rejected_windows_s");
   }
   return sessions;
 }

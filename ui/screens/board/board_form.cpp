@@ -131,13 +131,15 @@ BoardForm::BoardForm(QWidget* parent)
   form_->setContentsMargins(0, 0, 4, 0);
   // A problem takes its place from the drawing: fields must not move under the mouse.
   problem_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  auto* const beside = new QVBoxLayout;
-  beside->addWidget(drawing_, 1);
-  beside->addWidget(problem_);
+  auto* const beside = new QWidget(this);
+  auto* const column = new QVBoxLayout(beside);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(drawing_, 1);
+  column->addWidget(problem_);
   auto* const row = new QHBoxLayout(this);
   row->setContentsMargins(0, 0, 0, 0);
   row->addWidget(new FieldsArea(form_, this));
-  row->addLayout(beside, 1);
+  row->addWidget(beside, 1);
 
   connect(type_, &QComboBox::activated, this, [this] { say("type"); });
   connect(circles_, &QComboBox::activated, this, [this] { say("circles"); });
@@ -300,7 +302,7 @@ void BoardForm::sayMeasured(const QString& field) {
 void BoardForm::showNumbersOnly() {
   numbers_only_ = true;
   showRows();
-  drawing_->hide();
+  drawing_->parentWidget()->hide();
   // All rows are visible: the parent scrolls.
   if (auto* const fields = findChild<QScrollArea*>())
     fields->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);

@@ -77,8 +77,7 @@ class TestViewRejection : public QObject {
     Session session = simulated_.session;
     session.cameras[0].rejected_windows_s = {views[3].time_s + 1e-4, views[9].time_s, 1e4};
     const CalibrationRun run = calibrate(session, withoutViews(simulated_.pass, 0, std::vector{5, 9}), {});
-    QCOMPARE(rejectedTimes_s(run.pass)[0],
-             (std::vector{views[3].time_s, views[5].time_s, views[9].time_s}));
+    QCOMPARE(rejectedTimes_s(run.pass)[0], (std::vector{views[3].time_s, views[5].time_s, views[9].time_s}));
     QCOMPARE(run.result.rejected_windows.size(), std::size_t{3});
     QCOMPARE(run.pass.rejected_views[0].size(), std::size_t{3});
     QVERIFY(detectsTheSame(session, simulated_.session));
