@@ -67,9 +67,11 @@ QTreeWidgetItem* itemOf(const Finding& finding) {
   item->setText(FindingTable::kSigmas, QString::number(finding.sigmas, 'f', 1));
   if (finding.edge_px > 0.0) item->setText(FindingTable::kEdge, sizeText(finding.edge_px, "px"));
   item->setText(FindingTable::kDetectable, sizeText(finding.smallest_detectable_change, finding.unit));
-  if (finding.required_detectability > 0.0)
-    item->setText(FindingTable::kRequired, sizeText(finding.required_detectability, finding.unit));
   for (int column = 0; column < FindingTable::kColumns; ++column) item->setToolTip(column, wordsOf(finding));
+  if (finding.required_detectability > 0.0)
+    item->setToolTip(FindingTable::kDetectable,
+                     QObject::tr("The verdict must rule out changes of %1")
+                         .arg(sizeText(finding.required_detectability, finding.unit)));
   for (const ComparedNumber& number : finding.numbers) item->addChild(itemOf(number));
   return item;
 }
@@ -88,12 +90,11 @@ FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   setAccessibleName(tr("Change of each quantity"));
   setColumnCount(kColumns);
   setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Before"), tr("Now, alone"),
-                   QString(QChar(0x3c3)), tr("At the edge"), tr("Detectable"), tr("Required")});
+                   QString(QChar(0x3c3)), tr("At the edge"), tr("Detectable")});
   headerItem()->setToolTip(kSource, tr("Source: stops, another IMU, or the trajectory"));
   headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
   headerItem()->setToolTip(kEdge, tr("Shift of points at the image's edge, in pixels"));
   headerItem()->setToolTip(kDetectable, tr("Smallest change that these data show in 95 of 100 cases"));
-  headerItem()->setToolTip(kRequired, tr("Smallest change that the verdict must rule out"));
   headerItem()->setToolTip(kNow, tr("Estimate from the new data alone"));
   alignNumbers(*headerItem(), kChange, kColumns);
 }

@@ -23,7 +23,6 @@ class FindingTable : public CopyTable {
     kSigmas,
     kEdge,
     kDetectable,
-    kRequired,
     kColumns
   };
 

@@ -173,7 +173,7 @@ void TestSessionRecording::clockScale_startsBehindStrays() {
   SensorPacket packet;
   while (recording.read(packet)) {
   }
-  QVERIFY(recording.faults().front().text.find("1 IMU samples excluded") != std::string::npos);
+  QVERIFY(recording.faults().front().text.find("1 IMU sample excluded") != std::string::npos);
   QVERIFY(std::abs(recording.faults().front().at_s) < 1.0);
 }
 

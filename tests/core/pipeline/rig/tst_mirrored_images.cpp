@@ -324,16 +324,6 @@ class TestMirroredImages : public QObject {
     }
   }
 
-  // Rows count in the reversed image. A mirror in front of the camera, unlike a driver, reverses the order of the read-out.
-  void readOutFromBelow_hasANegativeLineDelay() {
-    SimulatedPass rolling = rig("rolling_shutter");
-    for (BoardView& view : rolling.pass.cameras.front().views)
-      for (CircleObservation& circle : view.circles) circle.rows_below_middle *= -1.0;
-    const CalibrationRun run = calibrate(rolling.session, rolling.pass, RunContext{});
-    QVERIFY(run.result.status == CalibrationStatus::Ok);
-    QVERIFY(std::abs(run.result.state.cameras.front().line_delay_us + 30.0) < 0.5);  // us
-  }
-
   void framesOfTheSensor_showTheDirection() {
     const SimulatedPass davis = rig("davis346_frames");
     for (const Mirroring how : {Mirroring::X, Mirroring::Y}) {
