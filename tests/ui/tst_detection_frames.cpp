@@ -198,6 +198,7 @@ class TestDetectionFrames : public QObject {
     printed.board.rows = printed.board.cols = 4;
     printed.board.spacing_m = 0.1;
     printed.board.tag_size_m = 0.075;
+    printed.board.radius_m = 0.0;
     printed.clockwise_turns = 1;
     const GrayImage picture = renderBoard(printed, distortingCamera(), lookAt(printed.board, 0.6, {}), {});
     DetectionFramesAsked asked(*recorded_);
