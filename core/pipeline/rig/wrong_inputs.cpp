@@ -150,19 +150,14 @@ bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
   return false;
 }
 
-// True if rows of circles are visible in some windows but do not fit the board, as with a wrong lens. If they fit it
-// in several places, the board is given too large, whatever the lens.
-bool missesLattices(const BoardObservations& seen) {
-  const auto count = [&](std::initializer_list<WindowOutcome> outcomes) {
-    return std::ranges::count_if(seen.windows, [&](const WindowReport& window) {
-      return std::ranges::find(outcomes, window.outcome) != outcomes.end();
-    });
+// True if rows of circles are visible in some windows. With a wrong lens they are, but they do not fit the board.
+bool showsLattices(const BoardObservations& seen) {
+  const auto isLattice = [](const WindowReport& window) {
+    return window.outcome != WindowOutcome::TooFewEvents && window.outcome != WindowOutcome::TooFewCircles &&
+           window.outcome != WindowOutcome::NoLattice && window.outcome != WindowOutcome::Unreadable;
   };
-  const auto several = count({WindowOutcome::Ambiguous});
-  const auto others = count({WindowOutcome::TooFewInGrid, WindowOutcome::RefinementFailed,
-                             WindowOutcome::Partial, WindowOutcome::Complete});
   constexpr std::ptrdiff_t kOneIn = 5;
-  return several <= others && kOneIn * (several + others) > std::ssize(seen.windows);
+  return kOneIn * std::ranges::count_if(seen.windows, isLattice) > std::ssize(seen.windows);
 }
 
 // The lens from the views alone; if these do not determine it, from the recording.
@@ -176,7 +171,7 @@ std::optional<IntrinsicsResult> lensAlone(const Session& session, const Calibrat
                                data.observations, data.lens.detection_intrinsics, std::nullopt},
                               *session.options.intrinsics, quiet);
   } catch (const CalibrationError&) {
-    if (!recording_is_there || !missesLattices(data.observations)) return std::nullopt;
+    if (!recording_is_there || !showsLattices(data.observations)) return std::nullopt;
   }
   try {
     return calibrateIntrinsics(session, camera, quiet).result;
