@@ -16,7 +16,7 @@
 namespace evical::ui {
 
 CopyTable::CopyTable(QWidget* parent) : QTreeWidget(parent) {
-  constexpr int kIndentation_px = 14;
+  constexpr int kIndentation_px = 10;
   setSelectionMode(QAbstractItemView::ExtendedSelection);
   setUniformRowHeights(true);
   setIndentation(kIndentation_px);

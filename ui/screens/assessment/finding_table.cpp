@@ -89,7 +89,7 @@ FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("finding_table");
   setAccessibleName(tr("Change of each quantity"));
   setColumnCount(kColumns);
-  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Before"), tr("Now, alone"),
+  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Before"), tr("Now"),
                    QString(QChar(0x3c3)), tr("At the edge"), tr("Detectable")});
   headerItem()->setToolTip(kSource, tr("Source: stops, another IMU, or the trajectory"));
   headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
