@@ -277,7 +277,7 @@ void Batch::reportFits() {
   std::vector<std::vector<std::uint8_t>> view_used;
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
   std::vector<double> normalised2(input_.cameras.size());
-  for (const CircleError& error : circleErrors(input_, solution_.state, options_)) {
+  for (const CircleError& error : circleErrors(input_, solution_.state, options_, &solution_.used_circles)) {
     const bool used = solution_.used_circles[error.camera][error.view][error.index] != 0;
     CameraFit& fit = solution_.cameras[error.camera];
     ++(used ? fit.circles_used : fit.circles_rejected);

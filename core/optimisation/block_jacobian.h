@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/optimisation/unknown_columns.h"
+#include "core/optimisation/view_cost.h"
 
 #include <Eigen/Core>
 
@@ -23,37 +24,45 @@ class ManifoldDerivatives {
 
 class BlockJacobian {
  public:
-  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  using Map = Eigen::Map<const RowMajorMatrix, 0, Eigen::OuterStride<>>;
-
   explicit BlockJacobian(const UnknownColumns& columns) : columns_(columns) {}
 
   void evaluate(std::size_t block, const ManifoldDerivatives& manifolds);
   double evaluateCost(std::size_t block);  // half the sum of squared residuals
 
-  Eigen::Index rows() const { return rows_; }
+  Eigen::Index rows() const { return count_; }
   const std::vector<Eigen::Index>& splineColumns() const { return spline_columns_; }
   const std::vector<Eigen::Index>& borderColumns() const { return border_columns_; }
-  // Columns: splines, border, and the residuals themselves as the last column.
-  const double* data() const { return values_.data(); }
-  Eigen::Index stride() const { return stride_; }
+  std::size_t columnCount() const { return spline_columns_.size() + border_columns_.size(); }
 
-  Map bySplines() const { return {values_.data(), rows_, splineCount(), Eigen::OuterStride<>(stride_)}; }
-  Map byBorder() const {
-    return {values_.data() + splineCount(), rows_, stride_ - 1 - splineCount(),
-            Eigen::OuterStride<>(stride_)};
+  using Map = Eigen::Map<const ViewRows::RowMajorMatrix, 0, Eigen::OuterStride<>>;
+
+  // Rows in the block's own columns: those of its splines and border, or of poses that depend on the first of them.
+  Map ownRows() const {
+    return {rows_.values.data(), count_, rows_.stride - 1, Eigen::OuterStride<>(rows_.stride)};
   }
-  Map residuals() const { return {values_.data() + stride_ - 1, rows_, 1, Eigen::OuterStride<>(stride_)}; }
+  Map residuals() const {
+    return {rows_.values.data() + rows_.stride - 1, count_, 1, Eigen::OuterStride<>(rows_.stride)};
+  }
+  // Derivatives of the own columns from those of the splines' columns and the border's.
+  Eigen::MatrixXd ofOwnColumns(const Eigen::MatrixXd& of_columns) const;
+  // J^T r of each two successive rows, in own columns.
+  Eigen::MatrixXd pairScores() const;
+  // The lower triangle of R^T R, row by row, R being the splines' columns, the border's, and the residuals.
+  void products(std::vector<double>& products) const;
+  // Sum of the rows times these weights, by the splines' columns and the border's.
+  Eigen::VectorXd weightedSum(const Eigen::VectorXd& weights) const;
 
  private:
-  Eigen::Index splineCount() const { return static_cast<Eigen::Index>(spline_columns_.size()); }
   void listColumns(std::span<const std::int32_t> unknowns);
+  void evaluateView(const ViewCost& view, std::span<const std::int32_t> unknowns);
   void copyColumns(const Unknown& unknown, const double* by_numbers, const double* plus, Eigen::Index at);
 
   const UnknownColumns& columns_;
-  Eigen::Index rows_ = 0, stride_ = 0;
+  Eigen::Index count_ = 0;
   std::vector<Eigen::Index> spline_columns_, border_columns_;
-  std::vector<double> values_, residuals_, by_numbers_;
+  ViewRows rows_;  // without poses, if the block is not a view
+  std::vector<double> residuals_, by_numbers_;
+  std::vector<int> widths_;
   std::vector<const double*> parameters_;
   std::vector<double*> jacobians_;
 };

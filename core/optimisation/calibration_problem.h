@@ -1,11 +1,11 @@
 // The batch's unknowns and cost functions as a Ceres problem.
 #pragma once
 
-#include "core/optimisation/circle_cost.h"
 #include "core/optimisation/parameter_blocks.h"
 #include "core/optimisation/pixel_errors.h"
 #include "core/optimisation/problem_builder.h"
 #include "core/optimisation/so3_manifold.h"
+#include "core/optimisation/view_cost.h"
 
 #include <ceres/problem.h>
 #include <ceres/sphere_manifold.h>

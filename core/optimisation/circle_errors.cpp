@@ -2,132 +2,107 @@
 
 #include "core/numerics/robust.h"
 #include "core/optimisation/common_displacement.h"
-#include "core/optimisation/edge_localisation_bias.h"
-#include "core/optimisation/free_intrinsics.h"
-
-#include "core/geometry/circle_conic.h"
-#include "core/geometry/trajectory.h"
-
-#include <Eigen/Cholesky>
+#include "core/optimisation/view_circles.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
+#include <array>
 #include <span>
 #include <utility>
 
 namespace evical {
 namespace {
 
-// In the ideal pixels of the observations.
-std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const CameraState& state,
-                                               const CircleObservation& circle,
-                                               const RigidTransform& camera_from_world, const Board& board,
-                                               const BoardState& board_state) {
-  const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.point_m(circle.circle));
-  const Eigen::Vector3d normal = camera_from_world.rotation * board_state.normal();
-  const auto projected =
-      state.lens.solved
-          ? projectCircleBeside(seenCentre(*camera.lens.detection_intrinsics, circle.centre_px),
-                                *state.lens.solved, in_camera_m, normal, board.radius_m)
-          : projectCircle(*camera.lens.detection_intrinsics, in_camera_m, normal, board.radius_m);
-  return projected ? std::optional(projected->centre_px) : std::nullopt;
-}
-
-// One circle of a view: its error, and L^-1 of its covariance L L^T.
-struct ViewCircle {
-  CircleError* error;
-  const CircleObservation* measured;
-  Eigen::Matrix2d whitening_px;
-};
-
-std::vector<ViewCircle> viewCircles(const BoardObservations& observations, const OptimisationOptions& options,
-                                    std::span<CircleError> view) {
-  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
-  std::vector<ViewCircle> circles;
-  for (CircleError& error : view) {
-    if (!std::isfinite(error.normalised2)) continue;  // behind the camera
-    const CircleObservation& measured = observations.views[error.view].circles[error.index];
-    const Eigen::Matrix2d covariance = measured.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
-    circles.push_back({&error, &measured, covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity())});
-  }
-  return circles;
-}
-
-// Squared deviations of the errors from their median, over sigmas.
-std::vector<double> deviationsFromMedian(const std::vector<ViewCircle>& circles) {
+// Before a selection, circles far from the median error of their view take no part in its displacement.
+CircleFlags nearMedian(const std::vector<CircleMeasurement>& circles, std::span<const CircleError> errors,
+                       double outlier_sigma) {
   std::vector<double> x_px, y_px, deviations2;
-  for (const ViewCircle& circle : circles) {
-    x_px.push_back(circle.error->error_px.x());
-    y_px.push_back(circle.error->error_px.y());
+  for (const CircleError& error : errors) {
+    if (!error.inFront()) continue;
+    x_px.push_back(error.error_px.x());
+    y_px.push_back(error.error_px.y());
   }
   const Eigen::Vector2d median_px(medianOf(std::move(x_px)), medianOf(std::move(y_px)));
-  for (const ViewCircle& circle : circles)
-    deviations2.push_back((circle.whitening_px * (circle.error->error_px - median_px)).squaredNorm());
-  return deviations2;
+  const auto deviation2 = [&](std::size_t i) {
+    return (circles[i].whitening_px * (errors[i].error_px - median_px)).squaredNorm();
+  };
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (errors[i].inFront()) deviations2.push_back(deviation2(i));
+  const double bound = outlier_sigma * std::max(1.0, scaleOfPoints(std::move(deviations2)));
+  CircleFlags near;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    near.push_back(errors[i].inFront() && deviation2(i) <= bound * bound);
+  return near;
 }
 
-// Errors over sigmas of one view, whitened for the displacement that its circles have in common. Circles far from the
-// median take no part in the displacement.
-void normalise(const BoardObservations& observations, const OptimisationOptions& options,
-               std::span<CircleError> view) {
-  const std::vector<ViewCircle> circles = viewCircles(observations, options, view);
-  const std::vector<double> deviations2 = deviationsFromMedian(circles);
-  const double bound = options.outlier_sigma * std::max(1.0, scaleOfPoints(deviations2));
-  std::vector<Eigen::Index> rows;
+// Whitens the errors of one view for the displacement that these of its circles have in common, as the solution does.
+void normalise(const std::vector<CircleMeasurement>& circles, const CircleFlags& common,
+               std::span<CircleError> errors) {
   std::vector<Eigen::Matrix2d> roots;
   std::vector<double> whitened;
-  std::vector<CircleError*> common;
-  for (std::size_t i = 0; i < circles.size(); ++i) {
-    const ViewCircle& circle = circles[i];
-    const Eigen::Vector2d in_sigmas = circle.whitening_px * circle.error->error_px;
-    circle.error->normalised2 = in_sigmas.squaredNorm();
-    if (deviations2[i] > bound * bound) continue;
-    common.push_back(circle.error);
-    rows.push_back(static_cast<Eigen::Index>(whitened.size()));
-    roots.emplace_back(commonDisplacement_px(observations.kind, *circle.measured, options) *
-                       circle.whitening_px);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!common[i]) continue;
+    roots.emplace_back(circles[i].common_px * circles[i].whitening_px);
+    const Eigen::Vector2d in_sigmas = circles[i].whitening_px * errors[i].error_px;
     whitened.insert(whitened.end(), {in_sigmas.x(), in_sigmas.y()});
   }
-  if (common.empty()) return;
-  CommonDisplacement(std::move(rows), roots).whiten(whitened.data(), 1);
-  for (std::size_t k = 0; k < common.size(); ++k)
-    common[k]->normalised2 = Eigen::Map<const Eigen::Vector2d>(&whitened[2 * k]).squaredNorm();
+  CommonDisplacement(roots).whiten(whitened.data(), 1);
+  const double* next = whitened.data();
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!common[i]) continue;
+    errors[i].normalised2 = Eigen::Map<const Eigen::Vector2d>(next).squaredNorm();
+    next += 2;
+  }
+}
+
+// Appends the errors of a view, and returns its measurements.
+std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const CalibrationState& state,
+                                            const OptimisationOptions& options, const CircleModel& model,
+                                            std::size_t camera, std::size_t view,
+                                            std::vector<CircleError>& errors) {
+  const BoardView& seen = input.cameras[camera].observations.views[view];
+  const std::vector<TimedCircle> within = circlesWithin(state, state.cameras[camera], seen);
+  if (within.empty()) return {};
+  std::vector<CircleMeasurement> circles;
+  for (const TimedCircle& circle : within)
+    circles.push_back(measurementOf(input, state, options, camera, seen.circles[circle.index], 1.0));
+  const auto [first, last] = std::ranges::minmax(within, {}, &TimedCircle::time_s);
+  const SegmentTimes segments = segmentsBetween(state, first.time_s, last.time_s);
+  std::vector<const double*> blocks =
+      blocksOfView(state, segments, camera, camera, input.cameras[camera].board);
+  std::array<double, kIntrinsicsCount> intrinsics{};
+  if (model.free_intrinsics) writeIntrinsics(*state.cameras[camera].lens.solved, intrinsics.data());
+  if (model.free_intrinsics) blocks.push_back(intrinsics.data());
+  const ViewCost cost(model, segments, std::move(circles));
+  const std::vector<double> in_sigmas = cost.errorsInSigmas(blocks.data());
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    CircleError& error = errors.emplace_back(CircleError{camera, view, within[i].index});
+    const Eigen::Vector2d of_circle(in_sigmas[2 * i], in_sigmas[2 * i + 1]);
+    error.normalised2 = of_circle.squaredNorm();
+    if (error.inFront())
+      error.error_px = cost.circles()[i].whitening_px.triangularView<Eigen::Lower>().solve(of_circle);
+  }
+  return cost.circles();
 }
 
 }  // namespace
 
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
-                                      const OptimisationOptions& options) {
+                                      const OptimisationOptions& options, const CircleSelection* used) {
   std::vector<CircleError> errors;
-  const So3Spline& rotation = state.world_from_imu_rotation;
-  const VectorSpline& position = state.imu_in_world_m;
-  for (std::size_t c = 0; c < input.cameras.size(); ++c) {
-    const CameraData& camera = input.cameras[c];
-    const CameraState& camera_state = state.cameras[c];
-    for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
-      const auto& circles = camera.observations.views[v].circles;
+  for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
+    const CircleModel model{*input.cameras[camera].lens.detection_intrinsics, input.boardOf(camera).radius_m,
+                            options.huber_sigma, state.cameras[camera].lens.solved.has_value()};
+    const std::vector<BoardView>& views = input.cameras[camera].observations.views;
+    for (std::size_t view = 0; view < views.size(); ++view) {
       const std::size_t first = errors.size();
-      for (std::size_t i = 0; i < circles.size(); ++i) {
-        const CircleObservation& circle = circles[i];
-        const double time_s = circleTime_s(camera_state, circle);
-        if (!rotation.contains(time_s) || !position.contains(time_s)) continue;
-        CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
-        const auto centre_px =
-            predictedCentre(camera, camera_state, circle,
-                            cameraFromWorld(rotation, position, camera_state.reference_from_camera,
-                                            time_s - circle.time_s, circle.time_s),
-                            input.boardOf(c), state.boardAt(camera.board));
-        if (centre_px) {
-          const EdgeLocalisationBiasEffect lead =
-              edgeBiasEffect(*camera.lens.detection_intrinsics, circle, options.slow_edge_speed_px_s);
-          error.error_px = *centre_px + edgeBiasOf(camera_state).times(lead) - circle.centre_px;
-          error.normalised2 = 0.0;
-        }
-        errors.push_back(error);
-      }
-      normalise(camera.observations, options, std::span(errors).subspan(first));
+      const std::vector<CircleMeasurement> circles =
+          appendErrors(input, state, options, model, camera, view, errors);
+      const std::span<CircleError> of_view = std::span(errors).subspan(first);
+      if (of_view.empty()) continue;
+      CircleFlags common = nearMedian(circles, of_view, options.outlier_sigma);
+      for (std::size_t i = 0; used && i < common.size(); ++i)
+        common[i] = of_view[i].inFront() && (*used)[camera][view][of_view[i].index];
+      normalise(circles, common, of_view);
     }
   }
   return errors;

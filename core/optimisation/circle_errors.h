@@ -7,15 +7,10 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/weights.h"
 
+#include <cmath>
 #include <vector>
 
 namespace evical {
-
-// When it was measured, on the reference's clock.
-inline double circleTime_s(const CameraState& camera, const CircleObservation& circle) {
-  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle +
-         camera.exposure_share * circle.longer_exposed_s;
-}
 
 struct CircleError {
   std::size_t camera = 0, view = 0, index = 0;  // index: position in the view's list
@@ -23,11 +18,14 @@ struct CircleError {
       Eigen::Vector2d::Zero();  // predicted - measured, edge localisation bias included
   double normalised2 =
       0.0;  // squared, over sigmas, without the common displacement of the view; infinite behind the camera
+  bool inFront() const { return std::isfinite(normalised2); }
 };
 
-// All circles whose times are in both splines' range, in order of camera, view and list.
+// All circles whose times are in both splines' range, in order of camera, view and list. `used`: those that determine the
+// common displacement of their view, as in the solution; null before a selection.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
-                                      const OptimisationOptions& options);
+                                      const OptimisationOptions& options,
+                                      const CircleSelection* used = nullptr);
 
 // The same for files and displays, with the circles that were not used.
 std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,

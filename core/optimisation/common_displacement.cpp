@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace evical {
 namespace {
@@ -25,8 +24,8 @@ double commonDisplacement_px(CameraKind kind, const CircleObservation& circle, c
   return std::hypot(options.common_displacement_px, options.common_displacement_px2_s / speed_px_s);
 }
 
-CommonDisplacement::CommonDisplacement(std::vector<Eigen::Index> rows, std::span<const Eigen::Matrix2d> roots)
-    : rows_(std::move(rows)), roots_(2 * static_cast<Eigen::Index>(roots.size()), 2) {
+CommonDisplacement::CommonDisplacement(std::span<const Eigen::Matrix2d> roots)
+    : roots_(2 * static_cast<Eigen::Index>(roots.size()), 2) {
   for (std::size_t i = 0; i < roots.size(); ++i)
     roots_.middleRows<2>(2 * static_cast<Eigen::Index>(i)) = roots[i];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(Eigen::Matrix2d(roots_.transpose() * roots_));
@@ -34,20 +33,22 @@ CommonDisplacement::CommonDisplacement(std::vector<Eigen::Index> rows, std::span
   by_sums_ = roots_ * (eigen.eigenvectors() * gains.asDiagonal() * eigen.eigenvectors().transpose());
 }
 
+// Some columns at once, for sums on the stack.
 void CommonDisplacement::whiten(double* matrix, Eigen::Index columns) const {
-  for (Eigen::Index col = 0; col < columns; ++col) {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto k = 2 * static_cast<Eigen::Index>(i);
-      const double* const at = matrix + rows_[i] * columns + col;
-      sum += at[0] * roots_.row(k).transpose() + at[columns] * roots_.row(k + 1).transpose();
+  constexpr Eigen::Index kAtOnce = 16;
+  using Rows = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0,
+                          Eigen::OuterStride<>>;
+  for (Eigen::Index first = 0; first < columns; first += kAtOnce) {
+    const Eigen::Index count = std::min(kAtOnce, columns - first);
+    Rows rows(matrix + first, roots_.rows(), count, Eigen::OuterStride<>(columns));
+    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, kAtOnce> sums(2, count);
+    sums.setZero();
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+      sums.row(0) += roots_(k, 0) * rows.row(k);
+      sums.row(1) += roots_(k, 1) * rows.row(k);
     }
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto k = 2 * static_cast<Eigen::Index>(i);
-      double* const at = matrix + rows_[i] * columns + col;
-      at[0] += by_sums_.row(k).dot(sum);
-      at[columns] += by_sums_.row(k + 1).dot(sum);
-    }
+    for (Eigen::Index k = 0; k < rows.rows(); ++k)
+      rows.row(k) += by_sums_(k, 0) * sums.row(0) + by_sums_(k, 1) * sums.row(1);
   }
 }
 

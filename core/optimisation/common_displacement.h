@@ -11,9 +11,7 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace evical {
 
@@ -24,15 +22,13 @@ double commonDisplacement_px(CameraKind kind, const CircleObservation& circle, c
 
 class CommonDisplacement {
  public:
-  // `rows`: first of the two rows of each circle of one view in the residuals. `roots`: L_i^-1 S.
-  CommonDisplacement(std::vector<Eigen::Index> rows, std::span<const Eigen::Matrix2d> roots);
+  // `roots`: L_i^-1 S of the circles of one view; empty without a displacement.
+  explicit CommonDisplacement(std::span<const Eigen::Matrix2d> roots);
 
-  // Multiplies the view's rows of a row-major matrix of so many columns by (I + B B^T)^(-1/2).
+  // Multiplies the view's rows, two for each circle, of a row-major matrix of so many columns by (I + B B^T)^(-1/2).
   void whiten(double* matrix, Eigen::Index columns) const;
-  const std::vector<Eigen::Index>& rows() const { return rows_; }
 
  private:
-  std::vector<Eigen::Index> rows_;
   Eigen::Matrix<double, Eigen::Dynamic, 2> roots_;    // B
   Eigen::Matrix<double, Eigen::Dynamic, 2> by_sums_;  // B G
 };

@@ -15,7 +15,7 @@
 // m22). Quaternion blocks as in so3_manifold.h.
 #pragma once
 
-#include "core/optimisation/spline_segment.h"
+#include "core/geometry/spline_segment.h"
 
 #include <ceres/cost_function.h>
 #include <Eigen/Core>

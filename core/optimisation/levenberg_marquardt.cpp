@@ -22,46 +22,6 @@ constexpr double kGradientTolerance = 1e-12, kParameterTolerance = 1e-12;
 constexpr int kMostInvalidSteps = 20;
 constexpr double kHeld = 1e30;  // times the diagonal: fixes the unknown
 
-// The unknowns' numbers, concatenated.
-class Numbers {
- public:
-  explicit Numbers(const UnknownColumns& columns) : columns_(columns) {}
-
-  Eigen::VectorXd read() const {
-    std::vector<double> numbers;
-    for (const Unknown& each : columns_.unknowns())
-      if (each.columns > 0) numbers.insert(numbers.end(), each.values, each.values + each.size);
-    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-  }
-  void write(const Eigen::VectorXd& numbers) const {
-    const double* next = numbers.data();
-    for (const Unknown& each : columns_.unknowns()) {
-      if (each.columns == 0) continue;
-      std::copy_n(next, each.size, each.values);
-      next += each.size;
-    }
-  }
-  // Applies a step in the tangent space, within the bounds.
-  void writeMoved(const Eigen::VectorXd& numbers, const Eigen::VectorXd& step) const {
-    const double* from = numbers.data();
-    for (const Unknown& each : columns_.unknowns()) {
-      if (each.columns == 0) continue;
-      const double* const by = step.data() + columns_.firstOf(each);
-      if (each.manifold != nullptr) {
-        each.manifold->Plus(from, by, each.values);
-      } else {
-        for (int i = 0; i < each.size; ++i) each.values[i] = from[i] + by[i];
-      }
-      for (std::size_t i = 0; i < each.lower.size(); ++i)
-        each.values[i] = std::clamp(each.values[i], each.lower[i], each.upper[i]);
-      from += each.size;
-    }
-  }
-
- private:
-  const UnknownColumns& columns_;
-};
-
 class Solver {
  public:
   Solver(CalibrationProblem& problem, const SolverLimits& limits, const std::stop_token& stop)
@@ -91,7 +51,7 @@ class Solver {
   const SolverLimits& limits_;
   const std::stop_token& stop_;
   UnknownColumns columns_;
-  Numbers numbers_;
+  UnknownNumbers numbers_;
   NormalEquations equations_;
   Eigen::VectorXd at_;     // linearisation point of the equations
   Eigen::VectorXd scale_;  // of the columns, at the start

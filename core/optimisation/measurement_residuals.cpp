@@ -1,86 +1,57 @@
 #include "core/optimisation/measurement_residuals.h"
 
 #include "core/base/time.h"
+#include "core/geometry/pose_times.h"
 #include "core/optimisation/bias_knots.h"
-#include "core/optimisation/circle_errors.h"
-#include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/sample_runs.h"
-
-#include <Eigen/Cholesky>
+#include "core/optimisation/view_circles.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 namespace evical {
 namespace {
 
-// Shift of a time by each ppm of drift.
-template <class Sensor>
-double byDrift_s(const Sensor& sensor, double time_s) {
-  return 1e-6 * (time_s - sensor.time_offset_at_s);
+// Circles of one cost function from the first of these on: the view, or rows of a rolling shutter with common pose times,
+// since nothing connects the errors of different rows.
+std::size_t countOfPart(const ProblemBuilder& builder, CameraKind kind,
+                        std::span<const TimedCircle> circles) {
+  if (kind == CameraKind::Events) return circles.size();
+  const ParameterBlocks& parameters = builder.parameters;
+  const CalibrationState& state = parameters.moved();
+  const double longest_s = PoseTimes::longest_s(
+      std::min(state.world_from_imu_rotation.knot_spacing_s, state.imu_in_world_m.knot_spacing_s));
+  const SegmentTimes segment = parameters.segmentAt(circles.front().time_s);
+  const auto beyond = std::ranges::find_if(circles, [&](const TimedCircle& circle) {
+    return circle.time_s - circles.front().time_s > longest_s ||
+           !sameSegment(segment, parameters.segmentAt(circle.time_s));
+  });
+  return static_cast<std::size_t>(beyond - circles.begin());
 }
 
-// Index of the image's cell, of 16 x 10.
-int placeOf(const Eigen::Vector2d& centre_px, const Resolution& resolution_px) {
-  constexpr int kColumns = 16, kRows = 10;
-  const auto cell = [](double at, int size_px, int cells) {
-    return std::clamp(static_cast<int>(std::floor(at * cells / std::max(1, size_px))), 0, cells - 1);
-  };
-  return cell(centre_px.y(), resolution_px.height_px, kRows) * kColumns +
-         cell(centre_px.x(), resolution_px.width_px, kColumns);
-}
-
-CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, std::size_t view,
-                           std::size_t circle, const PixelErrors& pixel_errors) {
-  const CameraData& data = builder.input.cameras[camera];
-  const CircleObservation& observed = data.observations.views[view].circles[circle];
-  const double scale = builder.weights.scales.circles[camera];
-  const double floor_px2 = builder.options.least_centre_sigma_px * builder.options.least_centre_sigma_px;
-  const Eigen::Matrix2d covariance =
-      scale * scale * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
-  CircleMeasurement m;
-  m.time_s = observed.time_s;
-  m.by_drift_s = byDrift_s(builder.parameters.moved().cameras[camera], observed.time_s);
-  m.by_line_s = 1e-6 * observed.rows_below_middle;
-  m.by_exposure_s = observed.longer_exposed_s;
-  m.on_board_m = builder.input.boardOf(camera).point_m(observed.circle);
-  m.centre_px = observed.centre_px;
-  m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead = edgeBiasEffect(*data.lens.detection_intrinsics, observed, builder.options.slow_edge_speed_px_s);
-  m.pixel_error_px = pixel_errors.at(observed);
-  m.common_px = scale * commonDisplacement_px(data.observations.kind, observed, builder.options);
-  m.view = static_cast<int>(view);
-  m.circle = static_cast<int>(circle);
-  m.point = observed.circle;
-  m.place = placeOf(observed.centre_px, data.lens.detection_intrinsics->resolution_px);
-  return m;
-}
-
-// When it was measured, on the trajectory's clock.
-struct TimedCircle {
-  double time_s = 0.0;
-  std::uint32_t view = 0, circle = 0;
-};
-
-// Used circles within the splines' range, in order of time. Not the measurements themselves, which are ten times as
-// large.
-std::vector<TimedCircle> circlesOf(const ProblemBuilder& builder, std::size_t camera) {
-  const CalibrationState& state = builder.parameters.moved();
-  const auto& views = builder.input.cameras[camera].observations.views;
-  std::vector<TimedCircle> circles;
-  for (std::uint32_t view = 0; view < views.size(); ++view) {
-    for (std::uint32_t i = 0; i < views[view].circles.size(); ++i) {
-      if (!builder.weights.used_circles[camera][view][i]) continue;
-      const double time_s = circleTime_s(state.cameras[camera], views[view].circles[i]);
-      if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
-      circles.push_back({time_s, view, i});
-    }
+// Adds one cost function for these circles, in order of time.
+void addView(ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
+             const PixelErrors& pixel_errors, const BoardView& view, std::span<const TimedCircle> circles) {
+  ParameterBlocks& parameters = builder.parameters;
+  CalibrationState& state = parameters.moved();
+  std::vector<CircleMeasurement> measured;
+  measured.reserve(circles.size());
+  for (const TimedCircle& circle : circles) {
+    const CircleObservation& observed = view.circles[circle.index];
+    measured.push_back(measurementOf(builder.input, state, builder.options, camera, observed,
+                                     builder.weights.scales.circles[camera]));
+    measured.back().pixel_error_px = pixel_errors.at(observed);
   }
-  std::ranges::stable_sort(circles, {}, &TimedCircle::time_s);
-  return circles;
+  const SegmentTimes segments = segmentsBetween(state, circles.front().time_s, circles.back().time_s);
+  std::vector<double*> blocks =
+      blocksOfView(state, segments, camera, parameters.sensorOf(camera), builder.input.cameras[camera].board);
+  if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
+  auto* cost = new ViewCost(model, segments, std::move(measured));
+  builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
+                               camera, circles.front().time_s, cost});
 }
 
 // Used samples of the run, with their times and values.
@@ -152,34 +123,20 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run, double sigm
 
 void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
                 const PixelErrors& pixel_errors) {
-  ParameterBlocks& parameters = builder.parameters;
-  CameraState& state = parameters.moved().cameras[camera];
-  CameraState& sensor = parameters.moved().cameras[parameters.sensorOf(camera)];
-  BoardState& board = parameters.moved().boardAt(builder.input.cameras[camera].board);
-  const std::vector<TimedCircle> circles = circlesOf(builder, camera);
-  for (std::size_t begin = 0, end = 0; begin < circles.size(); begin = end) {
-    const double begin_s = circles[begin].time_s;
-    const SegmentTimes segment = parameters.segmentAt(begin_s);
-    while (end < circles.size() && sameSegment(segment, parameters.segmentAt(circles[end].time_s))) ++end;
-    std::vector<CircleMeasurement> measurements;
-    measurements.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i)
-      measurements.push_back(circleOf(builder, camera, circles[i].view, circles[i].circle, pixel_errors));
-    auto* cost = new CircleCost(model, segment, std::move(measurements));
-    std::vector<double*> blocks;
-    parameters.appendRotation(segment, blocks);
-    parameters.appendPosition(segment, blocks);
-    blocks.insert(
-        blocks.end(),
-        {sensor.reference_from_camera.rotation.coeffs().data(),
-         sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
-         &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_localisation_bias_px,
-         &state.slow_edge_localisation_bias_px, &board.scale, &board.stretch, &board.row_curvature_1_m,
-         &board.column_curvature_1_m, &board.twist_1_m, &state.exposure_share,
-         board.world_from_board.rotation.coeffs().data(), board.world_from_board.translation_m.data()});
-    if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
-    builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
-                                 camera, begin_s, cost});
+  const CalibrationState& state = builder.parameters.moved();
+  const BoardObservations& observations = builder.input.cameras[camera].observations;
+  for (std::size_t k = 0; k < observations.views.size(); ++k) {
+    const BoardView& view = observations.views[k];
+    std::vector<TimedCircle> circles = circlesWithin(state, state.cameras[camera], view);
+    std::erase_if(circles, [&](const TimedCircle& circle) {
+      return !builder.weights.used_circles[camera][k][circle.index];
+    });
+    std::ranges::stable_sort(circles, {}, &TimedCircle::time_s);
+    for (std::span<const TimedCircle> rest = circles; !rest.empty();) {
+      const auto part = rest.first(countOfPart(builder, observations.kind, rest));
+      addView(builder, camera, model, pixel_errors, view, part);
+      rest = rest.subspan(part.size());
+    }
   }
 }
 

@@ -2,9 +2,9 @@
 // the current time offsets.
 #pragma once
 
-#include "core/optimisation/circle_cost.h"
 #include "core/optimisation/pixel_errors.h"
 #include "core/optimisation/problem_builder.h"
+#include "core/optimisation/view_cost.h"
 
 namespace evical {
 

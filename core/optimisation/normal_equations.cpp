@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/base/in_parallel.h"
-#include "core/numerics/vector_clones.h"
 
 #include <algorithm>
 #include <numeric>
@@ -65,33 +64,6 @@ void PartialSums::addRest() const {
   equations_.cost += 0.5 * squares_;
 }
 
-namespace {
-
-// sums += R^T R of four rows or of one row; lower triangle.
-EVICAL_VECTOR_CLONES void addProductsOfFour(const double* __restrict r, Eigen::Index columns,
-                                            double* __restrict sums) {
-  const double *r0 = r, *r1 = r0 + columns, *r2 = r1 + columns, *r3 = r2 + columns;
-  for (Eigen::Index i = 0; i < columns; ++i, sums += columns) {
-    const double a0 = r0[i], a1 = r1[i], a2 = r2[i], a3 = r3[i];
-    for (Eigen::Index k = 0; k <= i; ++k) sums[k] += a0 * r0[k] + a1 * r1[k] + (a2 * r2[k] + a3 * r3[k]);
-  }
-}
-void addProductsOfOne(const double* __restrict r, Eigen::Index columns, double* __restrict sums) {
-  for (Eigen::Index i = 0; i < columns; ++i, sums += columns)
-    for (Eigen::Index k = 0; k <= i; ++k) sums[k] += r[i] * r[k];
-}
-
-}  // namespace
-
-void lowerProducts(const double* r, Eigen::Index rows, Eigen::Index columns, std::vector<double>& products) {
-  constexpr Eigen::Index kAtOnce = 4;
-  products.assign(static_cast<std::size_t>(columns * columns), 0.0);
-  Eigen::Index row = 0;
-  for (; row + kAtOnce <= rows; row += kAtOnce)
-    addProductsOfFour(r + row * columns, columns, products.data());
-  for (; row < rows; ++row) addProductsOfOne(r + row * columns, columns, products.data());
-}
-
 void assemble(const UnknownColumns& columns, int threads, const std::stop_token& stop,
               NormalEquations& equations) {
   equations.setZero();
@@ -105,7 +77,7 @@ void assemble(const UnknownColumns& columns, int threads, const std::stop_token&
     for (std::size_t i = part.begin; i < part.end; ++i) {
       if (stop.stop_requested()) throw Cancelled{};
       block.evaluate(columns.order()[i], manifolds);
-      lowerProducts(block.data(), block.rows(), block.stride(), products);
+      block.products(products);
       sums[p].add(block.splineColumns(), block.borderColumns(), products.data());
     }
   });

@@ -67,7 +67,4 @@ class PartialSums {
   double squares_ = 0.0;
 };
 
-// The lower triangle of R^T R, row by row, R being `rows` rows of `columns` numbers.
-void lowerProducts(const double* r, Eigen::Index rows, Eigen::Index columns, std::vector<double>& products);
-
 }  // namespace evical

@@ -96,12 +96,12 @@ SegmentTimes ParameterBlocks::segmentAt(double time_s) const {
 
 void ParameterBlocks::appendRotation(const SegmentTimes& segment, std::vector<double*>& blocks) {
   auto* points = &moved_.world_from_imu_rotation.control_points[static_cast<std::size_t>(segment.rotation)];
-  for (int k = 0; k < 4; ++k) blocks.push_back(points[k].coeffs().data());
+  for (std::size_t k = 0; k < rotationPointsOf(segment); ++k) blocks.push_back(points[k].coeffs().data());
 }
 
 void ParameterBlocks::appendPosition(const SegmentTimes& segment, std::vector<double*>& blocks) {
   auto* points = &moved_.imu_in_world_m.control_points[static_cast<std::size_t>(segment.position)];
-  for (int k = 0; k < 4; ++k) blocks.push_back(points[k].data());
+  for (std::size_t k = 0; k < positionPointsOf(segment); ++k) blocks.push_back(points[k].data());
 }
 
 double* ParameterBlocks::of(std::optional<CameraIntrinsics>& value) {

@@ -4,9 +4,9 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/data/quantity.h"
+#include "core/geometry/spline_segment.h"
 #include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/optimisation/spline_segment.h"
 
 #include <array>
 #include <map>

@@ -12,7 +12,7 @@
 
 namespace evical {
 
-class CircleCost;
+class ViewCost;
 
 enum class SensorKind { Circles, Gyroscope, Accelerometer, Prior };
 
@@ -22,7 +22,7 @@ struct BlockInfo {
   SensorKind kind = SensorKind::Prior;
   std::size_t sensor = 0;  // index of the camera or IMU
   double time_s = 0.0;     // of its first measurement, on the reference IMU's clock
-  const CircleCost* circles = nullptr;
+  const ViewCost* view = nullptr;
 };
 
 // RMS over a camera's points; 0 if exposures are equal or unknown.

@@ -3,7 +3,7 @@
 
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
-#include "core/optimisation/spline_segment.h"
+#include "core/geometry/spline_segment.h"
 
 #include <cstddef>
 #include <vector>

@@ -80,8 +80,8 @@ void UnknownColumns::addBlocks(CalibrationProblem& problem) {
   std::vector<double*> values;
   for (const BlockInfo& info : problem.blocks()) {
     problem.problem().GetParameterBlocksForResidualBlock(info.id, &values);
-    Block block{problem.problem().GetCostFunctionForResidualBlock(info.id), unknown_indices_.size(), 0,
-                kNoColumn};
+    Block block{problem.problem().GetCostFunctionForResidualBlock(info.id), info.view,
+                unknown_indices_.size(), 0, kNoColumn};
     for (double* const each : values) {
       const auto [found, is_new] = index_of.try_emplace(each, static_cast<std::int32_t>(unknowns_.size()));
       if (is_new) {
@@ -119,6 +119,38 @@ void UnknownColumns::makeParts() {
 
 std::span<const std::int32_t> UnknownColumns::unknownsOf(std::size_t block) const {
   return {unknown_indices_.data() + blocks_[block].begin, unknown_indices_.data() + blocks_[block].end};
+}
+
+Eigen::VectorXd UnknownNumbers::read() const {
+  std::vector<double> numbers;
+  for (const Unknown& each : columns_.unknowns())
+    if (each.columns > 0) numbers.insert(numbers.end(), each.values, each.values + each.size);
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+void UnknownNumbers::write(const Eigen::VectorXd& numbers) const {
+  const double* next = numbers.data();
+  for (const Unknown& each : columns_.unknowns()) {
+    if (each.columns == 0) continue;
+    std::copy_n(next, each.size, each.values);
+    next += each.size;
+  }
+}
+
+void UnknownNumbers::writeMoved(const Eigen::VectorXd& numbers, const Eigen::VectorXd& step) const {
+  const double* from = numbers.data();
+  for (const Unknown& each : columns_.unknowns()) {
+    if (each.columns == 0) continue;
+    const double* const by = step.data() + columns_.firstOf(each);
+    if (each.manifold != nullptr) {
+      each.manifold->Plus(from, by, each.values);
+    } else {
+      for (int i = 0; i < each.size; ++i) each.values[i] = from[i] + by[i];
+    }
+    for (std::size_t i = 0; i < each.lower.size(); ++i)
+      each.values[i] = std::clamp(each.values[i], each.lower[i], each.upper[i]);
+    from += each.size;
+  }
 }
 
 }  // namespace evical

@@ -17,6 +17,7 @@ class Manifold;
 namespace evical {
 
 class CalibrationProblem;
+class ViewCost;
 
 // One parameter block.
 struct Unknown {
@@ -53,6 +54,7 @@ class UnknownColumns {
   // Residual blocks as in CalibrationProblem::blocks().
   std::size_t blockCount() const { return blocks_.size(); }
   const ceres::CostFunction& cost(std::size_t block) const { return *blocks_[block].cost; }
+  const ViewCost* view(std::size_t block) const { return blocks_[block].view; }  // null if it is another cost
   // Indices into unknowns(), in the order of the cost function's blocks.
   std::span<const std::int32_t> unknownsOf(std::size_t block) const;
 
@@ -69,6 +71,7 @@ class UnknownColumns {
  private:
   struct Block {
     const ceres::CostFunction* cost;
+    const ViewCost* view;
     std::size_t begin, end;                           // of unknown_indices_
     Eigen::Index first_column = 0, last_column = -1;  // of the band
   };
@@ -84,6 +87,20 @@ class UnknownColumns {
   Eigen::Index spline_size_ = 0, drift_size_ = 0, half_bandwidth_ = 0;
   std::vector<std::size_t> order_;
   std::vector<Part> parts_;
+};
+
+// The numbers of all free unknowns, concatenated.
+class UnknownNumbers {
+ public:
+  explicit UnknownNumbers(const UnknownColumns& columns) : columns_(columns) {}
+
+  Eigen::VectorXd read() const;
+  void write(const Eigen::VectorXd& numbers) const;
+  // Applies a step in the tangent space, within the bounds.
+  void writeMoved(const Eigen::VectorXd& numbers, const Eigen::VectorXd& step) const;
+
+ private:
+  const UnknownColumns& columns_;
 };
 
 }  // namespace evical

@@ -19,8 +19,9 @@ struct NoiseScales {
   double smooth_rotation = 1.0, smooth_position = 1.0;  // without an IMU: accelerations at the knots
 };
 
+using CircleFlags = std::vector<std::uint8_t>;
 // used[camera][view][i]: circle i of the view's list is used.
-using CircleSelection = std::vector<std::vector<std::vector<std::uint8_t>>>;
+using CircleSelection = std::vector<std::vector<CircleFlags>>;
 
 struct Weights {
   NoiseScales scales;

@@ -4,7 +4,6 @@
 #include "core/optimisation/block_jacobian.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/normal_equations.h"
-#include "core/optimisation/uncertainty/block_scores.h"
 #include "core/optimisation/uncertainty/expected_noise_information.h"
 #include "core/optimisation/uncertainty/spline_elimination.h"
 #include "core/optimisation/unknown_columns.h"
@@ -16,7 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <random>
+#include <tuple>
 #include <utility>
 
 namespace evical {
@@ -45,25 +44,22 @@ Groups groupsOf(const std::vector<BlockInfo>& blocks) {
   return groups;
 }
 
-// A fixed random sign for each residual of each block.
-class RandomSigns {
- public:
-  explicit RandomSigns(const UnknownColumns& columns) {
-    constexpr std::uint64_t kSeed = 20260101;  // any: the count is good to a fraction of a percent
-    std::mt19937_64 random(kSeed);
-    for (std::size_t block = 0; block < columns.blockCount(); ++block) {
-      first_.push_back(positive_.size());
-      for (int i = 0; i < columns.cost(block).num_residuals(); ++i)
-        positive_.push_back(static_cast<std::uint8_t>(random() & 1U));
-    }
-  }
-  double of(std::size_t block, Eigen::Index residual) const {
-    return positive_[first_[block] + static_cast<std::size_t>(residual)] != 0 ? 1.0 : -1.0;
-  }
+// A fixed random sign for each residual of each block (the finaliser of splitmix64): the count is good to a fraction of a
+// percent.
+double signOf(std::size_t block, Eigen::Index residual) {
+  std::uint64_t bits = (static_cast<std::uint64_t>(block) << 20U) + static_cast<std::uint64_t>(residual);
+  bits = (bits + 0x9e3779b97f4a7c15U) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+  return (bits >> 63U) != 0 ? 1.0 : -1.0;
+}
 
- private:
-  std::vector<std::size_t> first_;
-  std::vector<std::uint8_t> positive_;
+// Circles whose errors may have a part in common: those of one point of the board, or of one place in the image.
+struct ResidualCluster {
+  enum class Kind { Point, Place } kind = Kind::Point;
+  int index = 0;
+  bool operator<(const ResidualCluster& other) const {
+    return std::tie(kind, index) < std::tie(other.kind, other.index);
+  }
 };
 
 // Sums over a stretch of time.
@@ -115,12 +111,6 @@ void Sums::add(Sums&& other) {
   signed_rows.middleRows(other.first_row - first_row, other.signed_rows.rows()) += other.signed_rows;
 }
 
-// Sums of one group over one stretch of time, before their projection.
-struct Pending {
-  std::int64_t stretch = 0;
-  LocalSums sums;
-};
-
 class Projection {
  public:
   Projection(CalibrationProblem& problem, double stretch_s, int threads, const RunContext& context)
@@ -130,7 +120,6 @@ class Projection {
         context_(context),
         columns_(problem),
         groups_(groupsOf(problem.blocks())),
-        signs_(columns_),
         elimination_(columns_, equations()) {}
 
   ProjectedInformation run();
@@ -145,8 +134,9 @@ class Projection {
   Sums sumOf(const UnknownColumns::Part& part, const ManifoldDerivatives& manifolds) const;
   Sums sumOfAll() const;
   void addSigns(std::size_t index, const BlockJacobian& block, Sums& sums) const;
-  void add(std::size_t index, const BlockJacobian& block, Pending& pending, Sums& sums) const;
-  void project(std::size_t group, Pending& pending, Sums& sums) const;
+  Eigen::MatrixXd byQuantities(const BlockJacobian& block) const;
+  void add(std::size_t index, const BlockJacobian& block, Sums& sums) const;
+  void addClusters(std::size_t group, const ViewCost& view, const Eigen::MatrixXd& scores, Sums& sums) const;
   void countAbsorbed(Sums& sums) const;
   void reportStretches(Sums& sums, ProjectedInformation& result) const;
   void reportClusters(const Sums& sums, ProjectedInformation& result) const;
@@ -157,7 +147,6 @@ class Projection {
   const RunContext& context_;
   UnknownColumns columns_;
   Groups groups_;
-  RandomSigns signs_;
   SplineElimination elimination_;
 };
 
@@ -175,81 +164,95 @@ Sums Projection::noSums(Eigen::Index first_row, Eigen::Index end_row) const {
 
 void Projection::addSigns(std::size_t index, const BlockJacobian& block, Sums& sums) const {
   const auto group = static_cast<Eigen::Index>(groups_.of_block[index]);
-  for (Eigen::Index row = 0; row < block.rows(); ++row) {
-    const double sign = signs_.of(index, row);
-    const double* const by_splines = block.data() + row * block.stride();
-    for (std::size_t k = 0; k < block.splineColumns().size(); ++k)
-      sums.signed_rows(block.splineColumns()[k] - sums.first_row, group) += sign * by_splines[k];
-  }
+  Eigen::VectorXd signs(block.rows());
+  for (Eigen::Index row = 0; row < block.rows(); ++row) signs[row] = signOf(index, row);
+  const Eigen::VectorXd sum = block.weightedSum(signs);
+  for (std::size_t k = 0; k < block.splineColumns().size(); ++k)
+    sums.signed_rows(block.splineColumns()[k] - sums.first_row, group) += sum[static_cast<Eigen::Index>(k)];
 }
 
-// Change of a block's residuals by one sigma of the pixels' repeated errors.
-Eigen::VectorXd pixelErrorsOf(const BlockInfo& info) {
-  if (info.circles == nullptr) return {};
-  Eigen::VectorXd change(info.circles->num_residuals());
+// Change of a view's residuals by one sigma of the pixels' repeated errors.
+Eigen::VectorXd pixelErrorsOf(const ViewCost& view) {
+  Eigen::VectorXd change(view.num_residuals());
   Eigen::Index row = 0;
-  for (const CircleMeasurement& circle : info.circles->circles()) {
+  for (const CircleMeasurement& circle : view.circles()) {
     change.segment<2>(row) = circle.whitening_px * circle.pixel_error_px;
     row += 2;
   }
-  info.circles->whitenViews(change.data());
+  view.whiten(change.data());
   return change;
 }
 
-std::vector<std::array<ResidualCluster, 2>> clustersOf(const BlockInfo& info) {
-  std::vector<std::array<ResidualCluster, 2>> clusters;
-  if (info.circles == nullptr) return clusters;
-  for (const CircleMeasurement& circle : info.circles->circles())
-    clusters.push_back({ResidualCluster{ResidualCluster::Kind::Point, circle.point},
-                        ResidualCluster{ResidualCluster::Kind::Place, circle.place}});
-  return clusters;
+// Derivatives of the block's own columns by the quantities, with all else following.
+Eigen::MatrixXd Projection::byQuantities(const BlockJacobian& block) const {
+  Eigen::MatrixXd by(static_cast<Eigen::Index>(block.columnCount()), elimination_.quantities());
+  Eigen::Index at = 0;
+  for (const Eigen::Index column : block.splineColumns()) by.row(at++) = elimination_.ofSpline(column);
+  for (const Eigen::Index column : block.borderColumns()) {
+    if (column < columns_.quantitySize())
+      by.row(at++) = Eigen::RowVectorXd::Unit(by.cols(), column);
+    else
+      by.row(at++) = elimination_.ofKnot(column - columns_.quantitySize());
+  }
+  return block.ofOwnColumns(by);
 }
 
-void Projection::add(std::size_t index, const BlockJacobian& block, Pending& pending, Sums& sums) const {
-  constexpr Eigen::Index kMostColumns = 160;  // products take the square of it
+// Scores of circles: summed by point and by place.
+void Projection::addClusters(std::size_t group, const ViewCost& view, const Eigen::MatrixXd& scores,
+                             Sums& sums) const {
+  for (std::size_t i = 0; i < view.circles().size(); ++i) {
+    const CircleMeasurement& circle = view.circles()[i];
+    for (const ResidualCluster cluster : {ResidualCluster{ResidualCluster::Kind::Point, circle.point},
+                                          ResidualCluster{ResidualCluster::Kind::Place, circle.place}}) {
+      const auto score = scores.row(static_cast<Eigen::Index>(i)).transpose();
+      const auto [at, is_new] = sums.clusters.try_emplace({group, cluster}, score);
+      if (!is_new) at->second += score;
+    }
+  }
+}
+
+// Products are projected if there are more rows than columns, otherwise the rows.
+void Projection::add(std::size_t index, const BlockJacobian& block, Sums& sums) const {
   const std::size_t group = groups_.of_block[index];
   const BlockInfo& info = problem_.blocks()[index];
-  const auto stretch = static_cast<std::int64_t>(std::floor(info.time_s / stretch_s_));
-  if (stretch != pending.stretch || pending.sums.columnCount() > kMostColumns) project(group, pending, sums);
-  pending.stretch = stretch;
-  pending.sums.add(block, pixelErrorsOf(info), clustersOf(info));
-  sums.groups[group].residuals += static_cast<double>(block.rows());
-  addSigns(index, block, sums);
-}
-
-void Projection::project(std::size_t group, Pending& pending, Sums& sums) const {
-  if (pending.sums.columnCount() == 0) return;
-  const ProjectedSums projected = pending.sums.projected(columns_, elimination_);
-  pending.sums = {};
+  const auto rows = block.ownRows();
+  const Eigen::MatrixXd by_quantities = byQuantities(block);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(by_quantities.cols(), by_quantities.cols());
+  if (rows.rows() > rows.cols())
+    information = by_quantities.transpose() * (rows.transpose() * rows) * by_quantities;
+  else
+    information.selfadjointView<Eigen::Lower>().rankUpdate((rows * by_quantities).transpose());
+  information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
+  const Eigen::VectorXd score = by_quantities.transpose() * (rows.transpose() * block.residuals());
   MeasurementGroup& of_group = sums.groups[group];
-  of_group.information += projected.information;
-  of_group.squared_residuals += projected.squared_residuals;
-  sums.gradient += projected.score;
+  of_group.information += information;
+  of_group.squared_residuals += block.residuals().squaredNorm();
+  of_group.residuals += static_cast<double>(block.rows());
+  sums.gradient += score;
+  addSigns(index, block, sums);
   if (of_group.kind == SensorKind::Prior) return;
-  addTo(sums.pixel_errors, of_group.sensor, projected.pixel_errors);
-  for (const auto& [cluster, score] : projected.clusters) {
-    const auto [at, is_new] = sums.clusters.try_emplace({group, cluster}, score);
-    if (!is_new) at->second += score;
-  }
+  const auto stretch = static_cast<std::int64_t>(std::floor(info.time_s / stretch_s_));
   StretchSums& at =
-      sums.stretches.try_emplace(pending.stretch, sums.gradient.size(), sums.groups.size()).first->second;
-  at.information += projected.information;
-  at.scores[group] += projected.score;
+      sums.stretches.try_emplace(stretch, sums.gradient.size(), sums.groups.size()).first->second;
+  at.information += information;
+  at.scores[group] += score;
+  if (info.view == nullptr) return;
+  addTo(sums.pixel_errors, of_group.sensor,
+        by_quantities.transpose() * (rows.transpose() * pixelErrorsOf(*info.view)));
+  addClusters(group, *info.view, block.pairScores() * by_quantities, sums);
 }
 
 Sums Projection::sumOf(const UnknownColumns::Part& part, const ManifoldDerivatives& manifolds) const {
   const Eigen::Index rows = columns_.splineSize();
   const Eigen::Index end_row = std::min(rows, part.end_row + columns_.halfBandwidth() + 1);
   Sums sums = noSums(std::min(part.first_row, end_row), end_row);
-  std::vector<Pending> pending(groups_.all.size());
   BlockJacobian block(columns_);
   for (std::size_t i = part.begin; i < part.end; ++i) {
     context_.throwIfStopped();
     const std::size_t index = columns_.order()[i];
     block.evaluate(index, manifolds);
-    add(index, block, pending[groups_.of_block[index]], sums);
+    add(index, block, sums);
   }
-  for (std::size_t group = 0; group < pending.size(); ++group) project(group, pending[group], sums);
   return sums;
 }
 

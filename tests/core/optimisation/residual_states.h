@@ -2,11 +2,12 @@
 #pragma once
 
 #include "core/geometry/so3.h"
-#include "core/optimisation/circle_cost.h"
+#include "core/optimisation/view_cost.h"
 #include "tests/core/optimisation/cost_check.h"
 
 #include <array>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace evical::test {
@@ -84,6 +85,10 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   return blocks;
 }
 
+inline ViewCost exactCost(const CircleModel& model, std::vector<CircleMeasurement> circles) {
+  return {model, segmentTimes(), std::move(circles), ViewCost::PoseColumns::ControlPoints};
+}
+
 // `near_sigma`: approximate distance of the measured centres from the predicted ones, in sigmas.
 inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const Blocks& blocks,
                                                   double near_sigma, States& states) {
@@ -100,7 +105,7 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
   }
   CircleModel linear = model;
   linear.huber_sigma = 1e9;
-  const Eigen::VectorXd centres = residualsAt(CircleCost(linear, segmentTimes(), circles), blocks);
+  const Eigen::VectorXd centres = residualsAt(exactCost(linear, circles), blocks);
   for (std::size_t i = 0; i < circles.size(); ++i) {
     circles[i].whitening_px << 12.0, 0.0, -3.0, 9.0;
     circles[i].centre_px = centres.segment<2>(static_cast<Eigen::Index>(2 * i)) +

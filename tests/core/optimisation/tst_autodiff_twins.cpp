@@ -1,5 +1,5 @@
 // The batch's cost functions against twins with automatic derivatives: values and all derivatives. Numeric
-// differences (tst_circle_cost, tst_inertial_cost) compare a cost function with itself only.
+// differences (tst_view_cost, tst_inertial_cost) compare a cost function with itself only.
 #include "core/numerics/angles.h"
 #include "core/optimisation/inertial_cost.h"
 #include "tests/core/optimisation/autodiff_twins.h"
@@ -72,7 +72,7 @@ void compareInertial(const Blocks& blocks, const Twin& twin) {
 
 void compareCircles(const CircleModel& model, const Blocks& blocks,
                     const std::vector<CircleMeasurement>& circles) {
-  const CircleCost cost(model, segmentTimes(), circles);
+  const ViewCost cost = exactCost(model, circles);
   const double worst = worstDifference(cost, CircleTwin{{}, model, segmentTimes(), circles}, blocks);
   QVERIFY2(worst < kRounding, qPrintable(QString::number(worst)));
 }

@@ -1,6 +1,8 @@
 // Parameter blocks and the state that they represent, and the effect of weights on the problem.
 #include "core/optimisation/calibration_problem.h"
 
+#include "core/geometry/so3.h"
+#include "core/optimisation/normal_equations.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
 
@@ -38,6 +40,48 @@ double costOf(CalibrationProblem& problem, SensorKind kind) {
     sum += cost;
   }
   return sum;
+}
+
+// One view of ten circles within 27 ms, and no samples.
+CalibrationInput oneView(CalibrationInput input) {
+  BoardObservations& seen = input.cameras[0].observations;
+  BoardView view = seen.views[seen.views.size() / 2];
+  view.circles.resize(10);
+  for (std::size_t i = 0; i < view.circles.size(); ++i)
+    view.circles[i].time_s = view.time_s + 3e-3 * (static_cast<double>(i) - 4.5);
+  seen.views = {view};
+  input.imus[0].samples.clear();
+  return input;
+}
+
+// Even motion, which does not depend on the knots.
+CalibrationState movingEvenly(CalibrationState state, double knot_spacing_s) {
+  So3Spline& turns = state.world_from_imu_rotation;
+  VectorSpline& shifts = state.imu_in_world_m;
+  const Eigen::Quaterniond rotation = turns.control_points.front();
+  const Eigen::Vector3d position = shifts.control_points.front();
+  turns = makeUniformSo3Spline(turns.start_s, turns.endTime_s(), knot_spacing_s, rotation);
+  shifts = makeUniformVectorSpline(shifts.start_s, shifts.endTime_s(), knot_spacing_s, position);
+  for (std::size_t k = 0; k < turns.control_points.size(); ++k) {
+    const double time_s = (static_cast<double>(k) - 1.0) * knot_spacing_s;
+    turns.control_points[k] = rotation * quaternionExp(time_s * Eigen::Vector3d(0.3, -0.5, 0.4));
+    shifts.control_points[k] = position + time_s * Eigen::Vector3d(0.2, 0.1, -0.1);
+  }
+  return state;
+}
+
+// Information of the quantities if the trajectory is known.
+Eigen::MatrixXd informationWithKnots(const CalibrationInput& input, const CalibrationState& state,
+                                     double knot_spacing_s) {
+  OptimisationOptions options;
+  options.huber_sigma = 1e9;
+  options.time_offset_drift = false;  // its reference time is the middle of the splines
+  CalibrationProblem problem(input, options, movingEvenly(state, knot_spacing_s));
+  problem.build(ParameterStages::Mappings, givenWeights(input));
+  const UnknownColumns columns(problem);
+  NormalEquations equations(columns);
+  assemble(columns, 1, {}, equations);
+  return equations.matrix.corner().selfadjointView<Eigen::Lower>();
 }
 
 }  // namespace
@@ -84,6 +128,19 @@ class TestCalibrationProblem : public QObject {
     problem.build(ParameterStages::Mappings, weights);
     QCOMPARE(countOf(problem, SensorKind::Circles), std::ptrdiff_t{0});
     QVERIFY(countOf(problem, SensorKind::Gyroscope) > 0);
+  }
+
+  // The displacement that its circles have in common is one, also if there are knots between their times.
+  void viewAcrossKnots_isOneMeasurement() {
+    const test::SimulatedRig rig = shortRig();
+    const CalibrationInput input = oneView(rig.input);
+    const Eigen::MatrixXd whole = informationWithKnots(input, rig.truth, 0.5);
+    const Eigen::VectorXd sigmas = whole.diagonal().cwiseSqrt().cwiseInverse();
+    for (const double knot_spacing_s : {0.02, 0.01, 0.005}) {
+      const Eigen::MatrixXd difference = informationWithKnots(input, rig.truth, knot_spacing_s) - whole;
+      const double largest = (sigmas.asDiagonal() * difference * sigmas.asDiagonal()).cwiseAbs().maxCoeff();
+      QVERIFY2(largest < 1e-9, qPrintable(QString::number(largest)));
+    }
   }
 
   void build_dividesResidualsByTheScales() {

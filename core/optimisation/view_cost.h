@@ -1,19 +1,17 @@
-// Zero when the measured ellipse centres are those of the projected circles, displaced by the edge localisation
+// Zero when the measured ellipse centres of one view are those of the projected circles, displaced by the edge localisation
 // bias along their image motion (docs/maths.md, 9.1):
 //   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_localisation_bias.h) - measured ],
 //   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
 //     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
-// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of a view are then whitened
+// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of the view are then whitened
 // for the displacement that its circles have in common (common_displacement.h), and each circle's residual is
-// shortened so that its square is Huber's loss. One cost function holds all circles of one camera whose times
-// fall into one spline segment: they share parameter blocks, and a block per circle would leave Ceres with
-// bookkeeping only.
+// shortened so that its square is Huber's loss.
 //
 // With free intrinsics, the prediction is that of free_intrinsics.h.
 //
-// Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
-// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge
+// Blocks: rotation control points (x y z w) and position control points [m] of the view's segments, then
+// reference_from_camera rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge
 // localisation bias [px] and that of slow edges [px], the board's scale, stretch, two curvatures and twist
 // [1/m] (BoardState; its circles keep the radius that was given and the plane's normal, which changes their
 // centres by far less than could be seen), the exposure's share, world_from_board's rotation (x y z w) and
@@ -22,18 +20,24 @@
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.
+//
+// Control points and the camera's pose in the rig move the circles only through the camera's pose at their times. So the
+// derivatives are by that pose at one to three times (core/geometry/pose_times.h), and the products of all circles go to the
+// control points at once (docs/maths.md, 9.15). Longer views have derivatives by control points.
 #pragma once
 
 #include "core/data/calibration_state.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/spline_segment.h"
 #include "core/optimisation/common_displacement.h"
 #include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/free_intrinsics.h"
-#include "core/optimisation/spline_segment.h"
 
 #include <ceres/cost_function.h>
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace evical {
@@ -48,7 +52,6 @@ struct CircleMeasurement {
   EdgeLocalisationBiasEffect lead;
   Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
   double common_px = 0.0;                                    // commonDisplacement_px
-  int view = 0, circle = 0;                                  // circle: position in the view's list
   int point = 0, place = 0;  // index on the board; cell of the image (placeOf)
 };
 
@@ -60,25 +63,46 @@ struct CircleModel {
   bool free_intrinsics = false;
 };
 
-class CircleCost final : public ceres::CostFunction {
+// Two rows for each circle, in columns of the tangent space: the camera's poses at some times, or the control points and the
+// camera's pose in the rig; the view's other free blocks; and the residual.
+struct ViewRows {
+  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Eigen::Index stride = 0, poses = 0;  // poses: columns of the poses, or of control points and camera
+  std::vector<double> values;          // row-major; at least as many as needed
+  // Derivatives of the poses at the times by control points, and by the camera's pose if it is free; empty if rows have
+  // these columns.
+  RowMajorMatrix chain;
+};
+
+class ViewCost final : public ceres::CostFunction {
  public:
-  CircleCost(const CircleModel& model, const SegmentTimes& segment, std::vector<CircleMeasurement> circles);
+  enum class PoseColumns { AtTimes, ControlPoints };
+  // `circles` in order of time. Derivatives by control points are exact, as tests want them.
+  ViewCost(const CircleModel& model, const SegmentTimes& segments, std::vector<CircleMeasurement> circles,
+           PoseColumns columns = PoseColumns::AtTimes);
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
+  // `widths`: columns of each block after the control points, 0 if it is fixed. Without any, rows are residuals only.
+  void evaluate(double const* const* parameters, std::span<const int> widths, ViewRows& rows) const;
+  // Errors before the common displacement is removed: two for each circle, infinite behind the camera.
+  std::vector<double> errorsInSigmas(double const* const* parameters) const;
+
+  std::size_t controlPoints() const { return controlPointsOf(segments_); }
   const std::vector<CircleMeasurement>& circles() const { return circles_; }
-  // Removes the common displacement of each view from errors over sigmas: two for each circle.
-  void whitenViews(double* errors) const { whitenViews(errors, nullptr); }
+  // Removes the common displacement of the view from errors over sigmas: two for each circle.
+  void whiten(double* errors) const { common_.whiten(errors, 1); }
 
  private:
-  void whitenViews(double* residuals, double** jacobians) const;
-  void shorten(double* residuals, double** jacobians) const;
+  void shorten(ViewRows& rows) const;
 
   const CircleModel& model_;
-  SegmentTimes segment_;
+  SegmentTimes segments_;
   std::vector<CircleMeasurement> circles_;
-  std::vector<SeenCentre> seen_;            // of the circles, where intrinsics are free
-  std::vector<CommonDisplacement> common_;  // by view
+  std::vector<SeenCentre> seen_;  // of the circles, where intrinsics are free
+  CommonDisplacement common_;
+  PoseColumns columns_;
 };
 
 // Shortens r so that |result|^2 is Huber's loss of |r|^2 (r^2 up to the threshold d, 2 d |r| - d^2 beyond)

@@ -1,20 +1,33 @@
-// Segment of both splines that contains one cost function's measurements, and
-// its evaluation from Ceres' blocks.
+// Segments of both splines that contain one cost function's measurements, and
+// their evaluation from Ceres' blocks.
 #pragma once
 
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 
+#include <cstddef>
+
 namespace evical {
 
 struct SegmentTimes {
-  int rotation = 0, position = 0;                         // segment indices
+  int rotation = 0, position = 0;                         // indices of the first segments
+  int rotations = 1, positions = 1;                       // counts of successive segments
   double rotation_start_s = 0.0, position_start_s = 0.0;  // start times of the segments
   double rotation_spacing_s = 0.0, position_spacing_s = 0.0;
 
   double rotationPlace(double time_s) const { return (time_s - rotation_start_s) / rotation_spacing_s; }
   double positionPlace(double time_s) const { return (time_s - position_start_s) / position_spacing_s; }
 };
+
+inline std::size_t rotationPointsOf(const SegmentTimes& segments) {
+  return static_cast<std::size_t>(3 + segments.rotations);
+}
+inline std::size_t positionPointsOf(const SegmentTimes& segments) {
+  return static_cast<std::size_t>(3 + segments.positions);
+}
+inline std::size_t controlPointsOf(const SegmentTimes& segments) {
+  return rotationPointsOf(segments) + positionPointsOf(segments);
+}
 
 inline bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
   return a.rotation == b.rotation && a.position == b.position;
