@@ -75,7 +75,7 @@ class Batch {
         fit_samples_(weights_.used_samples) {}
 
   BatchSolution run();
-  BatchSolution refine();
+  BatchSolution refine(std::vector<IterationRecord> before);
 
  private:
   std::vector<ParameterStages> stages() const;
@@ -245,7 +245,10 @@ void Batch::solveLastStage() {
   }
 }
 
-BatchSolution Batch::refine() {
+BatchSolution Batch::refine(std::vector<IterationRecord> before) {
+  for (const IterationRecord& record : before)
+    free_.insert(free_.end(), record.released.begin(), record.released.end());
+  solution_.iterations = std::move(before);
   updateWeights();
   holdStillAxes();
   solveLastStage();
@@ -360,11 +363,17 @@ BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationStat
   return Batch(input, initial, options, context).run();
 }
 
+BatchSolution continueBatch(const CalibrationInput& input, const CalibrationState& solved,
+                            std::vector<IterationRecord> before, const OptimisationOptions& options,
+                            const RunContext& context) {
+  assertComplete(input, solved);
+  return Batch(input, solved, options, context).refine(std::move(before));
+}
+
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context) {
-  assertComplete(input, solved);
   const RunContext unobserved = context.unobserved();
-  return Batch(input, solved, options, unobserved).refine();
+  return continueBatch(input, solved, {}, options, unobserved);
 }
 
 }  // namespace evical

@@ -33,6 +33,11 @@ struct BatchSolution {
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context);
 
+// Solves only the last stage with other options or slightly other data, from a solution; its iterations follow those before.
+BatchSolution continueBatch(const CalibrationInput& input, const CalibrationState& solved,
+                            std::vector<IterationRecord> before, const OptimisationOptions& options,
+                            const RunContext& context);
+
 // Solves only the last stage, from a state that is already a solution for these or similar data. The stage
 // is not observed.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
