@@ -14,21 +14,23 @@ namespace evical {
 // two and three times. The limits leave less than 1e-3, also where the errors of several control points add up.
 struct PoseTimes {
   static constexpr std::size_t kMost = 3;
+  // Longest views with one, two and three times.
+  static constexpr std::array<double, kMost> kLongest_knots = {6e-4, 0.045, 0.24};
   std::size_t count = 0;
   std::array<double, kMost> times_s{};
 
   PoseTimes() = default;
   PoseTimes(double first_s, double last_s, double knot_spacing_s) {
-    constexpr double kForOne_knots = 1.5e-3, kForTwo_knots = 0.065;
     const double length_s = last_s - first_s;
     if (length_s > longest_s(knot_spacing_s)) return;
-    count = length_s > kForTwo_knots * knot_spacing_s ? 3 : length_s > kForOne_knots * knot_spacing_s ? 2 : 1;
+    while (length_s > kLongest_knots[count] * knot_spacing_s) ++count;
+    ++count;
     for (std::size_t k = 0; k < count; ++k)
       times_s[k] =
           0.5 * (first_s + last_s +
                  length_s * std::cos(kPi * (static_cast<double>(k) + 0.5) / static_cast<double>(count)));
   }
-  static double longest_s(double knot_spacing_s) { return 0.33 * knot_spacing_s; }
+  static double longest_s(double knot_spacing_s) { return kLongest_knots.back() * knot_spacing_s; }
 
   // Lagrange's polynomials.
   std::array<double, kMost> weightsAt(double time_s) const {
