@@ -12,6 +12,12 @@
 
 namespace evical {
 
+// When a circle was measured, on the reference's clock.
+inline double circleTime_s(const CameraState& camera, const CircleObservation& circle) {
+  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle +
+         camera.exposure_share * circle.longer_exposed_s;
+}
+
 struct CircleError {
   std::size_t camera = 0, view = 0, index = 0;  // index: position in the view's list
   Eigen::Vector2d error_px =

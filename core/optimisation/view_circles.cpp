@@ -1,5 +1,6 @@
 #include "core/optimisation/view_circles.h"
 
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/common_displacement.h"
 #include "core/optimisation/edge_localisation_bias.h"
 

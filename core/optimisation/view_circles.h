@@ -19,12 +19,6 @@ double byDrift_s(const Sensor& sensor, double time_s) {
   return 1e-6 * (time_s - sensor.time_offset_at_s);
 }
 
-// When a circle was measured, on the reference's clock.
-inline double circleTime_s(const CameraState& camera, const CircleObservation& circle) {
-  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle +
-         camera.exposure_share * circle.longer_exposed_s;
-}
-
 struct TimedCircle {
   double time_s = 0.0;
   std::size_t index = 0;  // in the view's list

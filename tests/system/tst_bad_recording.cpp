@@ -145,7 +145,7 @@ void TestBadRecording::eventStamps_thatLie_costNothing() {
   timer.start();
   const Outcome outcome = test.calibrate();
   VERIFY_OUTCOME(outcome, 0);
-  QVERIFY2(outcome.errors.contains("1 events excluded, whose timestamps"), qPrintable(outcome.errors));
+  QVERIFY2(outcome.errors.contains("1 event excluded, whose timestamps"), qPrintable(outcome.errors));
   QVERIFY2(!outcome.errors.contains("time runs backwards"), qPrintable(outcome.errors));
   QVERIFY2(timer.elapsed() < 60'000, qPrintable(QString::number(timer.elapsed())));
 }
@@ -173,7 +173,7 @@ void TestBadRecording::imuSamples_thatAreNoNumbers_areLeftOut() {
   test.change("recording: recording.bag", "recording: spoilt.bag");
   const Outcome outcome = test.calibrate();
   VERIFY_OUTCOME(outcome, 0);
-  QVERIFY2(outcome.errors.contains("1 IMU samples excluded, whose values are not finite"),
+  QVERIFY2(outcome.errors.contains("1 IMU sample excluded, whose values are not finite"),
            qPrintable(outcome.errors));
 }
 

@@ -269,11 +269,9 @@ class Calibration {
   }
 
   // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it.
-  // Freed parameters continue from the solution before.
-  BatchSolution solveWithTags(std::optional<CalibrationState> solved, std::vector<IterationRecord> before) {
+  BatchSolution solveWithTags() {
     constexpr int kMostRounds = 5;
-    BatchSolution solution = solved ? continueBatch(input_, *solved, std::move(before), options_, context_)
-                                    : optimiseBatch(input_, initial_.state, options_, context_);
+    BatchSolution solution = optimiseBatch(input_, initial_.state, options_, context_);
     for (int round = 0; round < kMostRounds && moveCornersOfTags(solution); ++round)
       solution = continueBatch(input_, solution.state, std::move(solution.iterations), options_, context_);
     return solution;
@@ -344,11 +342,10 @@ class Calibration {
   void solve() {
     const OptimisationOptions& options = options_;
     CalibrationResult& result = run_.result;
-    CalibrationResult before = std::exchange(result, {});
-    result.timing = before.timing;
-    const bool is_solved = !before.state.cameras.empty();
-    BatchSolution solution = solveWithTags(is_solved ? std::optional(std::move(before.state)) : std::nullopt,
-                                           std::move(before.iterations));
+    const Timing before = result.timing;
+    result = {};
+    result.timing = before;
+    BatchSolution solution = solveWithTags();
     giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
     PriorCheck priors = checkPriors(input_, solution, options, context_);

@@ -6,8 +6,8 @@
 #include "core/data/quantity_difference.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/uncertainty/covariance.h"
-#include "core/optimisation/view_circles.h"
 
 #include <algorithm>
 #include <atomic>

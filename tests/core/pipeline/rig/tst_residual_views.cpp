@@ -49,6 +49,8 @@ class TestResidualViews : public QObject {
       view.time_s += 0.05;
       for (CircleObservation& circle : view.circles) circle.time_s += 0.05;
     }
+    for (WindowReport& window : stepped.pass.cameras[0].windows)
+      if (window.time_s >= at_s) window.time_s += 0.05;
     stepped.session.options.report.edit().split_half_check = false;
     const CalibrationRun run = calibrate(stepped.session, stepped.pass, {});
     QVERIFY2(run.result.reason.find("steps by") != std::string::npos, run.result.reason.c_str());
