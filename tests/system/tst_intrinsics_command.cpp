@@ -69,7 +69,7 @@ class TestIntrinsicsCommand : public QObject {
     const Outcome outcome = run("intrinsics");
     VERIFY_OUTCOME(outcome, 1);
     VERIFY_SAYS(outcome,
-                "only \\d+ views.*10 are needed for intrinsics; none reaches the .*[Mm]ove the board");
+                "only \\d+ well-spaced views.*10 are needed for intrinsics; none reaches the .*[Mm]ove the board");
     QVERIFY(!QFile::exists(result()));
   }
 
