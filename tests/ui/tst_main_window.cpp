@@ -283,6 +283,8 @@ class TestMainWindow : public QObject {
     QVERIFY(!take_over->isVisible());
     test.document().undoStack().undo();
     QVERIFY(!test.document().session().cameras[0].intrinsics);
+    QVERIFY(test.document().rejectedCount() == 1);  // closing would ask
+    while (test.document().undoStack().canUndo()) test.document().undoStack().undo();
     QVERIFY(test.window.close());
   }
 
