@@ -138,7 +138,7 @@ void SideBar::showPage(int page) {
   list_->setCurrentItem(items_[index]);
 }
 
-void SideBar::setReasons(const std::vector<QString>& reasons, const QString& recording) {
+void SideBar::setReasons(const std::vector<QString>& reasons) {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     items_[i]->setFlags(reasons[i].isEmpty() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable : Qt::NoItemFlags);
     const QString key = keyOfPage(i).toString(QKeySequence::NativeText);
@@ -146,9 +146,8 @@ void SideBar::setReasons(const std::vector<QString>& reasons, const QString& rec
   }
   const auto first =
       std::find_if(reasons.begin(), reasons.end(), [](const QString& reason) { return !reason.isEmpty(); });
-  // The line stays: pages must not move under the mouse when a run starts.
-  reason_->setText(first == reasons.end() ? recording : *first);
-  reason_->setToolTip(reason_->text());
+  // Its line stays if there is none: pages must not move under the mouse when a run starts.
+  reason_->setText(first == reasons.end() ? QString() : *first);
 }
 
 void SideBar::setVerdict(int page, std::optional<CalibrationStatus> status) {
