@@ -31,6 +31,35 @@ bool hasBoard(const WindowReport& window) {
          window.outcome == WindowOutcome::RejectedByHand;
 }
 
+// The window with the board that contains this time; null: none. Frames without exposure have no width, and people round.
+const WindowReport* windowWithBoardAt(double time_s, const BoardObservations& camera) {
+  constexpr double kRounding_s = 1e-3;
+  const WindowReport* nearest = nullptr;
+  for (const WindowReport& window : camera.windows)
+    if (hasBoard(window) &&
+        (nearest == nullptr || std::abs(window.time_s - time_s) < std::abs(nearest->time_s - time_s)))
+      nearest = &window;
+  if (nearest == nullptr) return nullptr;
+  const double reach_s = std::max(kRounding_s, nearest->half_width_s);
+  return std::abs(nearest->time_s - time_s) <= reach_s ? nearest : nullptr;
+}
+
+// Times of another recording, say, or with a typing error, exclude nothing.
+void tellUnmatched(const SessionCamera& camera, const BoardObservations& observations,
+                   std::vector<RecordingFault>& faults) {
+  std::vector<double> unmatched_s;
+  for (const double time_s : camera.rejected_windows_s)
+    if (windowWithBoardAt(time_s, observations) == nullptr) unmatched_s.push_back(time_s);
+  if (unmatched_s.empty()) return;
+  const RecordingFault fault{
+      camera.stream, FaultKind::Outside, unmatched_s.front(),
+      fmt::format("{}: the board was not found at {} of its {} in rejected_windows_s, first at {:.3f} s",
+                  camera.name, unmatched_s.size(), counted(camera.rejected_windows_s.size(), "time"),
+                  unmatched_s.front())};
+  const auto same = [&](const RecordingFault& each) { return each.text == fault.text; };
+  if (std::ranges::none_of(faults, same)) faults.push_back(fault);  // saved detections contain it already
+}
+
 void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
             std::vector<BoardView>& rejected_views) {
   std::vector<BoardView> all;
@@ -64,13 +93,8 @@ DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& r
 std::vector<double> windowsAt(const std::vector<double>& times_s, const BoardObservations& camera) {
   std::vector<double> centres_s;
   for (const double time_s : times_s) {
-    const WindowReport* nearest = nullptr;
-    for (const WindowReport& window : camera.windows)
-      if (hasBoard(window) &&
-          (nearest == nullptr || std::abs(window.time_s - time_s) < std::abs(nearest->time_s - time_s)))
-        nearest = &window;
-    const bool inside = nearest != nullptr && std::abs(nearest->time_s - time_s) <= nearest->half_width_s;
-    centres_s.push_back(inside ? nearest->time_s : time_s);
+    const WindowReport* const window = windowWithBoardAt(time_s, camera);
+    centres_s.push_back(window != nullptr ? window->time_s : time_s);
   }
   std::ranges::sort(centres_s);
   centres_s.erase(std::unique(centres_s.begin(), centres_s.end()), centres_s.end());
@@ -81,6 +105,7 @@ void rejectAsIn(const Session& session, DetectionResult& pass) {
   for (std::size_t k = 0; k < std::min(session.cameras.size(), pass.cameras.size()); ++k) {
     std::vector<double> times_s = session.cameras[k].rejected_windows_s;
     if (times_s.empty()) continue;
+    tellUnmatched(session.cameras[k], pass.cameras[k], pass.faults);
     pass.rejected_views.resize(pass.cameras.size());
     const std::vector<double> before_s = rejectedTimes_s(pass.cameras[k]);
     times_s.insert(times_s.end(), before_s.begin(), before_s.end());

@@ -81,6 +81,11 @@ class TestViewRejection : public QObject {
     QCOMPARE(run.result.rejected_windows.size(), std::size_t{3});
     QCOMPARE(run.pass.rejected_views[0].size(), std::size_t{3});
     QVERIFY(detectsTheSame(session, simulated_.session));
+    const auto told = std::ranges::count_if(run.pass.faults, [](const RecordingFault& fault) {
+      return fault.text.ends_with(
+          "not found at 1 of its 3 times in rejected_windows_s, first at 10000.000 s");
+    });
+    QCOMPARE(told, 1);
   }
 
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
