@@ -208,11 +208,12 @@ void bindSensors(py::module_& module) {
                      "Header of a text table that replaces the file's; empty: the file's.")
       .def_readwrite("accelerometer_columns", &SessionImu::accelerometer_columns,
                      "The same for the accelerometer's own file.")
-      .def_readonly("acceleration_factor", &SessionImu::acceleration_factor,
-                    "Of the unit, for raw counts; Session.set(\"imus.NAME.acceleration_unit\", \"0.002 g\") "
-                    "sets both.")
+      .def_readonly(
+          "acceleration_factor", &SessionImu::acceleration_factor,
+          "Factor of the unit, for raw counts; Session.set(\"imus.NAME.acceleration_unit\", \"0.002 g\") "
+          "sets both.")
       .def_readonly("angular_rate_factor", &SessionImu::angular_rate_factor,
-                    "Of the unit, for raw counts; Session.set sets both.")
+                    "Factor of the unit, for raw counts; Session.set sets both.")
       .def_readwrite("clock_offset_s", &SessionImu::clock_offset_s,
                      "Known offset that is added to the stream's times.");
 }

@@ -124,7 +124,7 @@ bool haveBeat(const Intervals& intervals, const StampOptions& options) {
   const double variance = squares / count - mean * mean;
   // A driver that drops every fiftieth sample has constant distances, a beat of two clocks hardly ever.
   if (variance < kConstant && mean > options.longest_beat) return false;
-  return std::sqrt(variance) < options.beat_scatter * mean;
+  return variance < options.beat_scatter * options.beat_scatter * mean * mean;
 }
 
 // Equal stamps in a row that no longer interval next to them makes up for: more samples than a steady rate has.

@@ -76,7 +76,7 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
 std::optional<int> nearestCircle(const Board& board, const Eigen::Vector2d& place_m) {
   const bool asymmetric = board.type == BoardType::AsymmetricCircles;
   const Eigen::Vector2d place = place_m / board.spacing_m;
-  if (!(place.cwiseAbs().maxCoeff() < 1e3)) return std::nullopt;  // no number is one, too
+  if (!(place.cwiseAbs().maxCoeff() < 1e3)) return std::nullopt;  // nor NaN
   const auto row = static_cast<int>(std::lround(place.y()));
   const double x = asymmetric ? 0.5 * (place.x() - std::abs(row % 2)) : place.x();
   const auto col = static_cast<int>(std::lround(x));

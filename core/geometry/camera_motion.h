@@ -1,7 +1,6 @@
 // A camera's pose on a trajectory, from the control points of a few successive segments, with its derivatives.
 #pragma once
 
-#include "core/geometry/pose_times.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/spline_segment.h"
 

@@ -91,8 +91,7 @@ void addProductsOfOne(const double* __restrict r, Eigen::Index columns, double* 
     for (Eigen::Index k = 0; k <= i; ++k) sums[k] += r[i] * r[k];
 }
 
-}  // namespace
-
+// The same of all rows.
 void lowerProducts(const double* r, Eigen::Index rows, Eigen::Index columns, std::vector<double>& products) {
   constexpr Eigen::Index kAtOnce = 4;
   products.assign(static_cast<std::size_t>(columns * columns), 0.0);
@@ -101,6 +100,8 @@ void lowerProducts(const double* r, Eigen::Index rows, Eigen::Index columns, std
     addProductsOfFour(r + row * columns, columns, products.data());
   for (; row < rows; ++row) addProductsOfOne(r + row * columns, columns, products.data());
 }
+
+}  // namespace
 
 // The poses' part, from both sides, by the columns on which they depend.
 void BlockJacobian::products(std::vector<double>& products) const {

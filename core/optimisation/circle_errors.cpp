@@ -99,9 +99,12 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
           appendErrors(input, state, options, model, camera, view, errors);
       const std::span<CircleError> of_view = std::span(errors).subspan(first);
       if (of_view.empty()) continue;
-      CircleFlags common = nearMedian(circles, of_view, options.outlier_sigma);
-      for (std::size_t i = 0; used && i < common.size(); ++i)
-        common[i] = of_view[i].inFront() && (*used)[camera][view][of_view[i].index];
+      CircleFlags common;
+      if (used == nullptr)
+        common = nearMedian(circles, of_view, options.outlier_sigma);
+      else
+        for (const CircleError& error : of_view)
+          common.push_back(error.inFront() && (*used)[camera][view][error.index]);
       normalise(circles, common, of_view);
     }
   }

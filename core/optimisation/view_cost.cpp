@@ -2,9 +2,11 @@
 
 #include "core/geometry/camera_motion.h"
 #include "core/geometry/circle_conic.h"
+#include "core/geometry/pose_times.h"
 #include "core/geometry/so3.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>

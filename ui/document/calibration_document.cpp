@@ -22,8 +22,10 @@ std::filesystem::path pathOf(const QString& file) {
 }
 
 // The session's camera with a run's stream, which may have another name and place; null: none.
-SessionCamera* sameStream(const Session& of_run, std::size_t camera, Session& session) {
-  for (SessionCamera& each : session.cameras)
+template <class AnySession>
+auto sameStream(const Session& of_run, std::size_t camera, AnySession& session)
+    -> decltype(&session.cameras[0]) {
+  for (auto& each : session.cameras)
     if (camera < of_run.cameras.size() && each.stream == of_run.cameras[camera].stream &&
         each.recording == of_run.cameras[camera].recording)
       return &each;
@@ -227,10 +229,9 @@ void CalibrationDocument::set(const Runs& runs) {
 }
 
 RejectedTimes CalibrationDocument::rejections() const {
-  Session session = session_;
   RejectedTimes rejected_s(last_.run ? last_.run->pass.cameras.size() : 0);
   for (std::size_t k = 0; k < rejected_s.size(); ++k)
-    if (const SessionCamera* const camera = sameStream(last_.session, k, session))
+    if (const SessionCamera* const camera = sameStream(last_.session, k, session_))
       rejected_s[k] = windowsAt(camera->rejected_windows_s, last_.run->pass.cameras[k]);
   return rejected_s;
 }
@@ -265,11 +266,7 @@ void CalibrationDocument::addUndoableRun(const RunRecord& record, const QString&
 }
 
 bool CalibrationDocument::runIsOutdated() const {
-  if (!last_.run) return false;
-  const auto text = [](const Session& each) {
-    return sessionYaml(withoutNames(withoutRejectedWindows(each)), "/");
-  };
-  return text(last_.session) != text(session_);
+  return last_.run && !sameExceptNames(last_.session, session_);
 }
 
 std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {

@@ -11,13 +11,6 @@ namespace {
 
 constexpr int kPause_ms = 800;  // avoids checks between key strokes
 
-bool isSame(const Session& one, const Session& other) {
-  const auto text = [](const Session& each) {
-    return sessionYaml(withoutNames(withoutRejectedWindows(each)), "/");
-  };
-  return text(one) == text(other);
-}
-
 // By core's names, with shares of the time for a typical recording.
 std::vector<JobStage> checkStages() {
   return {{nameOf(CalibrationStage::FirstLook), 0.05},
@@ -57,7 +50,8 @@ void RecordingCheckJob::setAutomatic(bool automatic) {
 }
 
 void RecordingCheckJob::setSession(std::optional<Session> session) {
-  const bool same = session.has_value() == session_.has_value() && (!session || isSame(*session, *session_));
+  const bool same =
+      session.has_value() == session_.has_value() && (!session || sameExceptNames(*session, *session_));
   session_ = std::move(session);
   if (same) return;
   asked_ = false;

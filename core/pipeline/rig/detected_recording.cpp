@@ -18,8 +18,7 @@ namespace evical {
 namespace {
 
 // The session with only those settings that affect detection.
-Session withoutLaterStages(const Session& given) {
-  Session session = withoutRejectedWindows(given);
+Session withoutLaterStages(Session session) {
   session.options.initialisation = InitialisationOptions();
   session.options.optimisation = OptimisationOptions();
   session.options.report = ReportOptions();
@@ -32,8 +31,7 @@ Session withoutLaterStages(const Session& given) {
   return session;
 }
 
-}  // namespace
-
+// The session with sensors that are named by their place.
 Session withoutNames(Session session) {
   std::map<std::string, std::string> places;
   const auto place = [&](auto& sensors, const char* kind) {
@@ -49,6 +47,13 @@ Session withoutNames(Session session) {
   for (SessionCamera& camera : session.cameras) refer(camera.same_sensor_as);
   return session;
 }
+
+// Places of files do not depend on that of the session.
+std::string textOf(const Session& session) {
+  return sessionYaml(withoutRejectedWindows(withoutNames(session)), "/");
+}
+
+}  // namespace
 
 FoundLenses findLenses(const Session& session, const RunContext& context) {
   FoundLenses found{givenLenses(session), {}};
@@ -72,10 +77,12 @@ DetectedRecording detectRecording(const Session& session, const RunContext& cont
   return {readAndDetect(session, std::move(found.lenses), context), std::move(found.intrinsics)};
 }
 
+bool sameExceptNames(const Session& one, const Session& other) {
+  return textOf(one) == textOf(other);
+}
+
 bool detectsTheSame(const Session& one, const Session& other) {
-  const std::filesystem::path folder = "/";
-  return sessionYaml(withoutLaterStages(withoutNames(one)), folder) ==
-         sessionYaml(withoutLaterStages(withoutNames(other)), folder);
+  return sameExceptNames(withoutLaterStages(one), withoutLaterStages(other));
 }
 
 DetectedRecording forSession(DetectedRecording detected, const Session& session) {

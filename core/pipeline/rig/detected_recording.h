@@ -26,9 +26,8 @@ FoundLenses findLenses(const Session& session, const RunContext& context);
 // First stage of a calibration of this session. Throws CalibrationError, and Cancelled when asked to stop.
 DetectedRecording detectRecording(const Session& session, const RunContext& context);
 
-// The session with sensors that are named by their place: if two sessions differ only in names, so do their
-// results.
-Session withoutNames(Session session);
+// True if both sessions differ only in names and rejected windows.
+bool sameExceptNames(const Session& one, const Session& other);
 
 // True if both sessions have the same detections: they differ only in names and in later stages (noise,
 // priors, optimisation, exports).

@@ -66,8 +66,8 @@ class TestViewCost : public QObject {
       const CircleModel model = circleModel();
       const Blocks blocks = circleBlocks(states, step_rad);
       const ViewCost cost = exactCost(model, circlesNear(model, blocks, near_sigma, states));
-      const double error = worstJacobianError(cost, blocks, 1e-5);
-      QVERIFY2(error < 2e-6, qPrintable(QString::number(error)));  // rounding of the differences
+      const double error = worstJacobianError(cost, blocks, 2e-5);
+      QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
       QCOMPARE(worstErrorWithConstantBlocks(cost, blocks), 0.0);
     }
   }
@@ -85,7 +85,7 @@ class TestViewCost : public QObject {
 
   // The squared residuals of a view are r^T (I + B B^T)^-1 r.
   void commonDisplacement_isMarginalised() {
-    States states(8);
+    States states(9);
     CircleModel model = circleModel();
     model.huber_sigma = 1e9;
     const Blocks blocks = circleBlocks(states, 0.05);
@@ -99,7 +99,7 @@ class TestViewCost : public QObject {
     const Eigen::MatrixXd covariance =
         Eigen::MatrixXd::Identity(apart.size(), apart.size()) + roots * roots.transpose();
     const double expected = apart.dot(covariance.llt().solve(apart));
-    QVERIFY2(expected < 0.999 * apart.squaredNorm(),
+    QVERIFY2(expected < 0.95 * apart.squaredNorm(),
              qPrintable(QString::number(expected / apart.squaredNorm())));
     QVERIFY(std::abs(squares - expected) < 1e-9 * expected);
   }
