@@ -27,17 +27,16 @@ double meanDistance_px(const FoundPoints& points, const Board& board, const Plan
 
 }  // namespace
 
-FrameTracker::FrameTracker(std::string camera, const Board& board, const FrameOptions& options)
-    : camera_(std::move(camera)), board_(board), options_(options), finder_(board, options) {}
-
-bool FrameTracker::isDue(double time_s) {
-  const double period_s = 1.0 / options_.rate_hz;
+bool FrameRate::isDue(double time_s) {
   // Tolerates jitter of stamps: frames at exactly this rate are all used.
   constexpr double kJitter = 0.1;
-  if (due_s_ && time_s < *due_s_ - kJitter * period_s) return false;
-  due_s_ = (due_s_ && time_s < *due_s_ + period_s ? *due_s_ : time_s) + period_s;
+  if (due_s_ && time_s < *due_s_ - kJitter * period_s_) return false;
+  due_s_ = (due_s_ && time_s < *due_s_ + period_s_ ? *due_s_ : time_s) + period_s_;
   return true;
 }
+
+FrameTracker::FrameTracker(std::string camera, const Board& board, const FrameOptions& options)
+    : camera_(std::move(camera)), board_(board), options_(options), finder_(board, options) {}
 
 // Prediction with the motion between the last two views.
 std::optional<PlaneMap> FrameTracker::predicted(double time_s) const {
@@ -146,7 +145,6 @@ BoardObservations FrameTracker::finish() {
   }
   observations.windows = std::exchange(windows_, {});
   seen_.clear();
-  due_s_.reset();
   return observations;
 }
 

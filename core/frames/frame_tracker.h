@@ -20,14 +20,23 @@ struct FrameTime {
   double exposure_s = 0.0;  // 0: unknown
 };
 
+// Chooses the frames that are needed for the rate of the options.
+class FrameRate {
+ public:
+  explicit FrameRate(const FrameOptions& options) : period_s_(1.0 / options.rate_hz) {}
+
+  // True if the frame at this time is needed. Called for every frame, in order of time, before it is decoded.
+  bool isDue(double time_s);
+
+ private:
+  double period_s_;
+  std::optional<double> due_s_;
+};
+
 class FrameTracker {
  public:
   // Throws CalibrationError (BadInput) if the board is invalid.
   FrameTracker(std::string camera, const Board& board, const FrameOptions& options);
-
-  // True if the frame at this time is needed for the rate of the options. Called for every frame, in order of
-  // time, before it is decoded.
-  bool isDue(double time_s);
 
   // Processes the next frame, later than those before it; or one that could not be decoded.
   void track(const GrayImage& image, const FrameTime& time);
@@ -61,7 +70,6 @@ class FrameTracker {
   BoardFinder finder_;
   std::vector<Seen> seen_;
   std::vector<WindowReport> windows_;
-  std::optional<double> due_s_;
   int followed_ = 0;  // frames since the last search
 };
 

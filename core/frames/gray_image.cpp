@@ -14,6 +14,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -142,6 +143,19 @@ GrayImage decodeFrame(const Frame& frame, const std::string& place) {
   }
   image.pixels.assign(picture.datastart, picture.dataend);
   return image;
+}
+
+void decodeAhead(Frame& frame) {
+  if (frame.format == FrameFormat::Gray8) return;
+  try {
+    GrayImage image = decodeFrame(frame, {});
+    frame.format = FrameFormat::Gray8;
+    frame.size_px = image.size_px;
+    frame.row_bytes = 0;
+    frame.bytes = std::move(image.pixels);
+  } catch (const CalibrationError&) {
+    // reported where the frame is used
+  }
 }
 
 }  // namespace evical

@@ -24,10 +24,10 @@ struct Neighbourhood {
 
 Neighbourhood around(const FrameQuestion& question) {
   const std::vector<std::int64_t> times_ns = question.frames->times_ns();
-  FrameTracker tracker(question.camera, question.board, question.options);
+  FrameRate rate(question.options);
   Neighbourhood found;
   for (std::size_t k = 0; k < times_ns.size() && found.after.empty(); ++k) {
-    const bool due = tracker.isDue(secondsSince(question.start_ns, times_ns[k]));
+    const bool due = rate.isDue(secondsSince(question.start_ns, times_ns[k]));
     if (k == question.frame) found.due = due;
     if (k == question.frame || !due) continue;
     (k < question.frame ? found.before : found.after).push_back(k);

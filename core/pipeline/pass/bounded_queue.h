@@ -36,6 +36,11 @@ class BoundedQueue {
     return value;
   }
 
+  bool empty() const {
+    const std::lock_guard lock(mutex_);
+    return values_.empty();
+  }
+
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -44,7 +49,7 @@ class BoundedQueue {
 
  private:
   std::size_t capacity_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Value> values_;
   bool closed_ = false;

@@ -24,8 +24,7 @@ FrameViews::FrameViews(const CameraBatch& first, const ViewRequest& request)
 void FrameViews::consume(const CameraBatch& batch) {
   for (const Frame& frame : batch.frames) {
     if (context_.stop.stop_requested()) return;
-    const double time_s = secondsSince(start_ns_, frame.time_ns);
-    if (tracker_.isDue(time_s)) see(frame, time_s);
+    see(frame, secondsSince(start_ns_, frame.time_ns));
   }
 }
 

@@ -1,4 +1,4 @@
-// Views of the board from frames: decoded at the requested rate, searched, tracked.
+// Views of the board from frames, which were chosen by their rate: decoded, searched, tracked.
 #pragma once
 
 #include "core/frames/frame_tracker.h"

@@ -6,6 +6,7 @@
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/imu_stamps.h"
+#include "core/frames/frame_tracker.h"
 #include "core/frontend/front_end_options.h"
 #include "core/pipeline/pass/board_size_check.h"
 #include "core/pipeline/pass/bounded_queue.h"
@@ -17,9 +18,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -28,31 +31,43 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kQueuedBatches = 16;
+constexpr std::size_t kWindowThreads = 2;
 
-// Window thread: collects the views of each camera.
-class WindowWorker {
+// Collects the views of each camera in window threads. Events need one thread, next to that which reads and sorts them.
+// Frames leave the reading thread little to do, so that frame cameras take turns among all.
+class WindowWorkers {
  public:
-  WindowWorker(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
-      : session_(session), lenses_(lenses), context_(context), views_(session.cameras.size()) {}
+  WindowWorkers(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
+      : session_(session),
+        lenses_(lenses),
+        context_(context),
+        thread_of_(session.cameras.size()),
+        views_(session.cameras.size()) {}
 
-  void run(BoundedQueue<CameraBatch>& queue) {
-    try {
-      while (std::optional<CameraBatch> batch = queue.pop()) {
-        if (context_.stop.stop_requested()) break;
-        const Stopwatch stopwatch;
-        handle(*batch);
-        busy_s_ += stopwatch.elapsed_s();
-      }
-    } catch (...) {
-      failure_ = std::current_exception();
-    }
-    queue.close();
+  // Called for each camera before the start.
+  void assign(std::size_t camera, CameraKind kind) {
+    thread_of_[camera] = kind == CameraKind::Frames ? frame_cameras_++ % kWindowThreads : 0;
+  }
+  void start() {
+    for (Worker& worker : workers_) worker.thread = std::jthread([this, &worker] { run(worker); });
+  }
+  // False after a failure, or if a run was stopped.
+  bool push(CameraBatch batch) { return workers_[thread_of_[batch.camera]].queue.push(std::move(batch)); }
+  // True if the camera's thread has not begun what it has.
+  bool isBehind(std::size_t camera) const { return !workers_[thread_of_[camera]].queue.empty(); }
+  // After the last batch, or a failure.
+  void close() {
+    for (Worker& worker : workers_) worker.queue.close();
+  }
+  // Waits for the end, and throws the first failure again.
+  void join() {
+    for (Worker& worker : workers_) worker.thread.join();
+    for (const Worker& worker : workers_)
+      if (worker.failure) std::rethrow_exception(worker.failure);
   }
 
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-  double busy_s() const { return busy_s_; }
+  // Of the busiest thread.
+  double busy_s() const { return std::max(workers_[0].busy_s, workers_[1].busy_s); }
   // Resolutions of frames, if not known otherwise; called before finishing.
   void tellResolutions(std::vector<Resolution>& resolutions_px) const {
     for (std::size_t k = 0; k < views_.size(); ++k)
@@ -66,26 +81,53 @@ class WindowWorker {
       if (views_[k]) observations[k] = views_[k]->finish(faults);
       observations[k].camera = session_.cameras[k].name;
     }
-    busy_s_ += stopwatch.elapsed_s();
+    workers_[0].busy_s += stopwatch.elapsed_s();
     return observations;
   }
 
  private:
+  struct Worker {
+    BoundedQueue<CameraBatch> queue{kQueuedBatches};
+    std::exception_ptr failure;
+    double busy_s = 0.0;
+    std::jthread thread;  // last: it ends first
+  };
+
+  void run(Worker& worker) {
+    try {
+      while (std::optional<CameraBatch> batch = worker.queue.pop()) {
+        if (context_.stop.stop_requested()) break;
+        const Stopwatch stopwatch;
+        handle(*batch);
+        worker.busy_s += stopwatch.elapsed_s();
+      }
+    } catch (...) {
+      worker.failure = std::current_exception();
+    }
+    worker.queue.close();
+  }
+
   void handle(const CameraBatch& batch) {
     std::unique_ptr<CameraViews>& views = views_[batch.camera];
-    if (batch.opened_px) views = cameraViews(batch, {session_, lenses_[batch.camera], context_});
+    if (batch.opened_px) {
+      const std::lock_guard lock(observing_);
+      views = cameraViews(batch, {session_, lenses_[batch.camera], context_});
+    }
     const std::size_t before = views->soFar().windows.size();
     views->consume(batch);
-    if (context_.observer != nullptr && views->soFar().windows.size() > before)
-      context_.observer->windowsDetected(batch.camera, views->soFar());
+    if (context_.observer == nullptr || views->soFar().windows.size() == before) return;
+    const std::lock_guard lock(observing_);
+    context_.observer->windowsDetected(batch.camera, views->soFar());
   }
 
   const Session& session_;
   const std::vector<CameraLens>& lenses_;
   const RunContext& context_;
-  std::vector<std::unique_ptr<CameraViews>> views_;  // by camera
-  std::exception_ptr failure_;
-  double busy_s_ = 0.0;
+  std::vector<std::size_t> thread_of_;               // by camera
+  std::vector<std::unique_ptr<CameraViews>> views_;  // by camera, each used by its thread only
+  std::size_t frame_cameras_ = 0;
+  std::mutex observing_;  // one call at a time
+  std::array<Worker, kWindowThreads> workers_;
 };
 
 // Reads packets and passes them to intakes and IMUs, within the session's time range.
@@ -110,10 +152,11 @@ class ReadingPass {
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
                               session.options.front_end->bursts,
                               session.board_blinks ? EventUse::Raw : EventUse::Bursts);
+      if (intake.kind == CameraKind::Frames) intake.rate.emplace(*session.options.frames);
     }
   }
 
-  void run(BoundedQueue<CameraBatch>& queue, const RunContext& context) {
+  void run(WindowWorkers& windows, const RunContext& context) {
     SensorPacket packet;
     while (recording_.read(packet)) {
       context.throwIfStopped();
@@ -121,14 +164,15 @@ class ReadingPass {
       if (range_.isOver(packet)) break;
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
-      if (is_camera && !addMeasured(packet, queue)) return;
+      if (is_camera && !addMeasured(packet, windows)) return;
     }
     context.throwIfStopped();
     range_.checkBegin();
     for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
       if (!intakes_[camera].events) continue;
-      flush(camera, queue);
-      if (std::optional<CameraBatch> batch = intakes_[camera].events->flush()) queue.push(std::move(*batch));
+      flush(camera, windows);
+      if (std::optional<CameraBatch> batch = intakes_[camera].events->flush())
+        windows.push(std::move(*batch));
     }
   }
 
@@ -160,7 +204,9 @@ class ReadingPass {
     CameraKind kind = CameraKind::Events;
     std::optional<EventIntake> events;
     std::vector<Event> pending;
+    std::optional<FrameRate> rate;
     std::uint64_t count = 0;  // of other types
+    bool opened = false;
   };
 
   void addSamples(const SensorPacket& packet) {
@@ -170,38 +216,43 @@ class ReadingPass {
     }
   }
 
-  bool addMeasured(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+  bool addMeasured(SensorPacket& packet, WindowWorkers& windows) {
     const auto unwanted = [&](const auto& item) { return !range_.holds(item.time_ns); };
     std::erase_if(packet.events, unwanted);
     std::erase_if(packet.points, unwanted);
     std::erase_if(packet.frames, unwanted);
     Intake& intake = intakes_[packet.sensor];
-    if (intake.kind == CameraKind::Events) return addEvents(packet, queue);
+    if (intake.kind == CameraKind::Events) return addEvents(packet, windows);
+    intake.count += packet.points.size() + packet.frames.size();
+    if (intake.rate)
+      std::erase_if(packet.frames, [&](const Frame& frame) {
+        return !intake.rate->isDue(secondsSince(result_.start_ns, frame.time_ns));
+      });
     if (packet.points.empty() && packet.frames.empty()) return true;
+    if (windows.isBehind(packet.sensor)) std::ranges::for_each(packet.frames, decodeAhead);
     CameraBatch batch;
-    if (intake.count == 0) batch.opened_px = result_.resolutions_px[packet.sensor];
+    if (!std::exchange(intake.opened, true)) batch.opened_px = result_.resolutions_px[packet.sensor];
     batch.camera = packet.sensor;
     batch.kind = intake.kind;
     batch.start_ns = result_.start_ns;
-    intake.count += packet.points.size() + packet.frames.size();
     batch.points = std::move(packet.points);
     batch.frames = std::move(packet.frames);
-    return queue.push(std::move(batch));
+    return windows.push(std::move(batch));
   }
 
-  bool addEvents(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+  bool addEvents(SensorPacket& packet, WindowWorkers& windows) {
     std::vector<Event>& pending = intakes_[packet.sensor].pending;
     pending.insert(pending.end(), packet.events.begin(), packet.events.end());
     if (pending.size() < kBatchEvents) return true;
-    return flush(packet.sensor, queue);
+    return flush(packet.sensor, windows);
   }
 
-  bool flush(std::size_t camera, BoundedQueue<CameraBatch>& queue) {
+  bool flush(std::size_t camera, WindowWorkers& windows) {
     std::optional<CameraBatch> batch = intakes_[camera].events->consume(intakes_[camera].pending);
     intakes_[camera].pending.clear();
     if (!batch) return true;
     batch->start_ns = result_.start_ns;
-    return queue.push(std::move(*batch));
+    return windows.push(std::move(*batch));
   }
 
   // Returns the step of coarse stamps.
@@ -244,25 +295,23 @@ DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> le
   result.lenses = std::move(lenses);
   const Stopwatch stopwatch;
   ReadingPass reading(session, context, result);
-  WindowWorker worker(session, result.lenses, context);
-  BoundedQueue<CameraBatch> queue(kQueuedBatches);
-  {
-    std::jthread windows([&] { worker.run(queue); });
-    try {
-      reading.run(queue, context);
-    } catch (...) {
-      queue.close();
-      throw;
-    }
-    result.read_s = stopwatch.elapsed_s();
-    queue.close();
+  WindowWorkers windows(session, result.lenses, context);
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) windows.assign(k, reading.kind(k));
+  windows.start();
+  try {
+    reading.run(windows, context);
+  } catch (...) {
+    windows.close();
+    throw;
   }
-  worker.rethrow();
+  result.read_s = stopwatch.elapsed_s();
+  windows.close();
+  windows.join();
   context.throwIfStopped();
-  worker.tellResolutions(result.resolutions_px);
-  result.cameras = worker.finish(result.faults);
+  windows.tellResolutions(result.resolutions_px);
+  result.cameras = windows.finish(result.faults);
   context.throwIfStopped();
-  result.detect_s = worker.busy_s();
+  result.detect_s = windows.busy_s();
   reading.finish();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     result.cameras[k].kind = reading.kind(k);
@@ -286,7 +335,7 @@ DetectionResult readImus(const Session& session, std::int64_t start_ns, const Ru
   imus_only.cameras.clear();
   const Stopwatch stopwatch;
   ReadingPass reading(imus_only, context, result, start_ns);
-  BoundedQueue<CameraBatch> none(1);
+  WindowWorkers none(imus_only, result.lenses, context);
   reading.run(none, context);
   context.throwIfStopped();
   reading.finish();
