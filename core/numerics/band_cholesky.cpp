@@ -21,6 +21,12 @@ BandCholesky::BandCholesky(Eigen::Index size, Eigen::Index half_bandwidth)
       half_bandwidth_(half_bandwidth),
       band_(static_cast<std::size_t>(size * (half_bandwidth + 1)), 0.0) {}
 
+void BandCholesky::resize(Eigen::Index size, Eigen::Index half_bandwidth) {
+  size_ = size;
+  half_bandwidth_ = half_bandwidth;
+  band_.resize(static_cast<std::size_t>(size * (half_bandwidth + 1)));
+}
+
 void BandCholesky::addOuter(Eigen::Index first, const Eigen::Ref<const Eigen::VectorXd>& weights,
                             double scale) {
   for (Eigen::Index i = 0; i < weights.size(); ++i) {

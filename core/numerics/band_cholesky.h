@@ -16,6 +16,9 @@ class BandCholesky {
   // `half_bandwidth`: largest distance of an entry from the diagonal.
   BandCholesky(Eigen::Index size, Eigen::Index half_bandwidth);
 
+  // Keeps its memory where it suffices; entries are undefined.
+  void resize(Eigen::Index size, Eigen::Index half_bandwidth);
+
   Eigen::Index size() const { return size_; }
   Eigen::Index halfBandwidth() const { return half_bandwidth_; }
   void setZero() { std::fill(band_.begin(), band_.end(), 0.0); }

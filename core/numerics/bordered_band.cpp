@@ -75,10 +75,10 @@ Eigen::VectorXd BorderedBand::diagonal() const {
   return diagonal;
 }
 
-std::optional<Eigen::VectorXd> BorderedBand::solve(const Eigen::VectorXd& added,
-                                                   const Eigen::VectorXd& right) const {
+std::optional<Eigen::VectorXd> BorderedBand::solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right,
+                                                   BandCholesky& factor) const {
   const Index border = borderSize();
-  BandCholesky factor = band_;
+  factor = band_;
   EliminatedRows rows(band_.halfBandwidth(), border + 1);
   for (Index index = 0; index < band_.size(); ++index) {
     if (!factor.factoriseRow(index, added[index], 0.0)) return std::nullopt;

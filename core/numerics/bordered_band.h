@@ -22,6 +22,13 @@ class BorderedBand {
         mixed_(RowMajorMatrix::Zero(size, border)),
         corner_(Eigen::MatrixXd::Zero(border, border)) {}
 
+  // Keeps its memory where it suffices; entries are undefined.
+  void resize(Eigen::Index size, Eigen::Index half_bandwidth, Eigen::Index border) {
+    band_.resize(size, half_bandwidth);
+    mixed_.resize(size, border);
+    corner_.resize(border, border);
+  }
+
   Eigen::Index borderSize() const { return mixed_.cols(); }
   Eigen::Index size() const { return band_.size() + borderSize(); }
   void setZero();
@@ -33,8 +40,10 @@ class BorderedBand {
 
   Eigen::VectorXd diagonal() const;
 
-  // x with (this + diag(added)) x = right; empty if that matrix is not positive definite.
-  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right) const;
+  // x with (this + diag(added)) x = right; empty if that matrix is not positive definite. Overwrites `factor`, whose memory
+  // several solutions share.
+  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right,
+                                       BandCholesky& factor) const;
 
   // C - B^T A^-1 B; directions without information in A are left out.
   Eigen::MatrixXd schurComplement() const;

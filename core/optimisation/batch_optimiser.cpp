@@ -101,6 +101,7 @@ class Batch {
   const RunContext& context_;
   CalibrationProblem problem_;
   Weights weights_;
+  SolverMemory memory_;
   const std::vector<SampleSelection> fit_samples_;  // by IMU
   BatchSolution solution_;
   double progress_ = 0.0;
@@ -126,7 +127,7 @@ void Batch::solveStage(ParameterStages stage, int index, double tolerance) {
     problem_.build(stage, weights_);
     tellReleased(reporter);
     const SolverEnd end =
-        solveNormalEquations(problem_, limits, context_.stop,
+        solveNormalEquations(problem_, limits, context_.stop, memory_,
                              [&](const SolverIteration& iteration) { return reporter.report(iteration); });
     if (!end.failure.empty()) {
       throw calibrationFailed("optimisation", "the batch could not be solved: " + end.failure,

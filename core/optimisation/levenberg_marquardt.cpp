@@ -1,6 +1,5 @@
 #include "core/optimisation/levenberg_marquardt.h"
 
-#include "core/optimisation/normal_equations.h"
 #include "core/optimisation/unknown_columns.h"
 
 #include <ceres/manifold.h>
@@ -24,8 +23,16 @@ constexpr double kHeld = 1e30;  // times the diagonal: fixes the unknown
 
 class Solver {
  public:
-  Solver(CalibrationProblem& problem, const SolverLimits& limits, const std::stop_token& stop)
-      : limits_(limits), stop_(stop), columns_(problem), numbers_(columns_), equations_(columns_) {}
+  Solver(CalibrationProblem& problem, const SolverLimits& limits, const std::stop_token& stop,
+         SolverMemory& memory)
+      : limits_(limits),
+        stop_(stop),
+        columns_(problem),
+        numbers_(columns_),
+        equations_(memory.equations),
+        factor_(memory.factor) {
+    equations_.resize(columns_);
+  }
 
   SolverEnd run(const std::function<bool(const SolverIteration&)>& after);
 
@@ -52,7 +59,8 @@ class Solver {
   const std::stop_token& stop_;
   UnknownColumns columns_;
   UnknownNumbers numbers_;
-  NormalEquations equations_;
+  NormalEquations& equations_;
+  BandCholesky& factor_;
   Eigen::VectorXd at_;     // linearisation point of the equations
   Eigen::VectorXd scale_;  // of the columns, at the start
   double radius_ = kFirstRadius, shrinkage_ = 2.0;
@@ -110,7 +118,7 @@ double Solver::gradientMaxNorm() const {
 
 Solver::Outcome Solver::step(SolverIteration& iteration) {
   const Eigen::VectorXd added = damping();
-  const std::optional<Eigen::VectorXd> found = equations_.matrix.solve(added, -equations_.gradient);
+  const std::optional<Eigen::VectorXd> found = equations_.matrix.solve(added, -equations_.gradient, factor_);
   const double promised =
       found ? 0.5 * (found->dot(added.cwiseProduct(*found)) - found->dot(equations_.gradient)) : 0.0;
   if (!(promised > 0.0)) {
@@ -165,9 +173,9 @@ SolverEnd Solver::run(const std::function<bool(const SolverIteration&)>& after) 
 }  // namespace
 
 SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
-                               const std::stop_token& stop,
+                               const std::stop_token& stop, SolverMemory& memory,
                                const std::function<bool(const SolverIteration&)>& after) {
-  return Solver(problem, limits, stop).run(after);
+  return Solver(problem, limits, stop, memory).run(after);
 }
 
 }  // namespace evical

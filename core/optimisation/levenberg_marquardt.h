@@ -4,6 +4,8 @@
 // with its defaults, which tests compare with; steps are cut off at bounds.
 #pragma once
 
+#include "core/optimisation/normal_equations.h"
+
 #include <functional>
 #include <stop_token>
 #include <string>
@@ -31,10 +33,16 @@ struct SolverEnd {
   double first_cost = 0.0, last_cost = 0.0;
 };
 
+// Memory of successive solutions: tens of megabytes, which take long to get from the system.
+struct SolverMemory {
+  NormalEquations equations{0, 0, 0};
+  BandCholesky factor{0, 0};
+};
+
 // Optimises the unknowns of a built problem. `after` is called with the state at the start and after each
 // step, accepted or not; it ends the solution by returning false. Throws Cancelled when asked to stop.
 SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
-                               const std::stop_token& stop,
+                               const std::stop_token& stop, SolverMemory& memory,
                                const std::function<bool(const SolverIteration&)>& after);
 
 }  // namespace evical

@@ -14,6 +14,11 @@ void NormalEquations::setZero() {
   cost = 0.0;
 }
 
+void NormalEquations::resize(const UnknownColumns& columns) {
+  matrix.resize(columns.splineSize(), columns.halfBandwidth(), columns.borderSize());
+  gradient.resize(columns.splineSize() + columns.borderSize());
+}
+
 PartialSums::Row PartialSums::row(Eigen::Index row) {
   if (row < end_row_)
     return {equations_.matrix.band().row(row), equations_.matrix.mixed().row(row).data(),

@@ -20,6 +20,8 @@ struct NormalEquations {
       : NormalEquations(columns.splineSize(), columns.halfBandwidth(), columns.borderSize()) {}
 
   void setZero();
+  // Keeps its memory where it suffices; entries are undefined.
+  void resize(const UnknownColumns& columns);
 
   BorderedBand matrix;
   Eigen::VectorXd gradient;  // the band's columns, then the border's

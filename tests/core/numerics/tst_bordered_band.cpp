@@ -47,6 +47,8 @@ struct Twins {
 class TestBorderedBand : public QObject {
   Q_OBJECT
 
+  BandCholesky factor_{0, 0};  // of all matrices, as in successive solutions
+
  private slots:
   void solve_matchesDenseSolver_data() {
     QTest::addColumn<int>("band");
@@ -65,7 +67,7 @@ class TestBorderedBand : public QObject {
     Twins twins({band, half_bandwidth, border}, 20.0);
     const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(band + border, -1.0, 2.0),
                           added = Eigen::VectorXd::LinSpaced(band + border, 0.0, 5.0);
-    const std::optional<Eigen::VectorXd> solution = twins.bordered.solve(added, right);
+    const std::optional<Eigen::VectorXd> solution = twins.bordered.solve(added, right, factor_);
     QVERIFY(solution.has_value());
     const Eigen::MatrixXd matrix = twins.dense + Eigen::MatrixXd(added.asDiagonal());
     QVERIFY((matrix * *solution - right).norm() < 1e-12 * right.norm() * matrix.norm());
@@ -96,16 +98,16 @@ class TestBorderedBand : public QObject {
   void solve_refusesWhatIsNotPositiveDefinite() {
     const Sizes sizes{20, 3, 2};
     const Eigen::VectorXd right = Eigen::VectorXd::Ones(22), none = Eigen::VectorXd::Zero(22);
-    QVERIFY(Twins(sizes).bordered.solve(none, right).has_value());
+    QVERIFY(Twins(sizes).bordered.solve(none, right, factor_).has_value());
     Twins in_band(sizes);
     in_band.bordered.band().row(11)[11] = -1.0;
-    QVERIFY(!in_band.bordered.solve(none, right).has_value());
+    QVERIFY(!in_band.bordered.solve(none, right, factor_).has_value());
     Twins in_corner(sizes);
     in_corner.bordered.corner()(1, 1) = -1.0;
-    QVERIFY(!in_corner.bordered.solve(none, right).has_value());
+    QVERIFY(!in_corner.bordered.solve(none, right, factor_).has_value());
     Twins no_number(sizes);
     no_number.bordered.band().row(5)[4] = std::numeric_limits<double>::quiet_NaN();
-    QVERIFY(!no_number.bordered.solve(none, right).has_value());
+    QVERIFY(!no_number.bordered.solve(none, right, factor_).has_value());
   }
 };
 

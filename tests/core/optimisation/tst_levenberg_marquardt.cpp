@@ -99,10 +99,12 @@ Solved byCeres(CalibrationProblem& problem, const SolverLimits& limits) {
 
 Solved byOurs(CalibrationProblem& problem, const SolverLimits& limits) {
   Solved solved;
-  const SolverEnd end = solveNormalEquations(problem, limits, {}, [&](const SolverIteration& iteration) {
-    solved.costs.push_back(iteration.cost);
-    return true;
-  });
+  SolverMemory memory;
+  const SolverEnd end =
+      solveNormalEquations(problem, limits, {}, memory, [&](const SolverIteration& iteration) {
+        solved.costs.push_back(iteration.cost);
+        return true;
+      });
   solved.converged = end.converged && end.failure.empty();
   return solved;
 }
@@ -208,9 +210,10 @@ class TestLevenbergMarquardt : public QObject {
     CalibrationProblem problem(test.rig.input, test.options, test.start);
     problem.build(lastStage(test.options), givenWeights(test.rig.input));
     std::stop_source stop;
+    SolverMemory memory;
     int iterations = 0;
     QVERIFY_THROWS_EXCEPTION(Cancelled, solveNormalEquations(problem, {30, 1e-10, 2}, stop.get_token(),
-                                                             [&](const SolverIteration&) {
+                                                             memory, [&](const SolverIteration&) {
                                                                stop.request_stop();
                                                                ++iterations;
                                                                return true;
@@ -222,8 +225,9 @@ class TestLevenbergMarquardt : public QObject {
     const Case test = caseOf(Kind::OneImu);
     CalibrationProblem problem(test.rig.input, test.options, test.start);
     problem.build(lastStage(test.options), givenWeights(test.rig.input));
+    SolverMemory memory;
     int iterations = 0;
-    const SolverEnd end = solveNormalEquations(problem, {30, 1e-10, 1}, {},
+    const SolverEnd end = solveNormalEquations(problem, {30, 1e-10, 1}, {}, memory,
                                                [&](const SolverIteration&) { return ++iterations < 2; });
     QCOMPARE(iterations, 2);
     QVERIFY(!end.converged && end.failure.empty() && end.last_cost < end.first_cost);
