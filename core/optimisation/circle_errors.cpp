@@ -1,5 +1,6 @@
 #include "core/optimisation/circle_errors.h"
 
+#include "core/base/in_parallel.h"
 #include "core/numerics/robust.h"
 #include "core/optimisation/common_displacement.h"
 #include "core/optimisation/view_circles.h"
@@ -84,29 +85,40 @@ std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const
   return cost.circles();
 }
 
+// Appends the errors of a view. Circles that are used determine its displacement; null: those near the median error.
+void appendView(const CalibrationInput& input, const CalibrationState& state,
+                const OptimisationOptions& options, const CircleModel& model, std::size_t camera,
+                std::size_t view, const CircleSelection* used, std::vector<CircleError>& errors) {
+  const std::size_t first = errors.size();
+  const std::vector<CircleMeasurement> circles =
+      appendErrors(input, state, options, model, camera, view, errors);
+  const std::span<CircleError> of_view = std::span(errors).subspan(first);
+  if (of_view.empty()) return;
+  CircleFlags common;
+  if (used == nullptr)
+    common = nearMedian(circles, of_view, options.outlier_sigma);
+  else
+    for (const CircleError& error : of_view)
+      common.push_back(error.inFront() && (*used)[camera][view][error.index]);
+  normalise(circles, common, of_view);
+}
+
 }  // namespace
 
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options, const CircleSelection* used) {
+  constexpr std::size_t kParts = 8;  // of a camera's views, for threads
   std::vector<CircleError> errors;
   for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
     const CircleModel model{*input.cameras[camera].lens.detection_intrinsics, input.boardOf(camera).radius_m,
                             options.huber_sigma, state.cameras[camera].lens.solved.has_value()};
-    const std::vector<BoardView>& views = input.cameras[camera].observations.views;
-    for (std::size_t view = 0; view < views.size(); ++view) {
-      const std::size_t first = errors.size();
-      const std::vector<CircleMeasurement> circles =
-          appendErrors(input, state, options, model, camera, view, errors);
-      const std::span<CircleError> of_view = std::span(errors).subspan(first);
-      if (of_view.empty()) continue;
-      CircleFlags common;
-      if (used == nullptr)
-        common = nearMedian(circles, of_view, options.outlier_sigma);
-      else
-        for (const CircleError& error : of_view)
-          common.push_back(error.inFront() && (*used)[camera][view][error.index]);
-      normalise(circles, common, of_view);
-    }
+    const std::size_t views = input.cameras[camera].observations.views.size();
+    std::array<std::vector<CircleError>, kParts> parts;
+    inParallel(options.threads, kParts, [&](std::size_t part) {
+      for (std::size_t view = part * views / kParts; view < (part + 1) * views / kParts; ++view)
+        appendView(input, state, options, model, camera, view, used, parts[part]);
+    });
+    for (const std::vector<CircleError>& part : parts) errors.insert(errors.end(), part.begin(), part.end());
   }
   return errors;
 }
