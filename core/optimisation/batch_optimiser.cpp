@@ -237,13 +237,20 @@ void Batch::holdStillAxes() {
     weights_.held_axes[imu] = stillAxes(input_, state, weights_, imu);
 }
 
-// Solves until convergence with weights that follow from the residuals, and again where they change.
+// Solves until convergence with weights that follow from the residuals. Weights need no converged residuals, so that
+// only the last solution converges.
 void Batch::solveLastStage() {
   const std::vector<ParameterStages> all = stages();
+  const auto solve = [&](double tolerance) {
+    solveStage(all.back(), static_cast<int>(all.size()), tolerance);
+  };
   constexpr int kMostReweightings = 3;
-  for (int i = 0; i == 0 || (i < kMostReweightings && updateWeights()); ++i) {
-    solveStage(all.back(), static_cast<int>(all.size()), options_.function_tolerance);
+  bool changed = true;
+  for (int i = 1; i < kMostReweightings && changed; ++i) {
+    solve(options_.stage_tolerance);
+    changed = updateWeights();
   }
+  solve(options_.function_tolerance);
 }
 
 BatchSolution Batch::refine(std::vector<IterationRecord> before) {
