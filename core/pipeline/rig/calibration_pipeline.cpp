@@ -268,10 +268,15 @@ class Calibration {
         rows, [&](const OptionRow& row) { return row.name == repair.key && row.value == "auto"; });
   }
 
-  // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it.
-  BatchSolution solveWithTags() {
+  // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it. Freed
+  // parameters continue from the solution before, unless that has a wrong input: its parameters may be far from right.
+  BatchSolution solveWithTags(CalibrationResult before) {
     constexpr int kMostRounds = 5;
-    BatchSolution solution = optimiseBatch(input_, initial_.state, options_, context_);
+    const bool continues = !before.state.cameras.empty() && wrong_noise_.empty() &&
+                           std::ranges::none_of(before.causes, isWrongInput);
+    BatchSolution solution =
+        continues ? continueBatch(input_, before.state, std::move(before.iterations), options_, context_)
+                  : optimiseBatch(input_, initial_.state, options_, context_);
     for (int round = 0; round < kMostRounds && moveCornersOfTags(solution); ++round)
       solution = continueBatch(input_, solution.state, std::move(solution.iterations), options_, context_);
     return solution;
@@ -342,10 +347,9 @@ class Calibration {
   void solve() {
     const OptimisationOptions& options = options_;
     CalibrationResult& result = run_.result;
-    const Timing before = result.timing;
-    result = {};
-    result.timing = before;
-    BatchSolution solution = solveWithTags();
+    CalibrationResult before = std::exchange(result, {});
+    result.timing = before.timing;
+    BatchSolution solution = solveWithTags(std::move(before));
     giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
     PriorCheck priors = checkPriors(input_, solution, options, context_);
