@@ -389,6 +389,26 @@ void leaveOutSecondClocks(const std::string& stream, std::int64_t first_ns, std:
                   samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
 }
 
+// Of a log that was written twice: equal stamps have equal values, too. With coarse stamps most values differ.
+void leaveOutCopies(const std::string& stream, std::vector<ImuSample>& samples,
+                    std::vector<RecordingFault>& faults) {
+  constexpr double kMost = 0.99, kWorthSaying = 0.01;
+  std::size_t equal = 0, copies = 0;
+  const auto isCopy = [](const ImuSample& a, const ImuSample& b) {
+    return a.time_ns == b.time_ns && a.measured_by == b.measured_by && sameValues(a, b);
+  };
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    equal += samples[i].time_ns == samples[i - 1].time_ns ? 1 : 0;
+    copies += isCopy(samples[i - 1], samples[i]) ? 1 : 0;
+  }
+  if (copies == 0 || static_cast<double>(copies) < kMost * static_cast<double>(equal)) return;
+  if (static_cast<double>(copies) > kWorthSaying * static_cast<double>(samples.size()))
+    faults.push_back({stream, FaultKind::BackwardTime, 0.0,
+                      fmt::format("{}: {} written twice, with the same stamp and values: excluded", stream,
+                                  counted(copies, "sample", "is", "are"))});
+  samples.erase(std::unique(samples.begin(), samples.end(), isCopy), samples.end());
+}
+
 void leaveOutEqualStamps(const std::string& stream, std::int64_t first_ns, std::vector<ImuSample>& samples,
                          std::vector<RecordingFault>& faults) {
   std::size_t kept = 0, different = 0;
@@ -439,6 +459,7 @@ double putInOrder(const std::string& stream, std::int64_t first_ns, std::vector<
     faults.push_back({stream, FaultKind::BackwardTime, 0.0, stream + ": samples out of order were sorted"});
     std::ranges::stable_sort(samples, kEarlier);
   }
+  leaveOutCopies(stream, samples, faults);
   const CoarseStamps stamps = reconstructStamps(samples, options);
   if (stamps.step_s > 0.0) {
     faults.push_back(faultOf(stream, stamps));

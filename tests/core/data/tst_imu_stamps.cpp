@@ -91,6 +91,7 @@ class TestImuStamps : public QObject {
   void scatteringSamples_keepTheirStamps();
   void separateSensors_haveTheirOwnTimes();
   void fewEqualStamps_areLeftOutAndNamed();
+  void log_thatWasWrittenTwice_isReadOnce();
   void disorderAndSecondClocks_areRemoved();
 };
 
@@ -253,6 +254,22 @@ void TestImuStamps::fewEqualStamps_areLeftOutAndNamed() {
   QCOMPARE(faults.size(), std::size_t{1});
   QVERIFY2(faults[0].text.find("2 samples have the stamp of the sample before") != std::string::npos,
            faults[0].text.c_str());
+}
+
+void TestImuStamps::log_thatWasWrittenTwice_isReadOnce() {
+  std::vector<double> times_s;
+  const Samples once = Stamped{.stamp = rounded(1e-6)}.samples(times_s);
+  Samples in_a_row = once, line_by_line;
+  in_a_row.insert(in_a_row.end(), once.begin(), once.end());
+  for (const ImuSample& sample : once) line_by_line.insert(line_by_line.end(), 2, sample);
+  for (Samples* const twice : {&in_a_row, &line_by_line}) {
+    std::vector<RecordingFault> faults;
+    QCOMPARE(putInOrder("/imu", once.front().time_ns, *twice, faults), 0.0);
+    QCOMPARE(twice->size(), once.size());
+    QVERIFY(std::ranges::equal(*twice, once, {}, &ImuSample::time_ns, &ImuSample::time_ns));
+    QCOMPARE(faults.back().text,
+             "/imu: 3000 samples are written twice, with the same stamp and values: excluded");
+  }
 }
 
 void TestImuStamps::disorderAndSecondClocks_areRemoved() {
