@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/number.h"
 
 #include <fmt/format.h>
 
@@ -88,6 +89,14 @@ std::string outcomes(const BoardObservations& observations) {
 void checkBoardSeen(const BoardObservations& observations, const Board& board,
                     std::span<const RecordingFault> faults) {
   if (!observations.views.empty()) return;
+  const auto by_hand =
+      std::ranges::count(observations.windows, WindowOutcome::RejectedByHand, &WindowReport::outcome);
+  if (by_hand > 0)
+    throw calibrationFailed(
+        observations.camera,
+        fmt::format("all {} with the board {} rejected by hand",
+                    counted(static_cast<std::uint64_t>(by_hand), "window"), by_hand == 1 ? "is" : "are"),
+        "Include some again, or shorten rejected_windows_s of this camera in the session");
   const std::string never =
       fmt::format("the board was never found in {} {} ({})", observations.windows.size(),
                   observations.kind == CameraKind::Events ? "windows" : "frames", outcomes(observations));

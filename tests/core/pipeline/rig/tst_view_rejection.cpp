@@ -88,6 +88,19 @@ class TestViewRejection : public QObject {
     QCOMPARE(told, 1);
   }
 
+  void allWindowsRejected_isNamed() {
+    Session session = simulated_.session;
+    for (const BoardView& view : simulated_.pass.cameras[0].views)
+      session.cameras[0].rejected_windows_s.push_back(view.time_s);
+    try {
+      calibrate(session, simulated_.pass, {});
+      QFAIL("calibrated");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(error.problem().find("with the board are rejected by hand") != std::string::npos,
+               error.problem().c_str());
+    }
+  }
+
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
     // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier test to drop
     // the window.
