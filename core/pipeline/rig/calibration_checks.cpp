@@ -28,6 +28,23 @@
 namespace evical {
 namespace {
 
+// Gravity in the rates: their norm varies little, and the accelerations' is not gravity's.
+void checkNotExchanged(const ImuData& imu, double force_norm, const InitialisationOptions& options) {
+  constexpr double kNear = 0.1, kOther = 0.5;
+  std::vector<double> norms, deviations;
+  for (const ImuSample& sample : imu.samples)
+    if (measuresRate(sample)) norms.push_back(sample.angular_rate_rad_s.norm() / options.gravity_m_s2 - 1.0);
+  for (const double norm : norms) deviations.push_back(std::abs(norm));
+  if (deviations.empty() || force_norm > kOther * options.gravity_m_s2) return;
+  if (!(std::abs(medianOf(std::move(norms))) < kNear && medianOf(std::move(deviations)) < kNear)) return;
+  throw badInput(
+      imu.name,
+      fmt::format("the angular rates have the norm of gravity, and the accelerations one of {:.2g}: the "
+                  "columns or streams of gyroscope and accelerometer seem to be exchanged",
+                  force_norm),
+      "Exchange them in the session, or in the file's header");
+}
+
 // Checks units: of accelerations by their median norm, with bounds that allow shaking at several g; of
 // angular rates only by implausible values.
 void checkUnits(const ImuData& imu, const SessionImu* session, const InitialisationOptions& options) {
@@ -38,6 +55,7 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
     rate2 += sample.angular_rate_rad_s.squaredNorm();
   }
   const double norm = medianOf(std::move(norms));
+  checkNotExchanged(imu, norm, options);
   if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
     const LikelyUnit unit =
         likelyUnitOfForces(session, norm / options.gravity_m_s2, 2.0 * options.force_unit_tolerance);
@@ -154,6 +172,21 @@ void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) 
   if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
 }
 
+// A log that ends early, say: the reason why many views are not used.
+void tellUncovered(const DetectionResult& pass, std::vector<RecordingFault>& faults) {
+  constexpr double kMuch = 0.8;
+  for (const BoardObservations& camera : pass.cameras) {
+    for (const ImuData& imu : pass.imus) {
+      const double camera_s = durationOf(camera), imu_s = durationOf(imu);
+      if (imu_s >= kMuch * camera_s) continue;
+      addFault({imu.name, FaultKind::Part, imu_s,
+                fmt::format("{}: its samples cover {:.1f} s, those of {} {:.1f} s: views beyond are not used",
+                            imu.name, imu_s, camera.camera, camera_s)},
+               faults);
+    }
+  }
+}
+
 }  // namespace
 
 CalibrationError withClockRate(const CalibrationError& error, const Session& session,
@@ -175,12 +208,13 @@ CalibrationError withClockRate(const CalibrationError& error, const Session& ses
     const std::string& camera = seen.camera;
     const std::string wrong = usual ? camera : imu.name;
     const std::string scale = fmt::format("{:g}", usual ? 1.0 / *found : *found);
+    const double fast = usual ? *found : 1.0 / *found;
     const std::string key = fmt::format("{}.{}.clock_scale", usual ? "cameras" : "imus", wrong);
     return CalibrationError(error.kind(), error.place(),
                             fmt::format("{}; the times of {} span {:.3f} s and those of {} {:.3f} s, so the "
-                                        "clock of {} may run {:g} times too fast",
+                                        "clock of {} may run {:g} times too {}",
                                         error.problem(), imu.name, imu_s, camera, camera_s, wrong,
-                                        usual ? *found : 1.0 / *found),
+                                        std::max(fast, 1.0 / fast), fast > 1.0 ? "fast" : "slow"),
                             fmt::format("If so, set {} to {}", key, scale))
         .repairedBy(Repair{key, scale});
   }
@@ -223,6 +257,7 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
     if (unseen) addFault(*unseen, pass.faults);
   }
+  tellUncovered(pass, pass.faults);
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(pass, context);
   checkDuration(session, pass);
