@@ -12,12 +12,14 @@ namespace evical {
 
 // Names of wrong inputs as causes, the ones that explain the others first.
 inline constexpr const char* kWrongUnit = "unit";
+inline constexpr const char* kWrongClock = "clock_rate";
 inline constexpr const char* kWrongLens = "given_lens";
 inline constexpr const char* kWrongBoard = "board_dimensions";
 inline constexpr const char* kWrongNoise = "noise_density";
 
 inline bool isWrongInput(const QualityWarning& reason) {
-  constexpr std::array<std::string_view, 4> kNames = {kWrongUnit, kWrongLens, kWrongBoard, kWrongNoise};
+  constexpr std::array<std::string_view, 5> kNames = {kWrongUnit, kWrongClock, kWrongLens, kWrongBoard,
+                                                      kWrongNoise};
   return std::ranges::find(kNames, std::string_view(reason.name)) != kNames.end();
 }
 

@@ -33,8 +33,8 @@ struct BatchSolution {
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context);
 
-// Solves only the last stage, from a solution for slightly other data; its iterations follow those before. Not for other
-// options: from a solution with wrong inputs, parameters that are freed may end in another optimum.
+// Solves only the last stage, with other options or slightly other data, from a solution; its iterations follow those before.
+// Not from a solution with wrong inputs: parameters that are freed may end in another optimum.
 BatchSolution continueBatch(const CalibrationInput& input, const CalibrationState& solved,
                             std::vector<IterationRecord> before, const OptimisationOptions& options,
                             const RunContext& context);

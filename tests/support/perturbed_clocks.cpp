@@ -74,7 +74,7 @@ void batches(Recorded& recorded, double samples) {
 }  // namespace
 
 std::vector<Perturbation> clockPerturbations() {
-  return {{"clock drift", "ppm", {50, 200, 1000}, {"drift"}, drift},
+  return {{"clock drift", "ppm", {50, 200, 1000, 10000}, {"drift", "clock_scale"}, drift},
           {"clock step", "ms", {1, 10, 50, 100}, {"step", "clock"}, clockStep},
           {"time offset", "s", {0.7, 1.5, 5, 30}, {"time offset", "clock"}, offset},
           {"stamp jitter", "ms", {1, 5}, {"stamp", "interval", "jitter"}, jitter},

@@ -110,6 +110,9 @@ const std::vector<Mistake>& mistakes() {
        "lasts (10.0|9.9) s, but time_range_s begins at 20 s", "Give a range within the recording"},
       {"53 too short", Stage::Events, replaced("^board:", "time_range_s: [0, 2]\nboard:"),
        "too short: (2.0|1.9)\\d* s, at least 3.00 s are required", "Record at least 20 s of varied motion"},
+      {"clock 1 % too slow", Stage::Imu, inImu("clock_scale: 0.99"),
+       "Verdict: doubtful - the clocks of left and left_imu differ by (0.9\\d|1) % in their rates",
+       "Check the rate.*imus.left_imu.clock_scale: 1.0(09|1)\\d* or cameras.left.clock_scale: 0.99"},
       // Units and axes
       {"12 SI called g", Stage::Imu, replaced("acceleration_unit: .*", "acceleration_unit: g"),
        "left_imu: the median norm of the accelerations is 9\\d.*: the unit seems to be m/s\\^2",
@@ -142,6 +145,12 @@ const std::vector<Mistake>& mistakes() {
        "left_imu: gyroscope_noise_density .1.87e-06 rad/s/sqrt.Hz.. is \\d+ times too small: the samples "
        "have about 0.0001[5-9]",
        "Give the data sheet's value in rad/s/sqrt.Hz."},
+      {"noise densities exchanged", Stage::Imu,
+       both(replaced("gyroscope_noise_density: .*", "gyroscope_noise_density: 0.00186"),
+            replaced("accelerometer_noise_density: .*", "accelerometer_noise_density: 0.000187")),
+       "Verdict: doubtful - left_imu: gyroscope_noise_density .* and accelerometer_noise_density .* seem to "
+       "be exchanged",
+       "the samples have about 0.0001[5-9].* and 0.00[12]"},
       // The board
       {"06 fewer rows", Stage::Events, replaced("rows: 11", "rows: 9"),
        "visible board seems larger than 9 x 4", "[Cc]heck rows and columns"},

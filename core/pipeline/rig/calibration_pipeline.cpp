@@ -496,10 +496,8 @@ class Calibration {
 
   void conclude() {
     CalibrationResult& result = run_.result;
-    if (result.status != CalibrationStatus::Ok)
-      if (const std::optional<QualityWarning> unit =
-              wrongUnit(session_, input_, std::ranges::any_of(result.causes, isWrongInput), context_))
-        flagDoubtful(*unit, result);
+    if (const std::optional<QualityWarning> unit = wrongUnit(session_, input_, result, context_))
+      flagDoubtful(*unit, result);
     returnPass();
     result.start_ns = run_.pass.start_ns;
     result.freed = freed_;

@@ -111,6 +111,7 @@ struct RankedReason {
 // In the order in which they are reported. Unlisted ones come between causes and symptoms.
 constexpr std::array kRanks = {RankedReason{"mirrored_image", Explains::Itself, Reason::Independent},
                                RankedReason{kWrongUnit, Explains::Symptoms, Reason::Independent},
+                               RankedReason{kWrongClock, Explains::Symptoms, Reason::Independent},
                                RankedReason{kWrongLens, Explains::Symptoms},
                                RankedReason{kWrongBoard, Explains::Symptoms},
                                RankedReason{"first_look_at_lens"},

@@ -256,6 +256,38 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
                         kWrongBoard};
 }
 
+// Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
+// percent. The batch estimates either, but accelerations and rates then have wrong scales.
+std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const CalibrationState& state,
+                                         const UncertaintyReport& uncertainty,
+                                         const OptimisationOptions& options) {
+  constexpr double kUsual = 4.0, kWrong = 50.0, kSigmas = 5.0;  // the first two of the prior's sigma
+  const double prior_ppm = options.time_offset_drift_sigma_ppm;
+  const bool of_imu = !input.imus.empty();
+  const std::string& reference = of_imu ? input.imus[input.reference_imu].name : input.cameras.front().name;
+  std::optional<QualityWarning> wrong;
+  const auto test = [&](const char* group, const auto& data, double drift_ppm, double sigma_ppm) {
+    if (wrong || data.prior.time_offset_drift || data.name == reference) return;
+    if (!(std::abs(drift_ppm) > std::max(kWrong * prior_ppm, kSigmas * sigma_ppm))) return;
+    const double pace = 1.0 + 1e-6 * drift_ppm;
+    wrong = QualityWarning{
+        fmt::format("the clocks of {} and {} differ by {:.2g} % in their rates, others by less than "
+                    "{:.2g} %. Check the rate with which stamps were computed: {}.{}.clock_scale: {:.6g} or "
+                    "{}.{}.clock_scale: {:.6g} would agree",
+                    data.name, reference, 1e-4 * std::abs(drift_ppm), 1e-4 * kUsual * prior_ppm,
+                    of_imu ? "imus" : "cameras", reference, 1.0 / pace, group, data.name, pace),
+        {},
+        kWrongClock};
+  };
+  for (std::size_t k = 0; k < input.cameras.size(); ++k)
+    test("cameras", input.cameras[k], state.cameras[k].time_offset_drift_ppm,
+         uncertainty.cameras[k].time_offset_drift_std_ppm);
+  for (std::size_t k = 0; k < input.imus.size(); ++k)
+    test("imus", input.imus[k], state.imus[k].time_offset_drift_ppm,
+         uncertainty.imus[k].time_offset_drift_std_ppm);
+  return wrong;
+}
+
 // Noise density of samples: their third differences contain hardly any motion. Filters correlate neighbours, so the
 // largest figure of several distances counts.
 double sampleDensity(const ImuData& imu, bool of_gyroscope) {
@@ -308,6 +340,24 @@ QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, dou
           times < 1.0 ? 1.0 : 0.0};
 }
 
+// Both densities are wrong, and each agrees with the other sensor's samples.
+std::optional<QualityWarning> exchangedNoise(const ImuData& imu, double agreement_ratio) {
+  const double of_rates = sampleDensity(imu, true), of_forces = sampleDensity(imu, false);
+  const double rates = imu.noise.gyroscope_density, forces = imu.noise.accelerometer_density;
+  const bool exchanged =
+      isFar(of_rates / rates, agreement_ratio) && isFar(of_forces / forces, agreement_ratio) &&
+      !isFar(of_rates / forces, agreement_ratio) && !isFar(of_forces / rates, agreement_ratio);
+  if (!exchanged) return std::nullopt;
+  return QualityWarning{
+      fmt::format(
+          "{}: gyroscope_noise_density ({:.3g} rad/s/sqrt(Hz)) and accelerometer_noise_density ({:.3g} "
+          "m/s^2/sqrt(Hz)) seem to be exchanged: the samples have about {:.2g} and {:.2g}",
+          imu.name, rates, forces, of_rates, of_forces),
+      {},
+      kWrongNoise,
+      1.0};
+}
+
 }  // namespace
 
 LikelyUnit likelyUnitOfRates(const SessionImu* imu, double times, double tolerance) {
@@ -357,14 +407,18 @@ std::vector<QualityWarning> wrongInputs(const Session& session, const Calibratio
   }
   if (std::optional<QualityWarning> board = wrongBoard(input, initial, options))
     wrong.push_back(std::move(*board));
+  if (std::optional<QualityWarning> clock =
+          wrongClock(input, solution.state, uncertainty, *session.options.optimisation))
+    wrong.push_back(std::move(*clock));
   return wrong;
 }
 
 std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
-                                        bool another_is_wrong, const RunContext& context) {
+                                        const CalibrationResult& result, const RunContext& context) {
   if (input.cameras.empty() || input.imus.empty()) return std::nullopt;
+  const bool another_is_wrong = std::ranges::any_of(result.causes, isWrongInput);
   std::optional<CalibrationError> error = wrongForces(session, input);
-  if (!error)
+  if (!error && result.status != CalibrationStatus::Ok)
     if (const std::optional<WrongRates> rates = wrongRates(session, input, context);
         rates && (rates->certain || !another_is_wrong))
       error = rates->error;
@@ -389,6 +443,10 @@ std::vector<QualityWarning> wrongNoise(const Session& session, const Calibration
       if (white > 0.0 && (too_large || too_small))
         wrong.push_back(noiseWarning(imu.name, noise, given, given * white, options.noise_unit_ratio));
     };
+    if (std::optional<QualityWarning> both = exchangedNoise(imu, options.noise_agreement_ratio)) {
+      wrong.push_back(std::move(*both));
+      continue;
+    }
     const ImuFit& fit = solution.imus[k];
     test(kGyroscopeNoise, true, imu.noise.gyroscope_density,
          fit.gyroscope_rms_rad_s / imu.gyroscopeSigma_rad_s());

@@ -26,10 +26,11 @@ CalibrationError withWrongInput(const CalibrationError& error, const Session& se
                                 const CalibrationInput& input, const Initialisation& initial,
                                 bool recording_is_there, const RunContext& context);
 
-// A wrong unit behind a doubtful solution. If another input is wrong, only a ratio that a unit explains counts: a wrong
+// A wrong unit behind a solution: of accelerations by their norm, which the batch's scales may absorb, and behind a doubtful
+// solution also of rates. If another input is wrong, only a ratio that a unit explains counts: a wrong
 // lens changes rates, too.
 std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
-                                        bool another_is_wrong, const RunContext& context);
+                                        const CalibrationResult& result, const RunContext& context);
 
 // Wrong inputs of a solution, each with the value that would agree. They make any result doubtful.
 std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,

@@ -120,6 +120,10 @@ class TestCauses : public QObject {
         "left: the given lens differs.*26\\d.* px agree.*2 times too large.*Remove intrinsics");
     row("focal length", -50,
         "left: the given lens differs.*26\\d.* px agree.*2 times too small.*Remove intrinsics");
+    row("sensors exchanged", 1, "rates have the norm of gravity.*seem to be exchanged.*Exchange them");
+    row("clock drift", 1e4, "clocks of left and left_imu differ by (0.9\\d|1) %.*left_imu.clock_scale: 0.99");
+    row("clock drift", -5e3,
+        "clocks of left and left_imu differ by 0.(4|5)\\d* %.*left_imu.clock_scale: 1.00[45]");
     row("distortion", -1, "left: the given lens differs.*distortion.*Remove intrinsics");
   }
   void wrongInput_isTheOnlyReason() {
@@ -154,9 +158,10 @@ class TestCauses : public QObject {
     QCOMPARE(QString::fromStdString(noise.reason), QString("late stamps; noise; misfit"));
     flagDoubtful("spacing", result, "board_dimensions");
     flagDoubtful("lens", result, "given_lens");
+    flagDoubtful("clock", result, "clock_rate");
     flagDoubtful("unit", result, "unit");
     rankReasons(result);
-    QCOMPARE(QString::fromStdString(result.reason), QString("unit; late stamps"));
+    QCOMPARE(QString::fromStdString(result.reason), QString("unit; clock; late stamps"));
   }
   // The weights use the estimate, so that the result may be ok: then the density is the first note.
   void noiseTooLarge_isNamedInAnyVerdict() {
@@ -187,6 +192,18 @@ class TestCauses : public QObject {
         QVERIFY2(perturbation.isNamedIn(test::firstReason(error.what())), error.what());
       }
     }
+  }
+
+  // Weak data have a reason then.
+  void log_thatEndsEarly_isTold() {
+    test::Recorded recorded = base_;
+    std::vector<ImuSample>& samples = recorded.pass.imus.front().samples;
+    samples.resize(samples.size() / 2);
+    const CalibrationResult result = calibrate(recorded.session, recorded.pass, RunContext{}).result;
+    const auto told = std::ranges::count_if(result.notes, [](const std::string& note) {
+      return note.find("left_imu: its samples cover 5.0 s, those of left ") == 0;
+    });
+    QCOMPARE(told, 1);
   }
 
   // The initial board scale uses accelerations at their stamps: in seed 5 the board seems 3 % smaller.
