@@ -111,7 +111,8 @@ class TestKeptRuns : public QObject {
     QVERIFY(test.document().last().run == first);
     QTRY_COMPARE(shownNumbers(test), numbers);
     QCOMPARE(shownResiduals(test), residuals);
-    QVERIFY(test.window.isWindowModified());  // rejected windows are a step of their own, saved with the session
+    QVERIFY(
+        test.window.isWindowModified());  // rejected windows are a step of their own, saved with the session
     test.press(Qt::Key_Z, Qt::ControlModifier);
     QTRY_VERIFY(!test.window.isWindowModified());
     test.press(Qt::Key_Y, Qt::ControlModifier);

@@ -53,7 +53,7 @@ class WindowWorkers {
   }
   // False after a failure, or if a run was stopped.
   bool push(CameraBatch batch) { return workers_[thread_of_[batch.camera]].queue.push(std::move(batch)); }
-  // True if the camera's thread has not begun what it has.
+  // True if batches wait for the camera's thread.
   bool isBehind(std::size_t camera) const { return !workers_[thread_of_[camera]].queue.empty(); }
   // After the last batch, or a failure.
   void close() {
