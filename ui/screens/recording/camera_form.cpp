@@ -7,7 +7,6 @@
 #include "core/geometry/lens_fit.h"
 #include "ui/forms/form_label.h"
 #include "ui/screens/recording/clock_offset_field.h"
-#include "ui/theme/theme.h"
 
 #include <QComboBox>
 #include <QFileDialog>
@@ -74,7 +73,7 @@ CameraForm::CameraForm(QWidget* parent)
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
   centre_y_px_->setToolTip(tr("cy"));
-  auto* const file = new QPushButton(icon("open"), tr("From a file..."), this);
+  auto* const file = new QPushButton(tr("File..."), this);
   file->setToolTip(tr("Intrinsics: map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
   coefficient_names_->setObjectName("coefficient_names");
