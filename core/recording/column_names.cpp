@@ -139,13 +139,24 @@ int axisOf(std::string_view word) {
   return found == std::end(kAxes) ? -1 : static_cast<int>(found - std::begin(kAxes));
 }
 
+// Degree, squared and micro signs in Latin-1, as words; empty for other bytes.
+std::string_view latin1Sign(char c) {
+  return c == '\xB0' ? "deg" : c == '\xB2' ? "2" : c == '\xB5' ? "u" : "";
+}
+
 // Only letters and digits, so that "m/s^2", "m s^-2" and "m_s2" are equal.
 std::string plainUnit(std::string_view unit) {
   std::string plain;
   std::string text = replaced(replaced(std::string(unit), "\xC2\xB0", "deg"), "\xC2\xB2", "2");
   text = replaced(replaced(std::move(text), "\xC2\xB5", "u"), "\xCE\xBC", "u");
-  for (const char c : text)
-    if (isWordLetter(c)) plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  bool ascii = true;  // of the preceding byte: the signs are single bytes, unlike those of UTF-8
+  for (const char c : text) {
+    if (isWordLetter(c))
+      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (ascii)
+      plain += latin1Sign(c);
+    ascii = static_cast<unsigned char>(c) < 0x80;
+  }
   return plain;
 }
 

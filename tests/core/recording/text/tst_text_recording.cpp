@@ -412,6 +412,8 @@ void TestTextRecording::imuColumns_areToldByName_data() {
       "0,7,1,2,9.5,0.1,0.2,0.3", 7000);
   row("units apart from names", "# t [us] ax [m/s^2] ay [m/s^2] az [m/s^2] gx [rad/s] gy [rad/s] gz [rad/s]",
       "7 1 2 9.5 0.1 0.2 0.3", 7000);
+  row("Latin-1", "t [\xB5s],ax [m/s\xB2],ay [m/s\xB2],az [m/s\xB2],gx [\xB0/s],gy [\xB0/s],gz [\xB0/s]",
+      "7,1,2,9.5,5.729577951308232,11.459155902616464,17.188733853924695", 7000);
   row("milli-g and deg/s", "t_us,ax_mg,ay_mg,az_mg,gx_dps,gy_dps,gz_dps",
       "7,101.97162129779282,203.94324259558565,968.7304023290318,5.729577951308232,11.459155902616464,17."
       "188733853924695",
