@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kTextPacketEvents = 10'000;
 constexpr std::int64_t kTextPacketSpan_ns = 10'000'000;
 constexpr std::size_t kTextPacketSamples = 10;
-constexpr int kMostBadLines = 10;                          // reported individually
+constexpr std::uint64_t kMostBadLines = 10;                // reported individually
 constexpr std::size_t kHead_bytes = std::size_t{1} << 18;  // a second of any IMU's samples
 constexpr std::int64_t kDay_ns = 86'400 * kSecond_ns;
 constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
@@ -264,6 +264,11 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
 
 void TextTableReader::finish(Source& source, std::size_t stream) {
   source.finished = true;
+  if (source.bad_lines > kMostBadLines)
+    faults_.push_back(
+        {streams_[stream].name, FaultKind::Corrupt, 0.0,
+         fmt::format("{} left out; {} in all.",
+                     counted(source.bad_lines - kMostBadLines, "more line", "is", "are"), source.bad_lines)});
   if (source.other_types > 0)
     faults_.push_back({streams_[stream].name, FaultKind::Triggers, 0.0,
                        counted(source.other_types, "line", "is", "are") +
@@ -341,15 +346,11 @@ bool TextTableReader::parseImu(const Source& source, std::string_view line, RawI
           parseVector(parts_, columns.rate, columns.style, columns.rate_factor, sample.angular_rate));
 }
 
-void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
-  const std::string& name = streams_[stream].name;
-  const auto alike = [&](const RecordingFault& fault) {
-    return fault.stream == name && fault.kind != FaultKind::Guess;
-  };
-  if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
+void TextTableReader::addBadLine(Source& source, std::size_t stream) {
+  if (++source.bad_lines > kMostBadLines) return;
   const bool last = source.lines.atEnd();
   faults_.push_back(
-      {name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
+      {streams_[stream].name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
        fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(), rowOf(source.columns))});
 }
 

@@ -42,6 +42,7 @@ class TextTableReader : public RecordingReader {
     bool has_next_event = false;
     std::optional<MeasuredPoint> next_point = {};  // as next_event
     std::uint64_t other_types = 0;                 // lines of other types than events
+    std::uint64_t bad_lines = 0;                   // left out
     std::optional<std::int64_t> clock_ns = {};     // the last time of day
     std::int64_t days_ns = 0;                      // whole days since the first one
   };
@@ -59,7 +60,7 @@ class TextTableReader : public RecordingReader {
   bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);
   bool isOtherType(const Source& source) const;
   bool isNoRow(const Source& source, std::string_view line) const;
-  void addBadLine(const Source& source, std::size_t stream);
+  void addBadLine(Source& source, std::size_t stream);
 
   std::vector<Source> sources_;  // one per stream
   std::vector<StreamInfo> streams_;

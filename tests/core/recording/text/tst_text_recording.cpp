@@ -23,6 +23,8 @@ class TestTextRecording : public QObject {
   void sampleOfOthers_matchesItsSums();
   void imuHeader_decidesTheColumns();
   void badLines_areReportedAndLeftOut();
+  void manyBadLines_areCounted_data();
+  void manyBadLines_areCounted();
   void stepBack_endsThePacket();
   void writer_refusesTwoCameras();
   void csv_roundTripIsExact();
@@ -229,6 +231,32 @@ void TestTextRecording::badLines_areReportedAndLeftOut() {
   QCOMPARE(reader->faults()[0].kind, FaultKind::Corrupt);
   QVERIFY(reader->faults()[0].text.starts_with("Line 2 "));
   QCOMPARE(reader->faults()[2].kind, FaultKind::Truncated);
+}
+
+void TestTextRecording::manyBadLines_areCounted_data() {
+  QTest::addColumn<QByteArray>("header");
+  QTest::addColumn<QByteArray>("row");
+  QTest::newRow("IMU") << QByteArray("t_s,ax,ay,az,gx,gy,gz\n") << QByteArray("0.1,1,2,9.8,1,2,3\n");
+  QTest::newRow("events") << QByteArray("t_s,x,y,p\n") << QByteArray("0.1,1,2,1\n");
+  QTest::newRow("points") << QByteArray("t_s,point,x_px,y_px\n") << QByteArray("0.1,1,2,3\n");
+}
+
+void TestTextRecording::manyBadLines_areCounted() {
+  QFETCH(QByteArray, header);
+  QFETCH(QByteArray, row);
+  for (const int bad : {10, 11, 250}) {
+    QByteArray text = header + row + row;
+    for (int i = 0; i < bad; ++i) text += "rubbish\n";
+    writeFile(path("many_bad.csv"), (text + row).toStdString());
+    const auto reader = openRecording(path("many_bad.csv"));
+    readRecording(*reader);
+    QCOMPARE(reader->faults().size(), bad == 10 ? 10u : 11u);
+    if (bad == 10) continue;
+    const std::string more =
+        bad == 11 ? "1 more line is left out; 11 in all." : "240 more lines are left out; 250 in all.";
+    QCOMPARE(reader->faults().back().text, more);
+    QVERIFY(reader->faults().back().kind == FaultKind::Corrupt);
+  }
 }
 
 void TestTextRecording::stepBack_endsThePacket() {
