@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -18,6 +19,10 @@ namespace {
 
 constexpr std::string_view kAroundName = " \t\r\"'";
 constexpr std::string_view kUnusedName = "-";
+// Of a proposed line whose units are dropped.
+constexpr std::string_view kWithoutUnits =
+    ". Axes without a unit are in m/s^2 or rad/s; state others, or the size of a raw count, in brackets: ax "
+    "[0.001 g]";
 constexpr std::size_t kMostListed = 8;
 constexpr std::size_t kMostImus = 8;
 
@@ -46,21 +51,53 @@ std::string nameOfKind(ColumnKind kind) {
   }
 }
 
+// A sensor's unit in a proposed line, in brackets as headers have it; empty if it is not known.
+std::string proposedUnit(const ColumnName& column) {
+  const bool known = column.kind == ColumnKind::Acceleration ? accelerationUnitOf(column.unit).has_value()
+                                                             : angularRateUnitOf(column.unit).has_value();
+  return known ? " [" + column.unit + "]" : "";
+}
+
+std::string proposedTime(const std::string& unit) {
+  const bool is_word = std::ranges::all_of(unit, [](unsigned char c) { return std::isalnum(c) != 0; });
+  return !timeUnitNamed(unit) ? "t" : is_word ? "t_" + unit : "t [" + unit + "]";
+}
+
 // Name of a used column in a proposed line. `bare`: the letter of the sensor that bare axes belong to, if there are any.
 std::string proposedName(const ColumnName& column, std::optional<char> bare, bool imu) {
-  const std::string unit = column.unit.empty() ? "" : "_" + column.unit;
-  if (column.kind == ColumnKind::Time) return timeUnitNamed(column.unit) ? "t" + unit : "t";
+  if (column.kind == ColumnKind::Time) return proposedTime(column.unit);
   if (column.kind == ColumnKind::Acceleration || column.kind == ColumnKind::AngularRate)
     return fmt::format("{}{}{}", column.kind == ColumnKind::Acceleration ? 'a' : 'g',
-                       column.lettered ? "xyz"[column.axis] : '?', unit);
+                       column.lettered ? "xyz"[column.axis] : '?', proposedUnit(column));
   if (bare && column.bare_axis >= 0) return fmt::format("{}{}", *bare, "xyz"[column.bare_axis]);
   return imu ? "?" : nameOfKind(column.kind);
 }
 
+// A line that names two columns alike would be refused, too. Several columns may be parts of one time.
+void openTwins(const TableHeader& header, std::vector<std::string>& names) {
+  const auto meaningOf = [](const std::string& name) { return name.substr(0, name.find(' ')); };
+  std::map<std::string, std::size_t> counts;
+  for (const std::string& name : names) ++counts[meaningOf(name)];
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (counts[meaningOf(names[i])] > 1 && header.columns[i].kind != ColumnKind::Time &&
+        names[i] != kUnusedName)
+      names[i] = "?";
+}
+
+// Removes the units of a sensor whose axes have different ones: such a line would be refused, too.
+void dropMixedUnits(const std::vector<Axes>& vectors, TableHeader& header) {
+  for (const Axes& axes : vectors)
+    if (std::ranges::any_of(
+            axes, [&](std::size_t i) { return header.columns[i].unit != header.columns[axes[0]].unit; }))
+      for (const std::size_t i : axes) header.columns[i].unit.clear();
+}
+
 // Proposed line for the session; '?' for names without a known meaning. `sensor`: letter of a sensor for bare axes.
-std::string suggestion(const TableHeader& header, std::span<const TableColumn> table, char sensor = '?') {
+std::string suggestion(TableHeader header, std::span<const TableColumn> table, char sensor = '?') {
   const std::vector<Axes> accelerations = accelerationsOf(header),
                           rates = vectorsOf(header, ColumnKind::AngularRate);
+  dropMixedUnits(accelerations, header);
+  dropMixedUnits(rates, header);
   // The first sensor is proposed if there are several.
   const auto isFurther = [](std::size_t i, const std::vector<Axes>& vectors) {
     return std::any_of(vectors.begin(), vectors.end(), [&](const Axes& axes) {
@@ -77,10 +114,12 @@ std::string suggestion(const TableHeader& header, std::span<const TableColumn> t
            (is_time && std::find(time.begin(), time.end(), i) == time.end()) ||
            (bare && sensor != '?' && !is_time && column.bare_axis < 0);
   };
-  std::string text;
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < header.columns.size(); ++i)
-    text += (i > 0 ? "," : "") +
-            (isUnused(i) ? std::string(kUnusedName) : proposedName(header.columns[i], bare, imu));
+    names.push_back(isUnused(i) ? std::string(kUnusedName) : proposedName(header.columns[i], bare, imu));
+  openTwins(header, names);
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) text += (i > 0 ? "," : "") + names[i];
   return text;
 }
 
@@ -110,12 +149,14 @@ bool takeUnit(const NamedTable& named, const Axes& axes, Read read, const char* 
     refuse(named,
            fmt::format("its header gives the {}'s axes different units: {} and {}", sensor, first, own),
            columns);
+    columns.advice += kWithoutUnits;
     return false;
   }
   if (first.empty()) return true;
   const auto known = read(first);
   if (!known) {
     refuse(named, fmt::format("its header has an unknown unit of the {}: {}", sensor, first), columns);
+    columns.advice += kWithoutUnits;
     return false;
   }
   unit = known->unit;

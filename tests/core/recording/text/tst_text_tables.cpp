@@ -72,6 +72,8 @@ class TestTextTables : public QObject {
   void twoTables_areOneImu();
   void bareAxes_areRefusedWithLinesThatWork();
   void proposals_areForTheirSensor();
+  void proposals_areNotRefused_data();
+  void proposals_areNotRefused();
   void tablesWithoutHeader_haveTheUnitThatFits_data();
   void tablesWithoutHeader_haveTheUnitThatFits();
   void decimalPixels_areRefused_data();
@@ -471,6 +473,37 @@ void TestTextTables::proposals_areForTheirSensor() {
   const auto reader = openRecording(path("pose.csv"));
   QVERIFY(reader->faults().empty());
   QCOMPARE(qlonglong(readRecording(*reader).imu_samples.at(0).time_ns), qlonglong(500'000'000));
+}
+
+void TestTextTables::proposals_areNotRefused_data() {
+  QTest::addColumn<QByteArray>("header");
+  QTest::addColumn<QByteArray>("line");
+  const auto row = [](const char* name, const char* header, const char* line) {
+    QTest::newRow(name) << QByteArray(header) << QByteArray(line);
+  };
+  row("axes twice", "t_ns,gx,gx,gx,ax,ay,ay", "t_ns,?,?,?,ax,?,?");
+  row("an axis twice, with units", "t_ns,gx,gy,gz,ax [g],ax [m/s^2],az", "t_ns,gx,gy,gz,?,?,az");
+  row("different units", "t [ns],wx [rad/s],wy [rad/s],wz [rad/s],ax [m/s^2],ay [m/s^2],az [g]",
+      "t_ns,gx [rad/s],gy [rad/s],gz [rad/s],ax,ay,az");
+  row("an unknown unit",
+      "t [\xC2\xB5s],wx [\xC2\xB0/s],wy [\xC2\xB0/s],wz [\xC2\xB0/s],ax [ell],ay [ell],az [ell]",
+      "t [\xC2\xB5s],gx [\xC2\xB0/s],gy [\xC2\xB0/s],gz [\xC2\xB0/s],ax,ay,az");
+  row("units of the other sensor", "t [ns],gx [g],gy [g],gz [g],ax [rad/s],ay [rad/s],az [rad/s]",
+      "t_ns,gx,gy,gz,ax,ay,az");
+  row("raw counts of one sensor", "t_s,gx [lsb],gy [lsb],gz [lsb],ax [0.001 g],ay [0.001 g],az [0.001 g]",
+      "t_s,gx,gy,gz,ax [0.001 g],ay [0.001 g],az [0.001 g]");
+}
+
+// A proposed line with '?' is to be completed.
+void TestTextTables::proposals_areNotRefused() {
+  QFETCH(QByteArray, header);
+  QFETCH(QByteArray, line);
+  const std::string row = "\n7,1,2,3,1,2,9\n";
+  const QByteArray refusal = refusalOf(header.toStdString() + row).c_str();
+  QVERIFY2(refusal.contains("columns: \"" + line + "\""), refusal);
+  if (line.contains('?')) return;
+  const std::string again = refusalOf(line.toStdString() + row);
+  QVERIFY2(again.empty(), again.c_str());
 }
 
 void TestTextTables::tablesWithoutHeader_haveTheUnitThatFits_data() {
