@@ -24,7 +24,14 @@ constexpr std::string_view kWithoutUnits =
     ". Axes without a unit are in m/s^2 or rad/s; state others, or the size of a raw count, in brackets: ax "
     "[0.001 g]";
 constexpr std::size_t kMostListed = 8;
+constexpr std::size_t kMostProposed = 100;
 constexpr std::size_t kMostImus = 8;
+
+std::string firstOf(const std::vector<std::string>& names) {
+  const std::span<const std::string> all(names), first = all.first(std::min(all.size(), kMostListed));
+  return joined(first) +
+         (first.size() < all.size() ? fmt::format(" and {} more", all.size() - first.size()) : "");
+}
 
 bool namesImu(const TableHeader& header) {
   return header.has(ColumnKind::AngularRate) || header.has(ColumnKind::Acceleration);
@@ -119,8 +126,9 @@ std::string suggestion(TableHeader header, std::span<const TableColumn> table, c
     names.push_back(isUnused(i) ? std::string(kUnusedName) : proposedName(header.columns[i], bare, imu));
   openTwins(header, names);
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i > 0 ? "," : "") + names[i];
-  return text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostProposed); ++i)
+    text += (i > 0 ? "," : "") + names[i];
+  return text + (names.size() > kMostProposed ? fmt::format(",... ({} columns)", names.size()) : "");
 }
 
 // A header and the rows below it.
@@ -249,7 +257,7 @@ void applyImus(const NamedTable& named, TextColumns& columns) {
     if (vectors->size() == 1) continue;
     std::vector<std::string> names;
     for (const Axes& axes : *vectors) names.push_back(header.names[axes[0]]);
-    return refuse(named, fmt::format("its header names more than one {}: {}", sensor, joined(names)),
+    return refuse(named, fmt::format("its header names more than one {}: {}", sensor, firstOf(names)),
                   columns);
   }
   const auto only = [](const std::vector<Axes>& vectors) {
@@ -309,12 +317,6 @@ void applyEventsOrPoints(const NamedTable& named, TextColumns& columns) {
   only(ColumnKind::Point, columns.point);
   if (const auto sigma = columnsOfKind(header, ColumnKind::Sigma); !sigma.empty())
     columns.sigma = sigma.front();
-}
-
-std::string firstOf(const std::vector<std::string>& names) {
-  const std::span<const std::string> all(names), first = all.first(std::min(all.size(), kMostListed));
-  return joined(first) +
-         (first.size() < all.size() ? fmt::format(" and {} more", all.size() - first.size()) : "");
 }
 
 bool lacksTimes(const TableHeader& header) {

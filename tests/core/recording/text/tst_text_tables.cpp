@@ -74,6 +74,7 @@ class TestTextTables : public QObject {
   void proposals_areForTheirSensor();
   void proposals_areNotRefused_data();
   void proposals_areNotRefused();
+  void wideTables_areRefusedBriefly();
   void tablesWithoutHeader_haveTheUnitThatFits_data();
   void tablesWithoutHeader_haveTheUnitThatFits();
   void decimalPixels_areRefused_data();
@@ -504,6 +505,20 @@ void TestTextTables::proposals_areNotRefused() {
   if (line.contains('?')) return;
   const std::string again = refusalOf(line.toStdString() + row);
   QVERIFY2(again.empty(), again.c_str());
+}
+
+void TestTextTables::wideTables_areRefusedBriefly() {
+  std::string header = "t_s", row = "7";
+  for (int imu = 0; imu < 1000; ++imu) {
+    header += fmt::format(",imu{0}_ax,imu{0}_ay,imu{0}_az,imu{0}_gx,imu{0}_gy,imu{0}_gz", imu);
+    row += ",1,2,9,1,2,3";
+  }
+  const std::string refusal = refusalOf(header + "\n" + row + "\n");
+  QVERIFY2(refusal.size() < 1500, refusal.c_str());
+  QVERIFY2(refusal.find("imu0_ax, imu1_ax") != std::string::npos &&
+               refusal.find("992 more") != std::string::npos &&
+               refusal.find("6001 columns") != std::string::npos,
+           refusal.c_str());
 }
 
 void TestTextTables::tablesWithoutHeader_haveTheUnitThatFits_data() {
