@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -21,8 +22,15 @@ struct InspectArguments {
   bool json = false, checksum = false;
 };
 
+// With fixed decimals; without a hundred digits if it is huge.
+std::string shown(double value, int decimals) {
+  constexpr double kHuge = 1e9;
+  return std::abs(value) < kHuge ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:g}", value);
+}
+
 void printVector(const char* title, const Eigen::Vector3d& vector, const std::string& unit) {
-  print("    {:<22} {:.5f}  {:.5f}  {:.5f} {}\n", title, vector.x(), vector.y(), vector.z(), unit);
+  print("    {:<22} {}  {}  {} {}\n", title, shown(vector.x(), 5), shown(vector.y(), 5), shown(vector.z(), 5),
+        unit);
 }
 
 void printEvents(const StreamSummary& stream, bool checksum) {
@@ -51,7 +59,7 @@ void printImu(const StreamSummary& stream) {
           stream.without_force, stream.without_rate);
   if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Accelerometer) {
     printVector("mean specific force", stream.mean_acceleration, stream.acceleration_unit);
-    print("    {:<22} {:.4f} {}\n", "median of its norm", stream.median_acceleration,
+    print("    {:<22} {} {}\n", "median of its norm", shown(stream.median_acceleration, 4),
           stream.acceleration_unit);
   }
   if (kind == ImuStreamKind::Whole || kind == ImuStreamKind::Gyroscope)

@@ -69,6 +69,7 @@ class TestCommandLine : public QObject {
   void init_writesTheSessionThatTheRecordingSuggests_data();
   void init_writesTheSessionThatTheRecordingSuggests();
   void init_takesSensorsOfSeveralRecordings();
+  void inspect_writesHugeMeansBriefly();
   void detect_writesDetectionsOnly();
   void detect_ofSeveralRecordingsWritesAFolderEach();
   void calibrate_startsFromDetections();
@@ -463,6 +464,16 @@ void TestCommandLine::init_takesSensorsOfSeveralRecordings() {
   const QByteArray written = readFile(file);
   QVERIFY2(written.contains("imus:"), written.constData());
   QVERIFY2(written.contains("    recording: "), written.constData());
+}
+
+void TestCommandLine::inspect_writesHugeMeansBriefly() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("imu.csv"), "t_s,ax,ay,az,gx,gy,gz\n0,1e300,2,9.8,1e300,-2e300,3\n");
+  const Outcome outcome = runProgram({"inspect", folder.filePath("imu.csv")});
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY2(outcome.output.contains("mean angular rate      1e+300  -2e+300  3.00000 "),
+           qPrintable(outcome.output));
+  QVERIFY2(outcome.output.size() < 1000, qPrintable(outcome.output));
 }
 
 void TestCommandLine::detect_writesDetectionsOnly() {

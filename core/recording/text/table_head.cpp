@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 
 namespace evical {
@@ -49,6 +50,12 @@ bool isAxes(std::string_view text) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::sort(axes.begin(), axes.end());
   return axes == "xyz";
+}
+
+// "nan", "inf".
+bool isNotFinite(std::string_view text, double& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} && end == text.data() + text.size() && !std::isfinite(number);
 }
 
 }  // namespace
@@ -128,14 +135,14 @@ bool TableHead::readScale(std::string_view line) {
     scales.orientation = words[1];
     return true;
   }
-  double factor = 0.0;
-  if (!parseNumber(words[1], factor) || factor <= 0.0) return false;
   std::optional<double>* const scale = words[0] == "tscale"   ? &scales.time_s
                                        : words[0] == "gscale" ? &scales.rate_rad_s
                                        : words[0] == "ascale" ? &scales.acceleration_g
                                                               : nullptr;
-  if (scale != nullptr) *scale = factor;
-  return scale != nullptr;
+  double factor = 0.0;
+  if (scale == nullptr || (!parseNumber(words[1], factor) && !isNotFinite(words[1], factor))) return false;
+  *scale = factor;
+  return true;
 }
 
 // A line of units below the names.

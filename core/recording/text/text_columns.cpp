@@ -307,15 +307,30 @@ bool turnAxes(const std::string& orientation, TextColumns& columns) {
   return true;
 }
 
+// A scale that is not a possible one; false otherwise.
+bool refuseScale(const char* name, double scale, TextColumns& columns) {
+  constexpr double kLargest = 1e6;
+  if (scale > 0.0 && scale < kLargest) return false;
+  columns.type = StreamType::Other;
+  columns.problem = fmt::format("the scale \"{} {:g}\" above its header is not a positive number below {:g}",
+                                name, scale, kLargest);
+  columns.advice =
+      "Correct it (tscale is in s, gscale in rad/s and ascale in g), or remove it and state the units in the "
+      "header";
+  return true;
+}
+
 // Scales above the header are for columns whose units it does not state.
 void applyScales(const TableHead& head, const TableHeader& header, TextColumns& columns) {
   const TableScales& scales = head.scales;
   if (columns.type != StreamType::Imu || !scales.any()) return;
-  const auto hasNoUnit = [&](std::size_t column) { return header.columns[column].unit.empty(); };
+  const auto isFor = [&](const std::optional<double>& scale, std::size_t column) {
+    return scale && column < header.columns.size() && header.columns[column].unit.empty();
+  };
   std::string applied;
   const auto state = [&](const std::string& text) { applied += (applied.empty() ? "" : ", ") + text; };
-  if (scales.time_s && *scales.time_s < 1e6 && columns.time.size() == 1 &&
-      hasNoUnit(columns.time[0].column)) {
+  if (columns.time.size() == 1 && isFor(scales.time_s, columns.time[0].column)) {
+    if (refuseScale("tscale", *scales.time_s, columns)) return;
     const double unit_ns = *scales.time_s * kNanosecondsPerSecond,
                  power_ns = std::pow(10.0, std::round(std::log10(unit_ns)));
     const bool exact = unit_ns > 0.5 && std::abs(unit_ns - power_ns) < 1e-9 * power_ns;
@@ -324,11 +339,13 @@ void applyScales(const TableHead& head, const TableHeader& header, TextColumns& 
     columns.notes.clear();  // the unit is not guessed
     state(fmt::format("tscale {}", *scales.time_s));
   }
-  if (scales.rate_rad_s && hasNoUnit(columns.rate[0])) {
+  if (isFor(scales.rate_rad_s, columns.rate[0])) {
+    if (refuseScale("gscale", *scales.rate_rad_s, columns)) return;
     columns.rate_factor.fill(*scales.rate_rad_s);
     state(fmt::format("gscale {} rad/s", *scales.rate_rad_s));
   }
-  if (scales.acceleration_g && hasNoUnit(columns.acceleration[0])) {
+  if (isFor(scales.acceleration_g, columns.acceleration[0])) {
+    if (refuseScale("ascale", *scales.acceleration_g, columns)) return;
     columns.acceleration_unit = AccelerationUnit::Gravity;
     columns.acceleration_factor.fill(*scales.acceleration_g);
     state(fmt::format("ascale {} g", *scales.acceleration_g));

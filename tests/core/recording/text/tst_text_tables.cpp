@@ -61,6 +61,8 @@ class TestTextTables : public QObject {
   void times_areRead();
   void scalesAboveTheHeader_areApplied_data();
   void scalesAboveTheHeader_areApplied();
+  void scalesThatCannotBe_areRefused_data();
+  void scalesThatCannotBe_areRefused();
   void orientation_turnsTheAxes();
   void rawCounts_haveTheFactorOfTheirUnit_data();
   void rawCounts_haveTheFactorOfTheirUnit();
@@ -298,6 +300,35 @@ void TestTextTables::scalesAboveTheHeader_areApplied() {
   QVERIFY((samples[3].angular_rate_rad_s - Eigen::Vector3d(0.1, -0.2, 0.003)).norm() < 1e-12);
   QVERIFY((samples[3].specific_force_m_s2 - kStandardGravity_m_s2 * Eigen::Vector3d(0.0, 0.001, 1.0)).norm() <
           1e-9);
+}
+
+void TestTextTables::scalesThatCannotBe_areRefused_data() {
+  QTest::addColumn<QByteArray>("scale");
+  QTest::addColumn<QByteArray>("header");
+  QTest::addColumn<bool>("refused");
+  const auto row = [](const char* scale, const char* header, bool refused) {
+    QTest::addRow("%s: %s", scale, header) << QByteArray(scale) << QByteArray(header) << refused;
+  };
+  const char *const plain = "t,gx,gy,gz,ax,ay,az",
+                    *const units = "t_s,gx [rad/s],gy [rad/s],gz [rad/s],ax [g],ay [g],az [g]";
+  for (const char* scale : {"tscale,0", "tscale,1e308", "gscale,nan", "ascale,-1", "# ascale: inf"}) {
+    row(scale, plain, true);
+    row(scale, units, false);  // it is not used
+  }
+  row("gscale,0.01", plain, false);
+  row("ascale,unknown", plain, false);
+}
+
+void TestTextTables::scalesThatCannotBe_areRefused() {
+  QFETCH(QByteArray, scale);
+  QFETCH(QByteArray, header);
+  QFETCH(bool, refused);
+  const QByteArray text = scale + "\n" + header + "\n0,1,2,3,4,5,9.8\n";
+  const QByteArray refusal = refusalOf(text.toStdString()).c_str();
+  QVERIFY2(refusal.isEmpty() != refused, refusal);
+  if (!refused) return;
+  const QByteArray name = scale.mid(scale.indexOf("scale") - 1, 6);
+  QVERIFY2(refusal.contains("\"" + name + " "), refusal);
 }
 
 void TestTextTables::orientation_turnsTheAxes() {
