@@ -274,10 +274,11 @@ class ReadingPass {
 };
 
 void checkSamples(const Session& session, const DetectionResult& pass) {
-  for (const ImuData& imu : pass.imus) {
-    if (!imu.samples.empty()) continue;
-    throw badInput(session.recording.string(),
-                   fmt::format("IMU {} has no samples{}", imu.name,
+  for (std::size_t k = 0; k < pass.imus.size(); ++k) {
+    if (!pass.imus[k].samples.empty()) continue;
+    const std::filesystem::path& own = session.imus[k].recording;
+    throw badInput((own.empty() ? session.recording : own).string(),
+                   fmt::format("IMU {} has no samples{}", pass.imus[k].name,
                                session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
                    "Check the recording " + howTo(HowTo::Inspect));
   }

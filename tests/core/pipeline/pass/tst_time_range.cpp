@@ -141,6 +141,40 @@ class TestTimeRange : public QObject {
                QString("lasts 10.0 s, but time_range_s begins at 20 s"));
     }
   }
+
+  // The file is the IMU's own one, if it has one.
+  void fewSamples_areRefusedWithTheirFile_data() {
+    QTest::addColumn<int>("samples");
+    QTest::addColumn<bool>("own_file");
+    QTest::addColumn<QString>("problem");
+    QTest::newRow("none") << 0 << true << "IMU imu has no samples";
+    QTest::newRow("none, of the session's recording") << 0 << false << "IMU imu has no samples";
+    QTest::newRow("enough") << 50 << true << "";
+  }
+  void fewSamples_areRefusedWithTheirFile() {
+    QFETCH(int, samples);
+    QFETCH(bool, own_file);
+    QFETCH(QString, problem);
+    QTemporaryDir folder;
+    const std::filesystem::path path = folder.path().toStdString();
+    std::string table = "t_s,ax,ay,az,gx,gy,gz\n";
+    for (int i = 0; i < samples; ++i) table += fmt::format("{:.6f},0,0,9.8,0.1,0.2,0.3\n", 0.005 * i);
+    writeFileWhole(path / "imu.csv", table);
+    Session session;
+    session.recording = path / (own_file ? "recording.bag" : "imu.csv");
+    SessionImu imu;
+    imu.name = "imu";
+    imu.stream = "imu.csv";
+    if (own_file) imu.recording = path / "imu.csv";
+    session.imus = {imu};
+    try {
+      readImus(session, 0, {});
+      QVERIFY(problem.isEmpty());
+    } catch (const CalibrationError& error) {
+      QCOMPARE(QString::fromStdString(error.problem()), problem);
+      QCOMPARE(error.place(), (path / "imu.csv").string());
+    }
+  }
 };
 
 EVICAL_TEST(TestTimeRange)
