@@ -206,8 +206,8 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
   Faults faults;
   Samples samples = recorded;
   if (samples.size() < 2) {
-    faults.push_back(
-        {name, FaultKind::Empty, 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
+    faults.push_back({name, FaultKind::Empty, 0.0,
+                      fmt::format("The stream has {}.", counted(samples.size(), "IMU sample"))});
     return faults;
   }
   const auto sameTime = [&](const ImuSample& sample) { return sample.time_ns == samples.front().time_ns; };

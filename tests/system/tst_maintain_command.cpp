@@ -115,6 +115,18 @@ class TestMaintainCommand : public QObject {
     QVERIFY(!QFile::exists(path("out_half/maintenance.yaml")));
   }
 
+  // More orientations would be no advice for such a log.
+  void logsOfFewSamples_areRefused() {
+    const QByteArray log = readFile(path("stops_csv") + "/imu.csv");
+    QDir().mkpath(path("few"));
+    writeFile(path("few") + "/imu.csv", log.left(log.indexOf('\n', log.indexOf('\n') + 1) + 1));
+    const Outcome outcome = runProgram({"maintain", path("few"), "--result", path("stops_csv/calibration"),
+                                        "-o", path("out_few"), "--quiet"});
+    VERIFY_OUTCOME(outcome, 2);
+    QVERIFY2(outcome.errors.contains("imu has 1 sample"), qPrintable(outcome.errors));
+    QVERIFY(!QFile::exists(path("out_few/maintenance.yaml")));
+  }
+
   // A calibration with another interpretation of the IMU's axes than the log: stops detect it.
   void axesOfTheCalibration_areThoseOfTheLog() {
     const QString log = changedLog("turned", [](QList<double>& values) {

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/number.h"
 #include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
@@ -30,6 +31,7 @@ namespace {
 // Variances relative to white noise from which a note, and advice, is given.
 constexpr double kWorthANote = 1.5;
 constexpr double kWorthAdvice = 4.0;
+constexpr std::uint64_t kFewestSamples = 10;  // of an IMU in all logs
 
 // Sample times of one sensor.
 struct SampleTimes {
@@ -296,6 +298,14 @@ void Maintainer::describe() {
 }
 
 void Maintainer::checkLogs() const {
+  const auto samplesOf = [](const ImuPass& pass) {
+    return std::max(pass.times.rates.samples, pass.times.forces.samples);
+  };
+  if (std::ranges::all_of(passes_, [&](const ImuPass& pass) { return samplesOf(pass) < kFewestSamples; }))
+    throw badInput(
+        input_.logs.front().string(),
+        fmt::format("{} has {}", name(imus_.front()), counted(samplesOf(passes_.front()), "sample")),
+        "Record again, or copy the file again");
   const auto means = [this](std::size_t k) { return ImuMeans{name(imus_[k]), passes_[k].means.windows()}; };
   for (std::size_t k = 0; k < imus_.size(); ++k) {
     checkUnits(means(k));

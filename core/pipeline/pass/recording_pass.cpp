@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/number.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
@@ -274,11 +275,14 @@ class ReadingPass {
 };
 
 void checkSamples(const Session& session, const DetectionResult& pass) {
+  constexpr std::size_t kFewestSamples = 10;  // fewer show nothing about axes or units
   for (std::size_t k = 0; k < pass.imus.size(); ++k) {
-    if (!pass.imus[k].samples.empty()) continue;
+    const std::size_t count = pass.imus[k].samples.size();
+    if (count >= kFewestSamples) continue;
     const std::filesystem::path& own = session.imus[k].recording;
     throw badInput((own.empty() ? session.recording : own).string(),
-                   fmt::format("IMU {} has no samples{}", pass.imus[k].name,
+                   fmt::format("IMU {} has {}{}", pass.imus[k].name,
+                               count == 0 ? "no samples" : counted(count, "sample"),
                                session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
                    "Check the recording " + howTo(HowTo::Inspect));
   }

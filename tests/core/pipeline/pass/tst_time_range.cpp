@@ -149,6 +149,8 @@ class TestTimeRange : public QObject {
     QTest::addColumn<QString>("problem");
     QTest::newRow("none") << 0 << true << "IMU imu has no samples";
     QTest::newRow("none, of the session's recording") << 0 << false << "IMU imu has no samples";
+    QTest::newRow("one") << 1 << true << "IMU imu has 1 sample";
+    QTest::newRow("three") << 3 << true << "IMU imu has 3 samples";
     QTest::newRow("enough") << 50 << true << "";
   }
   void fewSamples_areRefusedWithTheirFile() {
