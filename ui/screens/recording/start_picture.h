@@ -11,6 +11,7 @@ class StartPicture : public QWidget {
  public:
   enum class Shows { Sheet, Events };
   StartPicture(Shows shows, QWidget* parent) : QWidget(parent), shows_(shows) {}
+  QSize sizeHint() const override { return {300, 300}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
