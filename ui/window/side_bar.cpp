@@ -110,7 +110,9 @@ void SideBar::colourHeadings() {
 
 void SideBar::changeEvent(QEvent* event) {
   QFrame::changeEvent(event);
-  if (event->type() == QEvent::PaletteChange) colourHeadings();
+  if (event->type() != QEvent::PaletteChange) return;
+  colourHeadings();
+  if (verdict_) setVerdict(verdict_->first, verdict_->second);
 }
 
 void SideBar::foldMore(bool folded) {
@@ -153,6 +155,7 @@ void SideBar::setReasons(const std::vector<QString>& reasons) {
 void SideBar::setVerdict(int page, std::optional<CalibrationStatus> status) {
   const PageEntry& entry = pages_[static_cast<std::size_t>(page)];
   QListWidgetItem& item = *items_[static_cast<std::size_t>(page)];
+  verdict_ = {page, status};
   item.setIcon(status ? verdictIcon(*status) : icon(entry.icon_name));
   item.setText(status ? tr("%1: %2").arg(entry.title, QString::fromLatin1(statusName(*status)))
                       : entry.title);

@@ -9,6 +9,7 @@
 #include <QFrame>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 class QListWidget;
@@ -51,6 +52,7 @@ class SideBar : public QFrame {
   QListWidgetItem* reason_ = nullptr;
   QListWidgetItem* more_ = nullptr;
   bool folded_ = false;
+  std::optional<std::pair<int, std::optional<CalibrationStatus>>> verdict_;  // last one set
 };
 
 }  // namespace evical::ui

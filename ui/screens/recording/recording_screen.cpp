@@ -15,6 +15,7 @@
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
+#include <QEvent>
 #include <QFormLayout>
 #include <QFrame>
 #include <QHBoxLayout>
@@ -402,6 +403,11 @@ void RecordingScreen::showVerdict() {
                         : reserved  ? theme().warning
                                     : theme().good;
   verdict_->setStyleSheet(QString("color: %1").arg(colour.name()));
+}
+
+void RecordingScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) showVerdict();
+  QWidget::changeEvent(event);
 }
 
 void RecordingScreen::clearInspections() {

@@ -67,6 +67,9 @@ class RecordingScreen : public QWidget {
   void addRecordingRequested();
   void cameraOnlyRequested();  // requests the calibration of the camera
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
   struct Inspected {
     std::filesystem::path recording;

@@ -9,6 +9,7 @@
 #include "ui/theme/theme.h"
 
 #include <QDir>
+#include <QEvent>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -169,8 +170,15 @@ QWidget* StartScreen::makeRecent() {
 }
 
 void StartScreen::setRecentFiles(const QList<RecentFile>& files) {
+  files_ = files;
+  fillRecent();
+  recent_->setVisible(!files.isEmpty());
+  no_recent_->setVisible(files.isEmpty());
+}
+
+void StartScreen::fillRecent() {
   recent_->clear();
-  for (const RecentFile& file : files) {
+  for (const RecentFile& file : files_) {
     const QFileInfo info(file.path);
     auto* const item = new QTreeWidgetItem(recent_);
     item->setIcon(0, icon(info.suffix() == "yaml" ? "open" : "recording"));
@@ -182,8 +190,11 @@ void StartScreen::setRecentFiles(const QList<RecentFile>& files) {
     item->setToolTip(0,
                      tr("%1\nDouble-click or press Enter to open").arg(QDir::toNativeSeparators(file.path)));
   }
-  recent_->setVisible(!files.isEmpty());
-  no_recent_->setVisible(files.isEmpty());
+}
+
+void StartScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) fillRecent();
+  QWidget::changeEvent(event);
 }
 
 void StartScreen::setDemoRunning(bool running) {

@@ -43,11 +43,16 @@ class StartScreen : public QWidget {
   void howToRecordRequested();
   void fileChosen(const QString& file);  // a recent file
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
   QWidget* makeSteps();
   QWidget* makeRecent();
   QWidget* makeDemo();
+  void fillRecent();
 
+  QList<RecentFile> files_;
   QTreeWidget* recent_;
   QLabel* no_recent_;
   QPushButton* demo_;
