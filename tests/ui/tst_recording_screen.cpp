@@ -205,6 +205,9 @@ class TestRecordingScreen : public QObject {
     QVERIFY(places() == with_table);
     card.clear();
     QVERIFY(places() == with_table);
+    // With the result no check is due: neither a blank place nor a button without effect remains.
+    card.clear("This recording is calibrated", "The page Result shows more.");
+    QVERIFY(places() == before && !card.findChild<QToolButton*>("check_details")->isVisible());
   }
 
   // The form has millimetres and labels, a session file metres and keys.

@@ -172,7 +172,6 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
   setAccessibleName(summary);
   progress_->hide();
   advice_->hide();
-  more_->setVisible(false);
   showDetails(more_->isChecked());
 }
 
@@ -182,6 +181,8 @@ void CheckCard::clear(const QString& summary, const QString& advice) {
   advice_->setText(advice);
   advice_->setToolTip({});
   advice_->setVisible(!advice.isEmpty());
+  // Then no check is due that would fill the details.
+  if (!advice.isEmpty()) more_->setChecked(false);
 }
 
 void CheckCard::setMissing(const QString& text) {
@@ -217,7 +218,6 @@ void CheckCard::setAssessment(const RecordingAssessment& assessment) {
   assessed_ = true;
   showAdvice(assessment);
   showLights(assessment);
-  more_->setVisible(true);
   showDetails(more_->isChecked());
 }
 
@@ -268,13 +268,15 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
   }
 }
 
+// Between two checks the details keep their place, and the button that folds it.
 void CheckCard::showDetails(bool shown) {
+  more_->setVisible(assessed_ || shown);
   more_->setText(shown ? tr("Less") : tr("More"));
   more_->setIcon(icon(shown ? "up" : "down"));
   more_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
   more_->setToolTip(shown ? tr("Hides the individual checks") : tr("Shows all checks with their lights"));
   details_->setVisible(shown);
-  lights_->setVisible(more_->isVisibleTo(this));
+  lights_->setVisible(assessed_);
 }
 
 void CheckCard::setUnconfirmedBoard(const QString& board) {
