@@ -68,7 +68,9 @@ class TestRecordingCheck : public QObject {
     QSignalSpy detecting(&test.window.workbench().calibration, &CalibrationJob::detecting);
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
     test.press(Qt::Key_F5);
+    QVERIFY2(test.pageText().contains("Calibrating\n"), qPrintable(test.pageText()));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY2(test.pageText().contains("Calibrated\n"), qPrintable(test.pageText()));
     QCOMPARE(detecting.size(), 0);
     for (const QList<QVariant>& stage : stages) QVERIFY(stage.at(0).toString() != "detect");
     const auto run = test.document().last().run;

@@ -11,6 +11,7 @@
 #include <QSettings>
 
 #include <memory>
+#include <type_traits>
 
 namespace evical::ui {
 namespace {
@@ -26,12 +27,17 @@ QString boardText(const Session& session) {
       .arg(1e3 * session.board.spacing_m);
 }
 
-// The card while nothing is checked.
-void showIdle(CheckCard& card, const Workbench& workbench) {
+// The session has not changed since its result.
+bool isCalibrated(const Workbench& workbench) {
   const LensDocument& lens = workbench.lens;
   const bool of_camera = lens.aim() == CalibrationAim::Camera;
-  const bool outdated = of_camera ? lens.runIsOutdated() : workbench.document.runIsOutdated();
-  if (workbench.lastStatus() && !outdated)
+  return workbench.lastStatus() &&
+         !(of_camera ? lens.runIsOutdated() : workbench.document.runIsOutdated());
+}
+
+// The card while nothing is checked.
+void showIdle(CheckCard& card, const Workbench& workbench) {
+  if (isCalibrated(workbench))
     return card.clear(QObject::tr("This recording is calibrated"),
                       QObject::tr("The page Result shows how good the calibration is. If you change the "
                                   "session, the recording is checked again."));
@@ -53,9 +59,10 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
     return screen.setReservation(QObject::tr("Not ready: see below"), Light::Poor);
   if (workbench.check.awaited()) return screen.setReservation(QObject::tr("Being checked"), Light::Good);
   if (unconfirmed) return screen.setReservation(QObject::tr("The board is not confirmed"), Light::Fair);
+  if (isCalibrated(workbench)) return screen.setReservation(QObject::tr("Calibrated"), Light::Good);
   if (checked && checked->assessment.light == Light::Poor)
     return screen.setReservation(QObject::tr("Not good enough: see below"), Light::Fair);
-  screen.setReservation({}, Light::Good);
+  screen.setReservation({}, checked ? checked->assessment.light : Light::Good);
 }
 
 // Session of the current aim: of a single camera, or of the rig.
@@ -143,6 +150,13 @@ void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
   QObject::connect(&workbench.inspection, &InspectionJob::inspected, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::started, &check, anew);
   QObject::connect(&workbench.runner, &JobRunner::started, &check, [&check] { check.giveWay(true); });
+  const auto tell_of = [&screen](const auto& job) {
+    using Job = std::decay_t<decltype(job)>;
+    QObject::connect(&job, &Job::started, &screen, [&screen] { screen.setCalibrating(true); });
+    QObject::connect(&job, &Job::ended, &screen, [&screen] { screen.setCalibrating(false); });
+  };
+  tell_of(workbench.calibration);
+  tell_of(workbench.intrinsics);
   QObject::connect(&workbench.runner, &JobRunner::finished, &check, [&check, &workbench] {
     choose(workbench);
     check.giveWay(false);

@@ -388,19 +388,27 @@ void RecordingScreen::setReservation(const QString& text, Light light) {
   showVerdict();
 }
 
+void RecordingScreen::setCalibrating(bool calibrating) {
+  calibrating_ = calibrating;
+  showVerdict();
+}
+
 void RecordingScreen::showVerdict() {
   const bool camera_only = !camera_only_->isHidden();
-  const bool reserved = !camera_only && !reservation_.isEmpty();
+  const QString reservation = calibrating_ ? tr("Calibrating") : reservation_;
+  const Light light = calibrating_ ? Light::Good : reservation_light_;
+  const bool reserved = !camera_only && !reservation.isEmpty();
   verdict_->setText(problems_ == 1  ? tr("One thing is missing")
                     : problems_ > 1 ? tr("%1 things are missing").arg(problems_)
                     : camera_only   ? tr("Only the lens can be calibrated:")
-                    : reserved      ? reservation_
+                    : reserved      ? reservation
                                     : tr("Ready to calibrate"));
-  const bool bad = problems_ > 0 || (reserved && reservation_light_ == Light::Poor);
-  const bool undecided = reserved && reservation_light_ == Light::Good;
+  const bool bad = problems_ > 0 || (reserved && light == Light::Poor);
+  const bool undecided = reserved && light == Light::Good;
+  const bool fair = !camera_only && light == Light::Fair;
   const QColor colour = bad         ? theme().bad
                         : undecided ? theme().faint_text
-                        : reserved  ? theme().warning
+                        : fair      ? theme().warning
                                     : theme().good;
   verdict_->setStyleSheet(QString("color: %1").arg(colour.name()));
 }

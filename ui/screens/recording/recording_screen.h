@@ -45,8 +45,10 @@ class RecordingScreen : public QWidget {
   void offerCameraOnly(bool offered);
   AimChooser& aim() const { return *aim_; }  // what is calibrated
 
-  // Text in place of "ready to calibrate" if there is no problem; empty: none. Light::Good: undecided.
+  // Text in place of "ready to calibrate" if there is no problem; empty: none, in the colour of the light.
+  // With a text, Light::Good means undecided.
   void setReservation(const QString& text, Light light);
+  void setCalibrating(bool calibrating);
   CheckCard* checkCard() const { return check_; }
 
   void clearInspections();
@@ -98,7 +100,7 @@ class RecordingScreen : public QWidget {
   std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's recording
   void showFileFaults();
 
-  bool being_written_ = false;
+  bool being_written_ = false, calibrating_ = false;
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
   QStackedWidget* stack_;
