@@ -9,6 +9,7 @@
 #include "ui/screens/recording/light_mark.h"
 #include "ui/screens/recording/recording_screen.h"
 #include "ui/window/session_files.h"
+#include "ui/window/steps_panel.h"
 
 #include <QLabel>
 #include <QPushButton>
@@ -67,9 +68,14 @@ class TestRecordingCheck : public QObject {
 
     QSignalSpy detecting(&test.window.workbench().calibration, &CalibrationJob::detecting);
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
+    QString detect_step;
+    connect(&test.runner(), &JobRunner::stageStarted, &test.window, [&](const QString& stage) {
+      if (stage == "initialise") detect_step = test.child<StepsPanel>()->textOf("detect");
+    });
     test.press(Qt::Key_F5);
     QVERIFY2(test.pageText().contains("Calibrating\n"), qPrintable(test.pageText()));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY2(detect_step.contains("done"), qPrintable(detect_step));
     QVERIFY2(test.pageText().contains("Calibrated\n"), qPrintable(test.pageText()));
     QCOMPARE(detecting.size(), 0);
     for (const QList<QVariant>& stage : stages) QVERIFY(stage.at(0).toString() != "detect");

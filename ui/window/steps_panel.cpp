@@ -147,8 +147,8 @@ void StepsPanel::startStage(const QString& stage) {
       if (row(stage) == nullptr) addRow(stage, tr(known.title));
       break;
     }
-    if (StepRow* const before = row(known.name); before != nullptr && before->state() == StepState::Running)
-      before->setState(StepState::Done);
+    // Also one that did not run: the detections of the check are reused.
+    if (StepRow* const before = row(known.name)) before->setState(StepState::Done);
   }
   stage_ = stage;
   stage_begin_s_ = elapsed_s_;
