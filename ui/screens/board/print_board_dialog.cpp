@@ -273,6 +273,7 @@ void PrintBoardDialog::makeButtons() {
   take_->setObjectName("take_board");
   open_->setObjectName("open_board");
   save_->setProperty("primary", true);
+  save_->setIcon(icon("save", QPalette::HighlightedText));
   open_->hide();
   connect(print_, &QPushButton::clicked, this, &PrintBoardDialog::print);
   connect(blink_, &QPushButton::clicked, this, [this] { chooseFile("html"); });
