@@ -52,7 +52,7 @@ QString CopyTable::rowsText(bool only_selected) const {
   const auto line = [this](const QTreeWidgetItem& item, const QString& group) {
     QStringList cells;
     for (int column = 0; column < columnCount(); ++column)
-      if (!isColumnHidden(column)) cells << item.text(column);
+      if (copies(column)) cells << item.text(column);
     if (!group.isEmpty()) cells.front().prepend(group + ": ");
     return cells.join('\t');
   };

@@ -25,11 +25,12 @@ class CopyTable : public QTreeWidget {
   void contextMenuEvent(QContextMenuEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
+  virtual bool copies(int column) const { return !isColumnHidden(column); }
+  void widenFirst();
 
  private:
   QString rowsText(bool only_selected) const;
   void copySelected();
-  void widenFirst();
 
   int first_px_ = 0;  // width of its cells
 };

@@ -97,6 +97,8 @@ FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   headerItem()->setToolTip(kDetectable, tr("Smallest change that these data show in 95 of 100 cases"));
   headerItem()->setToolTip(kNow, tr("Estimate from the new data alone"));
   alignNumbers(*headerItem(), kChange, kColumns);
+  connect(this, &QTreeWidget::itemExpanded, this, &FindingTable::showNumberColumns);
+  connect(this, &QTreeWidget::itemCollapsed, this, &FindingTable::showNumberColumns);
 }
 
 void FindingTable::setFindings(std::vector<Finding> findings) {
@@ -116,12 +118,26 @@ void FindingTable::fill() {
   setColumnHidden(kEdge, std::none_of(findings_.begin(), findings_.end(), isAtEdge));
   clear();
   addTopLevelItems(items);
+  for (const int column : {kBefore, kNow}) setColumnHidden(column, false);
   expandAll();
   fitColumns();
   // Unchanged quantities are one line; changed ones show their numbers.
   collapseAll();
   for (int row = 0; row < items.size(); ++row)
     items[row]->setExpanded(findings_[static_cast<std::size_t>(row)].changed);
+  showNumberColumns();
+}
+
+// Only rows below a quantity have numbers before and now.
+void FindingTable::showNumberColumns() {
+  bool any = false;
+  for (int row = 0; row < topLevelItemCount(); ++row) any = any || topLevelItem(row)->isExpanded();
+  for (const int column : {kBefore, kNow}) setColumnHidden(column, !any);
+  widenFirst();
+}
+
+bool FindingTable::copies(int column) const {
+  return column == kBefore || column == kNow || CopyTable::copies(column);
 }
 
 void FindingTable::changeEvent(QEvent* event) {

@@ -32,9 +32,11 @@ class FindingTable : public CopyTable {
 
  protected:
   void changeEvent(QEvent* event) override;
+  bool copies(int column) const override;
 
  private:
   void fill();
+  void showNumberColumns();
 
   std::vector<Finding> findings_;
 };
