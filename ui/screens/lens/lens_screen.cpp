@@ -15,6 +15,7 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <QHBoxLayout>
+#include <QHeaderView>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -32,6 +33,7 @@ namespace evical::ui {
 namespace {
 
 enum LensColumn { kName, kValue, kSigma, kUnit, kDifference, kSigmas, kColumns };
+constexpr LensColumn kNumbers[] = {kValue, kSigma, kDifference, kSigmas};
 
 QString lensVerdictWords(CalibrationStatus status) {
   switch (status) {
@@ -48,10 +50,7 @@ QString lensVerdictWords(CalibrationStatus status) {
 QTreeWidgetItem* itemOf(const LensRow& row) {
   auto* const item =
       new QTreeWidgetItem({row.name, row.value, row.sigma, row.unit, row.difference, row.sigmas});
-  for (const int column : {kValue, kSigma, kDifference, kSigmas})
-    item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-  item->setToolTip(kName, row.name);
-  item->setToolTip(kUnit, row.unit);
+  for (const int column : kNumbers) item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
   if (row.far) item->setForeground(kSigmas, theme().warning);
   return item;
 }
@@ -161,13 +160,13 @@ QWidget* LensScreen::makeComparisons() {
   auto* const bar = new QWidget(this);
   auto* const layout = new QHBoxLayout(bar);
   layout->setContentsMargins(0, 0, 0, 0);
-  auto* const what = new QLabel(tr("Compared with"), bar);
+  auto* const what = new QLabel(tr("Compare with"), bar);
   what->setBuddy(against_);
   against_->setObjectName("lens_against");
   against_->setAccessibleName(tr("Lens to compare with"));
   against_->setToolTip(tr("The session's previous lens, or one from a file"));
   against_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  auto* const file = new QPushButton(icon("open"), tr("A file..."), bar);
+  auto* const file = new QPushButton(icon("open"), tr("Load..."), bar);
   file->setObjectName("lens_other");
   file->setAccessibleName(tr("Compare with the lens of a file"));
   file->setToolTip(
@@ -219,6 +218,10 @@ QWidget* LensScreen::makeContent() {
   parameters_->setColumnCount(kColumns);
   parameters_->setHeaderLabels(
       {tr("Quantity"), tr("Value"), QString(QChar(0xb1)), tr("Unit"), tr("Difference"), tr("Sigmas")});
+  for (const int column : kNumbers)
+    parameters_->headerItem()->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  parameters_->headerItem()->setToolTip(kSigma, tr("Standard deviation"));
+  parameters_->header()->setStretchLastSection(false);
   parameters_->setRootIsDecorated(false);
   parameters_->setIndentation(10);
   parameters_->setSelectionMode(QAbstractItemView::ExtendedSelection);
