@@ -178,6 +178,7 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
   targets_->setColumnCount(kColumns);
   targets_->setHeaderLabels({tr("Program"), tr("For"), tr("Files")});
   targets_->setUniformRowHeights(true);
+  targets_->setIndentation(12);
   auto* const more = new QTreeWidgetItem;
   for (const ExportTarget& target : exportTargets()) {
     items_.push_back(exportItemOf(target));
@@ -199,6 +200,7 @@ int ExportDialog::fitColumns() {
   QTreeWidgetItem* const more = items_.back()->parent();
   const bool shown = more->isExpanded();
   more->setExpanded(true);  // widths are those of shown lines
+  targets_->ensurePolished();  // with the margins of the style sheet
   targets_->header()->setStretchLastSection(false);
   for (int column = 0; column < kColumns; ++column) targets_->resizeColumnToContents(column);
   more->setExpanded(shown);
