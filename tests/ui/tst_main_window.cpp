@@ -372,14 +372,18 @@ class TestMainWindow : public QObject {
     const auto places = [list] {
       std::vector<QRect> all;
       for (const char* const title : {"Start", "Recording", "Detection", "Residuals", "More"})
-        all.push_back(list->visualItemRect(list->findItems(title, Qt::MatchStartsWith).front()));
+        all.push_back(
+            list->visualItemRect(list->findItems(title, Qt::MatchStartsWith | Qt::MatchCaseSensitive).front()));
       return all;
     };
+    const auto line = [list] { return list->item(2)->text(); };  // below the heading: never blank
     const std::vector<QRect> before = places();
+    QCOMPARE(line(), QString("Press Calibrate to fill grey pages"));
     const QRect steps = test.child<StepsPanel>()->geometry();
     test.window.calibrate();
     spin(50);
     QVERIFY(test.runner().running());
+    QCOMPARE(line(), QString("recording.bag"));
     QVERIFY(places() == before);
     QCOMPARE(test.child<StepsPanel>()->geometry(), steps);
     test.click("cancel");

@@ -394,7 +394,8 @@ void MainWindow::showPages() {
   std::vector<QString> reasons;
   for (const PageEntry& entry : entries_)
     reasons.push_back(entry.name == "recording" && !reading_.isEmpty() ? QString() : whyGrey(entry.need));
-  side_bar_->setReasons(reasons);
+  side_bar_->setReasons(reasons,
+                        QString::fromStdString(workbench_.document.session().recording.filename().string()));
   for (std::size_t i = 0; i < entries_.size(); ++i) actions_.pages[i]->setEnabled(reasons[i].isEmpty());
   const bool reading = !reading_.isEmpty();
   side_bar_->setVerdict(static_cast<int>(screenNames().indexOf("result")),

@@ -140,7 +140,7 @@ void SideBar::showPage(int page) {
   list_->setCurrentItem(items_[index]);
 }
 
-void SideBar::setReasons(const std::vector<QString>& reasons) {
+void SideBar::setReasons(const std::vector<QString>& reasons, const QString& recording) {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     items_[i]->setFlags(reasons[i].isEmpty() ? Qt::ItemIsEnabled | Qt::ItemIsSelectable : Qt::NoItemFlags);
     const QString key = keyOfPage(i).toString(QKeySequence::NativeText);
@@ -148,8 +148,9 @@ void SideBar::setReasons(const std::vector<QString>& reasons) {
   }
   const auto first =
       std::find_if(reasons.begin(), reasons.end(), [](const QString& reason) { return !reason.isEmpty(); });
-  // Its line stays if there is none: pages must not move under the mouse when a run starts.
-  reason_->setText(first == reasons.end() ? QString() : *first);
+  // The line stays: pages must not move under the mouse when a run starts.
+  reason_->setText(first == reasons.end() ? recording : *first);
+  reason_->setToolTip(reason_->text());
 }
 
 void SideBar::setVerdict(int page, std::optional<CalibrationStatus> status) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Side bar: the pages under two headings, and the steps of a calibration. Pages without content are grey; one
-// line, and their tool tips, give the reason. The second heading can be folded.
+// line, and their tool tips, give the reason. Otherwise the line has the recording's name. The second heading
+// can be folded.
 #pragma once
 
 #include "core/data/calibration_status.h"
@@ -25,8 +26,8 @@ class SideBar : public QFrame {
   SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* parent);
 
   void showPage(int page);
-  // The reason why each page is grey; empty: it is not. The first one is shown as a line.
-  void setReasons(const std::vector<QString>& reasons);
+  // The reason why each page is grey; empty: it is not. The line has the first one, or else the recording.
+  void setReasons(const std::vector<QString>& reasons, const QString& recording);
   // Mark next to a page's name, by colour and shape: it shows the outcome while other pages are shown.
   void setVerdict(int page, std::optional<CalibrationStatus> status);
 
