@@ -11,7 +11,12 @@
 namespace evical::ui {
 namespace {
 
-// Criteria of motion and place, which the person who records can still improve.
+bool isObstacle(const Assessed& one) {
+  return one.thing == AssessedThing::Obstacle && one.light != Light::Good;
+}
+
+}  // namespace
+
 bool isOfRecording(AssessedThing thing) {
   switch (thing) {
     case AssessedThing::Duration:
@@ -25,12 +30,6 @@ bool isOfRecording(AssessedThing thing) {
       return false;
   }
 }
-
-bool isObstacle(const Assessed& one) {
-  return one.thing == AssessedThing::Obstacle && one.light != Light::Good;
-}
-
-}  // namespace
 
 QString titleOf(AssessedThing thing) {
   switch (thing) {

@@ -10,6 +10,8 @@
 
 namespace evical::ui {
 
+// Criteria of motion and place, which the person who records can still improve.
+bool isOfRecording(AssessedThing thing);
 QString titleOf(AssessedThing thing);
 QString sentence(QString text);  // in the words of the forms, with a capital and a full stop
 // Obstacles first, since other measures may be their consequences; then from worst to best. Ties keep their

@@ -39,8 +39,8 @@ bool isCalibrated(const Workbench& workbench) {
 void showIdle(CheckCard& card, const Workbench& workbench) {
   if (isCalibrated(workbench))
     return card.clear(QObject::tr("This recording is calibrated"),
-                      QObject::tr("The page Result shows how good the calibration is. If you change the "
-                                  "session, the recording is checked again."));
+                      QObject::tr("The page Result shows how good the calibration is.\n"
+                                  "If you change the session, the recording is checked again."));
   if (!workbench.check.automatic())
     return card.clear({}, QObject::tr("The recording is not checked: the menu Calibrate can enable this."));
   card.clear();

@@ -32,6 +32,15 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
   return count(AssessedThing::Board) > 1 || count(AssessedThing::Turns) > 1;
 }
 
+// What is good already, of the criteria that the person who records can influence.
+QString goodParts(const RecordingAssessment& assessment) {
+  QStringList good;
+  for (const Assessed& one : assessment.all)
+    if (one.light == Light::Good && isOfRecording(one.thing) && !good.contains(titleOf(one.thing)))
+      good << titleOf(one.thing);
+  return good.isEmpty() ? QString() : QObject::tr("Good: %1.").arg(good.join(", ").toLower());
+}
+
 constexpr int kCardWords_px = 46,
               kCardDetails_px = 170;  // a line with a button and one of advice; eight checks
 
@@ -61,6 +70,7 @@ CheckCard::CheckCard(QWidget* parent)
       mark_(new LightMark(this)),
       summary_(wrappedLabel({}, "heading", this)),
       advice_(wrappedLabel({}, "hint", this)),
+      good_(wrappedLabel({}, "hint", this)),
       board_(wrappedLabel({}, "hint", this)),
       missing_(wrappedLabel({}, "problem", this)),
       progress_(new QProgressBar(this)),
@@ -117,7 +127,8 @@ QWidget* CheckCard::makeWords() {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   for (QWidget* const line :
-       {static_cast<QWidget*>(missing_), follow_line_, board_line_, static_cast<QWidget*>(advice_)})
+       {static_cast<QWidget*>(missing_), follow_line_, board_line_, static_cast<QWidget*>(advice_),
+        static_cast<QWidget*>(good_)})
     column->addWidget(line);
   column->addStretch(1);
   return fixedArea(words, kCardWords_px, this);
@@ -155,6 +166,13 @@ QWidget* CheckCard::makeFollowLine() {
 
 void CheckCard::offerFollowing(bool offered) {
   follow_line_->setVisible(offered);
+  showGood();
+}
+
+// Fills the line that nothing more important needs.
+void CheckCard::showGood() {
+  const bool free = missing_->isHidden() && follow_line_->isHidden() && board_line_->isHidden();
+  good_->setVisible(assessed_ && free && !good_->text().isEmpty());
 }
 
 void CheckCard::setFollowing(bool following) {
@@ -172,6 +190,7 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
   setAccessibleName(summary);
   progress_->hide();
   advice_->hide();
+  showGood();
   showDetails(more_->isChecked());
 }
 
@@ -188,6 +207,7 @@ void CheckCard::clear(const QString& summary, const QString& advice) {
 void CheckCard::setMissing(const QString& text) {
   missing_->setText(text);
   missing_->setVisible(!text.isEmpty());
+  showGood();
 }
 
 void CheckCard::setChecking(double fraction) {
@@ -217,6 +237,8 @@ void CheckCard::setAssessment(const RecordingAssessment& assessment) {
   showState(following_ ? summaryWhileWritten(assessment) : summaryOf(assessment), assessment.light);
   assessed_ = true;
   showAdvice(assessment);
+  good_->setText(goodParts(assessment));
+  showGood();
   showLights(assessment);
   showDetails(more_->isChecked());
 }
@@ -282,6 +304,7 @@ void CheckCard::showDetails(bool shown) {
 void CheckCard::setUnconfirmedBoard(const QString& board) {
   board_->setText(tr("Board: %1, not confirmed. Compare these numbers with the print.").arg(board));
   board_line_->setVisible(!board.isEmpty());
+  showGood();
 }
 
 QString CheckCard::text() const {

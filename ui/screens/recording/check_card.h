@@ -52,12 +52,13 @@ class CheckCard : public QFrame {
   QWidget* makeFollowLine();
   QWidget* makeWords();
   void showAdvice(const RecordingAssessment& assessment);
+  void showGood();
   void showState(const QString& summary, std::optional<Light> light);
   void showLights(const RecordingAssessment& assessment);
   void showDetails(bool shown);
 
   LightMark* mark_;
-  QLabel *summary_, *advice_, *board_, *missing_;
+  QLabel *summary_, *advice_, *good_, *board_, *missing_;
   QProgressBar* progress_;
   QToolButton* more_;
   QWidget *board_line_ = nullptr, *follow_line_ = nullptr;
