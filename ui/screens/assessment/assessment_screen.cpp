@@ -95,9 +95,11 @@ void AssessmentScreen::showAssessment(const Assessment& assessment, const QStrin
   const auto text = [](const std::string& of_core) { return sentence(QString::fromStdString(of_core)); };
   for (QPushButton* const button : result_buttons_) button->setVisible(true);
   stack_->setCurrentIndex(1);
+  const bool says_reason = verdict == QString::fromStdString(assessment.reason);
   QString title = verdict.isEmpty() ? verdictWords(assessment.verdict) : verdict;
   title[0] = title[0].toUpper();
-  verdict_->setVerdict(toneOf(assessment.verdict), title, text(assessment.reason));
+  verdict_->setVerdict(toneOf(assessment.verdict), title,
+                       says_reason ? QString() : text(assessment.reason));
   lines_.clear();
   for (const std::string& advice : assessment.advice) lines_.emplace_back("right", text(advice));
   for (const std::string& note : assessment.notes) lines_.emplace_back("info", text(note));

@@ -40,9 +40,9 @@ QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* par
 }
 
 // Not "unchanged": the recordings are compared with each other, not with an old result.
-QString agreementText(Verdict verdict) {
-  if (verdict == Verdict::Unchanged) return QObject::tr("The recordings agree");
-  return verdict == Verdict::Changed ? QObject::tr("The recordings disagree") : QString();
+QString agreementText(const Repeatability& repeat) {
+  if (repeat.verdict == Verdict::Unchanged) return QString::fromStdString(repeat.reason);
+  return repeat.verdict == Verdict::Changed ? QObject::tr("The recordings disagree") : QString();
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ void RepeatScreen::setRepeat(const Repeatability& repeat) {
     more << tr("Biases, gravity and time offsets are separate for each recording: the joint solution lists "
                "those of %1.")
                 .arg(QString::fromStdString(repeat.own_values_of));
-  showAssessment(repeat, more, agreementText(repeat.verdict));
+  showAssessment(repeat, more, agreementText(repeat));
   ratio_->setVisible(repeat.rms_ratio > 0.0);
   ratio_->setText(
       tr("Ratio of the observed scatter to the one expected from the sigmas: %1 RMS over all numbers "
@@ -181,7 +181,7 @@ void RepeatScreen::setRepeat(const Repeatability& repeat) {
 void RepeatScreen::offerPairs() {
   for (QComboBox* const choice : {first_, second_}) {
     choice->clear();
-    choice->addItem(tr("nothing"));
+    choice->addItem(choice == first_ ? tr("one recording") : tr("another one"));
     for (const std::string& column : repeat_->columns)
       choice->addItem(QString::fromStdString(column), choice->count() - 1);
     if (repeat_->verdict != Verdict::CannotTell) choice->addItem(tr("all together"), -1);

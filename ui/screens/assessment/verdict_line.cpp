@@ -51,6 +51,7 @@ void VerdictLine::setVerdict(VerdictTone tone, const QString& title, const QStri
   title_->setText(title);
   title_->setAccessibleName(title);
   reason_->setText(reason);
+  reason_->setVisible(!reason.isEmpty());
   paintMark();
 }
 
