@@ -8,6 +8,7 @@
 #include <QHBoxLayout>
 #include <QListWidget>
 #include <QMimeData>
+#include <QPainter>
 #include <QPushButton>
 #include <QShortcut>
 
@@ -21,11 +22,27 @@ QStringList localFiles(const QMimeData& data) {
   return files;
 }
 
+// Says what belongs into it while it is empty.
+class DroppedList final : public QListWidget {
+ public:
+  using QListWidget::QListWidget;
+
+ protected:
+  void paintEvent(QPaintEvent* event) override {
+    QListWidget::paintEvent(event);
+    if (count() > 0) return;
+    QPainter painter(viewport());
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    painter.drawText(viewport()->rect(), Qt::AlignCenter,
+                     FileList::tr("%1: add them, or drop them here").arg(accessibleName()));
+  }
+};
+
 }  // namespace
 
 FileList::FileList(const QString& things, const QString& title, const QString& tip, QWidget* parent)
     : QWidget(parent),
-      list_(new QListWidget(this)),
+      list_(new DroppedList(this)),
       remove_(new QPushButton(icon("remove"), tr("Remove"), this)),
       buttons_(new QVBoxLayout) {
   list_->setObjectName("list_" + things);
