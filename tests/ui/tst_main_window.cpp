@@ -372,8 +372,8 @@ class TestMainWindow : public QObject {
     const auto places = [list] {
       std::vector<QRect> all;
       for (const char* const title : {"Start", "Recording", "Detection", "Residuals", "More"})
-        all.push_back(
-            list->visualItemRect(list->findItems(title, Qt::MatchStartsWith | Qt::MatchCaseSensitive).front()));
+        all.push_back(list->visualItemRect(
+            list->findItems(title, Qt::MatchStartsWith | Qt::MatchCaseSensitive).front()));
       return all;
     };
     const auto line = [list] { return list->item(2)->text(); };  // below the heading: never blank

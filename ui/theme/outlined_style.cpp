@@ -31,7 +31,7 @@ OutlinedStyle::OutlinedStyle() : QProxyStyle(QStyleFactory::create("Fusion")) {}
 
 void OutlinedStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
                                   const QWidget* widget) const {
-  if (element == PE_FrameTabBarBase) return;  // a line above widgets beside the tabs
+  if (element == PE_FrameTabBarBase) return;  // a line above widgets next to the tabs
   QProxyStyle::drawPrimitive(element, option, painter, widget);
   if (theme().dark && (element == PE_IndicatorCheckBox || element == PE_FrameLineEdit))
     drawOutline(*option, *painter);

@@ -199,7 +199,7 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
 int ExportDialog::fitColumns() {
   QTreeWidgetItem* const more = items_.back()->parent();
   const bool shown = more->isExpanded();
-  more->setExpanded(true);  // widths are those of shown lines
+  more->setExpanded(true);     // widths are those of shown lines
   targets_->ensurePolished();  // with the margins of the style sheet
   targets_->header()->setStretchLastSection(false);
   for (int column = 0; column < kColumns; ++column) targets_->resizeColumnToContents(column);

@@ -27,12 +27,11 @@ QString boardText(const Session& session) {
       .arg(1e3 * session.board.spacing_m);
 }
 
-// The session has not changed since its result.
+// The session is that of its result.
 bool isCalibrated(const Workbench& workbench) {
   const LensDocument& lens = workbench.lens;
   const bool of_camera = lens.aim() == CalibrationAim::Camera;
-  return workbench.lastStatus() &&
-         !(of_camera ? lens.runIsOutdated() : workbench.document.runIsOutdated());
+  return workbench.lastStatus() && !(of_camera ? lens.runIsOutdated() : workbench.document.runIsOutdated());
 }
 
 // The card while nothing is checked.

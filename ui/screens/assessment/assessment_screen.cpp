@@ -98,8 +98,7 @@ void AssessmentScreen::showAssessment(const Assessment& assessment, const QStrin
   const bool says_reason = verdict == QString::fromStdString(assessment.reason);
   QString title = verdict.isEmpty() ? verdictWords(assessment.verdict) : verdict;
   title[0] = title[0].toUpper();
-  verdict_->setVerdict(toneOf(assessment.verdict), title,
-                       says_reason ? QString() : text(assessment.reason));
+  verdict_->setVerdict(toneOf(assessment.verdict), title, says_reason ? QString() : text(assessment.reason));
   lines_.clear();
   for (const std::string& advice : assessment.advice) lines_.emplace_back("right", text(advice));
   for (const std::string& note : assessment.notes) lines_.emplace_back("info", text(note));

@@ -126,9 +126,8 @@ QWidget* CheckCard::makeWords() {
   auto* const column = new QVBoxLayout(words);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
-  for (QWidget* const line :
-       {static_cast<QWidget*>(missing_), follow_line_, board_line_, static_cast<QWidget*>(advice_),
-        static_cast<QWidget*>(good_)})
+  for (QWidget* const line : {static_cast<QWidget*>(missing_), follow_line_, board_line_,
+                              static_cast<QWidget*>(advice_), static_cast<QWidget*>(good_)})
     column->addWidget(line);
   column->addStretch(1);
   return fixedArea(words, kCardWords_px, this);
