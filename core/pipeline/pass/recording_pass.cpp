@@ -53,7 +53,10 @@ class WindowWorkers {
     for (Worker& worker : workers_) worker.thread = std::jthread([this, &worker] { run(worker); });
   }
   // False after a failure, or if a run was stopped.
-  bool push(CameraBatch batch) { return workers_[thread_of_[batch.camera]].queue.push(std::move(batch)); }
+  bool push(CameraBatch batch) {
+    Worker& worker = workers_[thread_of_[batch.camera]];
+    return worker.queue.push(std::move(batch));
+  }
   // True if batches wait for the camera's thread.
   bool isBehind(std::size_t camera) const { return !workers_[thread_of_[camera]].queue.empty(); }
   // After the last batch, or a failure.
