@@ -178,6 +178,7 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
   targets_->setColumnCount(kColumns);
   targets_->setHeaderLabels({tr("Program"), tr("For"), tr("Files")});
   targets_->setUniformRowHeights(true);
+  targets_->ensurePolished();  // heights and widths are those of the style sheet
   targets_->setIndentation(12);
   auto* const more = new QTreeWidgetItem;
   for (const ExportTarget& target : exportTargets()) {
@@ -199,8 +200,7 @@ void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
 int ExportDialog::fitColumns() {
   QTreeWidgetItem* const more = items_.back()->parent();
   const bool shown = more->isExpanded();
-  more->setExpanded(true);     // widths are those of shown lines
-  targets_->ensurePolished();  // with the margins of the style sheet
+  more->setExpanded(true);  // widths are those of shown lines
   targets_->header()->setStretchLastSection(false);
   for (int column = 0; column < kColumns; ++column) targets_->resizeColumnToContents(column);
   more->setExpanded(shown);

@@ -24,7 +24,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kWidest_px = 1080, kDemo_px = 300;
-constexpr int kLeastPicture_px = 60, kPicture_px = 170;  // smaller if docks need the height
+constexpr int kLeastPicture_px = 20, kPicture_px = 170;  // smaller if docks need the height
 
 QPushButton* choice(const QString& text, const QString& icon_name, QWidget* parent) {
   auto* const button = new QPushButton(icon(icon_name), " " + text, parent);
