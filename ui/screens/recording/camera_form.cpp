@@ -7,6 +7,7 @@
 #include "core/geometry/lens_fit.h"
 #include "ui/forms/form_label.h"
 #include "ui/screens/recording/clock_offset_field.h"
+#include "ui/theme/theme.h"
 
 #include <QComboBox>
 #include <QFileDialog>
@@ -16,6 +17,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QToolButton>
 
 #include <algorithm>
 
@@ -73,9 +75,12 @@ CameraForm::CameraForm(QWidget* parent)
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
   centre_y_px_->setToolTip(tr("cy"));
-  auto* const file = new QPushButton(tr("File..."), this);
-  file->setToolTip(tr("Intrinsics: map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
-  connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
+  auto* const file = new QToolButton(this);  // without text, which would cut the model's name at 1024 px
+  file->setIcon(icon("open"));
+  file->setAccessibleName(tr("Intrinsics from a file"));
+  file->setToolTip(
+      tr("Intrinsics from a file: map or result of Evical, camchain of Kalibr, or camera_info of ROS"));
+  connect(file, &QToolButton::clicked, this, &CameraForm::chooseFile);
   coefficient_names_->setObjectName("coefficient_names");
   take_over_->setObjectName("take_over");
   take_over_->setToolTip(tr("Saves these intrinsics with the session, for use in the next runs"));
