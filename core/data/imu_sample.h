@@ -3,9 +3,13 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace evical {
+
+// Fewer samples show nothing about axes or units.
+inline constexpr std::size_t kFewestImuSamples = 10;
 
 // Which of the two sensors measured this sample. If they are sampled separately, the values of the other
 // sensor are interpolated. They are for display only; no estimator uses them.

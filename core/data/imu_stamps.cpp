@@ -30,6 +30,8 @@ constexpr std::tuple kStampFields{
           "Smallest share of stamps that equal the one before; fewer are a driver's mistake."},
     Field{"share_of_bends", &StampOptions::share_of_bends, 0.1, within(0.0, 1.0), "",
           "Largest share of samples at which a steady rate bends; more if the samples' own times scatter."},
+    Field{"share_of_copies", &StampOptions::share_of_copies, 0.99, within(0.0, 1.0), "",
+          "Smallest share of equal stamps with equal values if a log was written twice."},
     Field{"beat_scatter", &StampOptions::beat_scatter, 0.35, within(0.0, 1.0), "",
           "Largest relative scatter of the distances between unusual intervals of a beat; 1 for losses."},
     Field{"beat_share", &StampOptions::beat_share, 0.5, within(0.0, 1.0), "",
@@ -389,10 +391,10 @@ void leaveOutSecondClocks(const std::string& stream, std::int64_t first_ns, std:
                   samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
 }
 
-// Of a log that was written twice: equal stamps have equal values, too. With coarse stamps most values differ.
+// Samples of a log that was written twice: equal stamps have equal values, too. With coarse stamps most values differ.
 void leaveOutCopies(const std::string& stream, std::vector<ImuSample>& samples,
-                    std::vector<RecordingFault>& faults) {
-  constexpr double kMost = 0.99, kWorthSaying = 0.01;
+                    std::vector<RecordingFault>& faults, const StampOptions& options) {
+  constexpr double kWorthSaying = 0.01;
   std::size_t equal = 0, copies = 0;
   const auto isCopy = [](const ImuSample& a, const ImuSample& b) {
     return a.time_ns == b.time_ns && a.measured_by == b.measured_by && sameValues(a, b);
@@ -401,7 +403,8 @@ void leaveOutCopies(const std::string& stream, std::vector<ImuSample>& samples,
     equal += samples[i].time_ns == samples[i - 1].time_ns ? 1 : 0;
     copies += isCopy(samples[i - 1], samples[i]) ? 1 : 0;
   }
-  if (copies == 0 || static_cast<double>(copies) < kMost * static_cast<double>(equal)) return;
+  if (copies == 0 || static_cast<double>(copies) < options.share_of_copies * static_cast<double>(equal))
+    return;
   if (static_cast<double>(copies) > kWorthSaying * static_cast<double>(samples.size()))
     faults.push_back({stream, FaultKind::BackwardTime, 0.0,
                       fmt::format("{}: {} written twice, with the same stamp and values: excluded", stream,
@@ -459,7 +462,7 @@ double putInOrder(const std::string& stream, std::int64_t first_ns, std::vector<
     faults.push_back({stream, FaultKind::BackwardTime, 0.0, stream + ": samples out of order were sorted"});
     std::ranges::stable_sort(samples, kEarlier);
   }
-  leaveOutCopies(stream, samples, faults);
+  leaveOutCopies(stream, samples, faults, options);
   const CoarseStamps stamps = reconstructStamps(samples, options);
   if (stamps.step_s > 0.0) {
     faults.push_back(faultOf(stream, stamps));

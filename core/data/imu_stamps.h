@@ -17,6 +17,7 @@ struct StampOptions {
   double share_on_grid;
   double share_of_equal;
   double share_of_bends;
+  double share_of_copies;
   double beat_scatter;
   double beat_share;
   double longest_beat;

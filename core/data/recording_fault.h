@@ -1,9 +1,11 @@
 // Faults of recordings that are reported but not repaired.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -71,5 +73,11 @@ struct RecordingFault {
   double at_s = 0.0;  // since the stream's first time; 0 if it has no time
   std::string text;   // message: one sentence
 };
+
+// Adds a fault unless it is already listed: detections of an earlier run may have it.
+inline void addUnlessListed(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
+  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
+  if (std::ranges::none_of(faults, same)) faults.push_back(fault);
+}
 
 }  // namespace evical

@@ -55,6 +55,11 @@ struct InitialisationOptions {
   double wrong_noise_ratio;
   double noise_agreement_ratio;
   double noise_unit_ratio;
+  double wrong_clock_prior_sigmas;
+  double wrong_clock_sigmas;
+  double gravity_rate_tolerance;
+  double exchanged_force_share;
+  double least_imu_coverage;
   double ambiguous_pose_ratio;
   double ambiguous_pose_px;
   double fastest_view_ratio;

@@ -18,7 +18,7 @@ inline double threadCpu_s() {
 inline double processCpu_s() {
   return clock_s(CLOCK_PROCESS_CPUTIME_ID);
 }  // of all its threads
-// Of all child processes that have ended.
+// Processor time of all child processes that have ended.
 inline double childrenCpu_s() {
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);

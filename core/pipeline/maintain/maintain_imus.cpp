@@ -31,7 +31,6 @@ namespace {
 // Variances relative to white noise from which a note, and advice, is given.
 constexpr double kWorthANote = 1.5;
 constexpr double kWorthAdvice = 4.0;
-constexpr std::uint64_t kFewestSamples = 10;  // of an IMU in all logs
 
 // Sample times of one sensor.
 struct SampleTimes {
@@ -301,7 +300,7 @@ void Maintainer::checkLogs() const {
   const auto samplesOf = [](const ImuPass& pass) {
     return std::max(pass.times.rates.samples, pass.times.forces.samples);
   };
-  if (std::ranges::all_of(passes_, [&](const ImuPass& pass) { return samplesOf(pass) < kFewestSamples; }))
+  if (std::ranges::all_of(passes_, [&](const ImuPass& pass) { return samplesOf(pass) < kFewestImuSamples; }))
     throw badInput(
         input_.logs.front().string(),
         fmt::format("{} has {}", name(imus_.front()), counted(samplesOf(passes_.front()), "sample")),

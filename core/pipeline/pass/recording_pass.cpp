@@ -70,8 +70,8 @@ class WindowWorkers {
       if (worker.failure) std::rethrow_exception(worker.failure);
   }
 
-  // Of the busiest thread.
-  double busy_s() const { return std::max(workers_[0].busy_s, workers_[1].busy_s); }
+  // Time that the busiest thread worked.
+  double busy_s() const { return std::ranges::max_element(workers_, {}, &Worker::busy_s)->busy_s; }
   // Resolutions of frames, if not known otherwise; called before finishing.
   void tellResolutions(std::vector<Resolution>& resolutions_px) const {
     for (std::size_t k = 0; k < views_.size(); ++k)
@@ -278,10 +278,9 @@ class ReadingPass {
 };
 
 void checkSamples(const Session& session, const DetectionResult& pass) {
-  constexpr std::size_t kFewestSamples = 10;  // fewer show nothing about axes or units
   for (std::size_t k = 0; k < pass.imus.size(); ++k) {
     const std::size_t count = pass.imus[k].samples.size();
-    if (count >= kFewestSamples) continue;
+    if (count >= kFewestImuSamples) continue;
     const std::filesystem::path& own = session.imus[k].recording;
     throw badInput((own.empty() ? session.recording : own).string(),
                    fmt::format("IMU {} has {}{}", pass.imus[k].name,

@@ -51,13 +51,12 @@ void tellUnmatched(const SessionCamera& camera, const BoardObservations& observa
   for (const double time_s : camera.rejected_windows_s)
     if (windowWithBoardAt(time_s, observations) == nullptr) unmatched_s.push_back(time_s);
   if (unmatched_s.empty()) return;
-  const RecordingFault fault{
-      camera.stream, FaultKind::Outside, unmatched_s.front(),
-      fmt::format("{}: the board was not found at {} of its {} in rejected_windows_s, first at {:.3f} s",
-                  camera.name, unmatched_s.size(), counted(camera.rejected_windows_s.size(), "time"),
-                  unmatched_s.front())};
-  const auto same = [&](const RecordingFault& each) { return each.text == fault.text; };
-  if (std::ranges::none_of(faults, same)) faults.push_back(fault);  // saved detections contain it already
+  addUnlessListed(
+      {camera.stream, FaultKind::Outside, unmatched_s.front(),
+       fmt::format("{}: the board was not found at {} of its {} in rejected_windows_s, first at {:.3f} s",
+                   camera.name, unmatched_s.size(), counted(camera.rejected_windows_s.size(), "time"),
+                   unmatched_s.front())},
+      faults);
 }
 
 void divide(const std::vector<double>& rejected_s, BoardObservations& camera,

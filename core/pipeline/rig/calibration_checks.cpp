@@ -28,15 +28,14 @@
 namespace evical {
 namespace {
 
-// Gravity in the rates: their norm varies little, and the accelerations' is not gravity's.
+// Gravity in the rates: most of their norms are near it, and the accelerations' is not.
 void checkNotExchanged(const ImuData& imu, double force_norm, const InitialisationOptions& options) {
-  constexpr double kNear = 0.1, kOther = 0.5;
-  std::vector<double> norms, deviations;
+  if (force_norm > options.exchanged_force_share * options.gravity_m_s2) return;
+  std::vector<double> deviations;
   for (const ImuSample& sample : imu.samples)
-    if (measuresRate(sample)) norms.push_back(sample.angular_rate_rad_s.norm() / options.gravity_m_s2 - 1.0);
-  for (const double norm : norms) deviations.push_back(std::abs(norm));
-  if (deviations.empty() || force_norm > kOther * options.gravity_m_s2) return;
-  if (!(std::abs(medianOf(std::move(norms))) < kNear && medianOf(std::move(deviations)) < kNear)) return;
+    if (measuresRate(sample))
+      deviations.push_back(std::abs(sample.angular_rate_rad_s.norm() / options.gravity_m_s2 - 1.0));
+  if (deviations.empty() || medianOf(std::move(deviations)) >= options.gravity_rate_tolerance) return;
   throw badInput(
       imu.name,
       fmt::format("the angular rates have the norm of gravity, and the accelerations one of {:.2g}: the "
@@ -166,23 +165,17 @@ void logDetections(const DetectionResult& pass, const RunContext& context) {
   }
 }
 
-// Adds a fault unless it is already listed: a pass from an earlier run may have it.
-void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
-  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
-  if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
-}
-
 // A log that ends early, say: the reason why many views are not used.
-void tellUncovered(const DetectionResult& pass, std::vector<RecordingFault>& faults) {
-  constexpr double kMuch = 0.8;
+void tellUncovered(const DetectionResult& pass, double least_coverage, std::vector<RecordingFault>& faults) {
   for (const BoardObservations& camera : pass.cameras) {
     for (const ImuData& imu : pass.imus) {
       const double camera_s = durationOf(camera), imu_s = durationOf(imu);
-      if (imu_s >= kMuch * camera_s) continue;
-      addFault({imu.name, FaultKind::Part, imu_s,
-                fmt::format("{}: its samples cover {:.1f} s, those of {} {:.1f} s: views beyond are not used",
-                            imu.name, imu_s, camera.camera, camera_s)},
-               faults);
+      if (imu_s >= least_coverage * camera_s) continue;
+      addUnlessListed(
+          {imu.name, FaultKind::Part, imu_s,
+           fmt::format("{}: its samples cover {:.1f} s, those of {} {:.1f} s: views beyond are not used",
+                       imu.name, imu_s, camera.camera, camera_s)},
+          faults);
     }
   }
 }
@@ -251,13 +244,14 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     checkAxesAlive(imu);
     checkUnits(imu, k < session.imus.size() ? &session.imus[k] : nullptr, *session.options.initialisation);
     for (const RecordingFault& fault : checkImu(imu.name, imu.samples))
-      if (fault.kind != FaultKind::Encoding) addFault(fault, pass.faults);  // of stamps: named while reading
+      if (fault.kind != FaultKind::Encoding)
+        addUnlessListed(fault, pass.faults);  // of stamps: named while reading
   }
   for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
     const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
-    if (unseen) addFault(*unseen, pass.faults);
+    if (unseen) addUnlessListed(*unseen, pass.faults);
   }
-  tellUncovered(pass, pass.faults);
+  tellUncovered(pass, session.options.initialisation->least_imu_coverage, pass.faults);
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(pass, context);
   checkDuration(session, pass);

@@ -270,13 +270,11 @@ class Calibration {
 
   // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it. Freed
   // parameters continue from the solution before, unless that has a wrong input: its parameters may be far from right.
-  BatchSolution solveWithTags(CalibrationResult before) {
+  BatchSolution solveWithTags(const std::optional<CalibrationState>& solved,
+                              std::vector<IterationRecord> before) {
     constexpr int kMostRounds = 5;
-    const bool continues = !before.state.cameras.empty() && wrong_noise_.empty() &&
-                           std::ranges::none_of(before.causes, isWrongInput);
-    BatchSolution solution =
-        continues ? continueBatch(input_, before.state, std::move(before.iterations), options_, context_)
-                  : optimiseBatch(input_, initial_.state, options_, context_);
+    BatchSolution solution = solved ? continueBatch(input_, *solved, std::move(before), options_, context_)
+                                    : optimiseBatch(input_, initial_.state, options_, context_);
     for (int round = 0; round < kMostRounds && moveCornersOfTags(solution); ++round)
       solution = continueBatch(input_, solution.state, std::move(solution.iterations), options_, context_);
     return solution;
@@ -347,9 +345,12 @@ class Calibration {
   void solve() {
     const OptimisationOptions& options = options_;
     CalibrationResult& result = run_.result;
-    CalibrationResult before = std::exchange(result, {});
-    result.timing = before.timing;
-    BatchSolution solution = solveWithTags(std::move(before));
+    const bool continues = !result.state.cameras.empty() && wrong_noise_.empty() &&
+                           std::ranges::none_of(result.causes, isWrongInput);
+    const auto solved = continues ? std::optional(std::move(result.state)) : std::nullopt;
+    std::vector<IterationRecord> before = std::move(result.iterations);
+    result = {.timing = result.timing};
+    BatchSolution solution = solveWithTags(solved, std::move(before));
     giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
     PriorCheck priors = checkPriors(input_, solution, options, context_);

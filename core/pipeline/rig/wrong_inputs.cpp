@@ -259,16 +259,16 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
 // Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
 // percent. The batch estimates either, but accelerations and rates then have wrong scales.
 std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const CalibrationState& state,
-                                         const UncertaintyReport& uncertainty,
-                                         const OptimisationOptions& options) {
-  constexpr double kUsual = 4.0, kWrong = 50.0, kSigmas = 5.0;  // the first two of the prior's sigma
-  const double prior_ppm = options.time_offset_drift_sigma_ppm;
+                                         const UncertaintyReport& uncertainty, double prior_ppm,
+                                         const InitialisationOptions& options) {
+  constexpr double kUsual = 4.0;  // sigmas of the prior
   const bool of_imu = !input.imus.empty();
   const std::string& reference = of_imu ? input.imus[input.reference_imu].name : input.cameras.front().name;
   std::optional<QualityWarning> wrong;
   const auto test = [&](const char* group, const auto& data, double drift_ppm, double sigma_ppm) {
-    if (wrong || data.prior.time_offset_drift || data.name == reference) return;
-    if (!(std::abs(drift_ppm) > std::max(kWrong * prior_ppm, kSigmas * sigma_ppm))) return;
+    const double least_ppm =
+        std::max(options.wrong_clock_prior_sigmas * prior_ppm, options.wrong_clock_sigmas * sigma_ppm);
+    if (wrong || data.prior.time_offset_drift || !(std::abs(drift_ppm) > least_ppm)) return;
     const double pace = 1.0 + 1e-6 * drift_ppm;
     wrong = QualityWarning{
         fmt::format("the clocks of {} and {} differ by {:.2g} % in their rates, others by less than "
@@ -340,9 +340,9 @@ QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, dou
           times < 1.0 ? 1.0 : 0.0};
 }
 
-// Both densities are wrong, and each agrees with the other sensor's samples.
-std::optional<QualityWarning> exchangedNoise(const ImuData& imu, double agreement_ratio) {
-  const double of_rates = sampleDensity(imu, true), of_forces = sampleDensity(imu, false);
+// Both densities are wrong, and each agrees with the other sensor's samples, whose densities are the arguments.
+std::optional<QualityWarning> exchangedNoise(const ImuData& imu, double of_rates, double of_forces,
+                                             double agreement_ratio) {
   const double rates = imu.noise.gyroscope_density, forces = imu.noise.accelerometer_density;
   const bool exchanged =
       isFar(of_rates / rates, agreement_ratio) && isFar(of_forces / forces, agreement_ratio) &&
@@ -408,7 +408,8 @@ std::vector<QualityWarning> wrongInputs(const Session& session, const Calibratio
   if (std::optional<QualityWarning> board = wrongBoard(input, initial, options))
     wrong.push_back(std::move(*board));
   if (std::optional<QualityWarning> clock =
-          wrongClock(input, solution.state, uncertainty, *session.options.optimisation))
+          wrongClock(input, solution.state, uncertainty,
+                     session.options.optimisation->time_offset_drift_sigma_ppm, options))
     wrong.push_back(std::move(*clock));
   return wrong;
 }
@@ -435,22 +436,24 @@ std::vector<QualityWarning> wrongNoise(const Session& session, const Calibration
   std::vector<QualityWarning> wrong;
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     const ImuData& imu = input.imus[k];
-    const auto test = [&](const NoiseInput& noise, bool of_gyroscope, double given, double residual_times) {
-      const double white = sampleDensity(imu, of_gyroscope) / given;
+    const double of_rates = sampleDensity(imu, true), of_forces = sampleDensity(imu, false);
+    const auto test = [&](const NoiseInput& noise, double of_samples, double given, double residual_times) {
+      const double white = of_samples / given;
       const bool too_large = std::max(white, residual_times) * ratio < 1.0;
       const bool too_small = white > ratio && residual_times > misfit &&
                              !isFar(white / residual_times, options.noise_agreement_ratio);
       if (white > 0.0 && (too_large || too_small))
         wrong.push_back(noiseWarning(imu.name, noise, given, given * white, options.noise_unit_ratio));
     };
-    if (std::optional<QualityWarning> both = exchangedNoise(imu, options.noise_agreement_ratio)) {
+    if (std::optional<QualityWarning> both =
+            exchangedNoise(imu, of_rates, of_forces, options.noise_agreement_ratio)) {
       wrong.push_back(std::move(*both));
       continue;
     }
     const ImuFit& fit = solution.imus[k];
-    test(kGyroscopeNoise, true, imu.noise.gyroscope_density,
+    test(kGyroscopeNoise, of_rates, imu.noise.gyroscope_density,
          fit.gyroscope_rms_rad_s / imu.gyroscopeSigma_rad_s());
-    test(kAccelerometerNoise, false, imu.noise.accelerometer_density,
+    test(kAccelerometerNoise, of_forces, imu.noise.accelerometer_density,
          fit.accelerometer_rms_m_s2 / imu.accelerometerSigma_m_s2());
   }
   return wrong;

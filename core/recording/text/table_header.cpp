@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kAroundName = " \t\r\"'";
 constexpr std::string_view kUnusedName = "-";
-// Of a proposed line whose units are dropped.
+// Advice for a proposed line whose units are dropped.
 constexpr std::string_view kWithoutUnits =
     ". Axes without a unit are in m/s^2 or rad/s; state others, or the size of a raw count, in brackets: ax "
     "[0.001 g]";

@@ -32,7 +32,7 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
   return count(AssessedThing::Board) > 1 || count(AssessedThing::Turns) > 1;
 }
 
-// What is good already, of the criteria that the person who records can influence.
+// Good criteria, of those that the person who records can influence.
 QString goodParts(const RecordingAssessment& assessment) {
   QStringList good;
   for (const Assessed& one : assessment.all)
