@@ -35,7 +35,7 @@ class TestCalibrationDocument : public QObject {
     document.open(file);
     QCOMPARE(replaced.count(), 1);
     QVERIFY(document.hasSession() && !document.modified());
-    QCOMPARE(document.title(), QString("session.yaml"));
+    QCOMPARE(document.title(), QFileInfo(file).dir().dirName() + "/session.yaml");
 
     document.edit(withRows(document, 9), "Rows");
     document.setOption("grid.least_circles", "9");

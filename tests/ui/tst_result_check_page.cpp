@@ -177,7 +177,10 @@ class TestResultCheckPage : public QObject {
     for (std::size_t k = 0; k < check.findings.size(); ++k) {
       const QTreeWidgetItem& row = *table->topLevelItem(static_cast<int>(k));
       QCOMPARE(row.childCount(), static_cast<int>(check.findings[k].numbers.size()));
-      QVERIFY(std::abs(row.text(FindingTable::kSigmas).toDouble() - check.findings[k].sigmas) < 0.06);
+      const QStringList test = row.text(FindingTable::kTest).split(" of ");  // value and limit
+      QCOMPARE(test.size(), 2);
+      QVERIFY(std::abs(test[0].toDouble() - check.findings[k].sigmas) < 0.06);
+      QVERIFY(std::abs(test[1].toDouble() - check.findings[k].limit_sigmas) < 0.06);
       QVERIFY(!row.text(FindingTable::kDetectable).isEmpty() && !row.text(FindingTable::kChange).isEmpty());
     }
     QVERIFY(table->allText().contains("Detectable"));

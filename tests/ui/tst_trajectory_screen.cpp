@@ -38,6 +38,7 @@ class TestTrajectoryScreen : public QObject {
   void throughTheCamera_showsWhatItSees();
   void kindsOfCameras_haveColoursAndALegend();
   void gravity_differsFromTheTrajectory();
+  void sensors_areNamedAtTheirPoses();
   void theme_changesThePicture();
   void picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWas();
   void screenshots();
@@ -211,6 +212,25 @@ void TestTrajectoryScreen::gravity_differsFromTheTrajectory() {
     for (double share = 0.0; share <= 1.0; share += 0.1)
       QVERIFY(distance(label.colour, ColourScale{{}, 1.0, dark}.colourOf(share)) > 60.0);
   }
+}
+
+void TestTrajectoryScreen::sensors_areNamedAtTheirPoses() {
+  const vtkNew<vtkRenderer> renderer;
+  TrajectoryScene scene(renderer);
+  scene.setBoard(example_.session.board);
+  scene.setIntrinsics({std::nullopt, std::nullopt});
+  scene.setSensorNames({"left", "right"}, {"imu"});
+  const auto at = [](double x_m) { return RigidTransform{Eigen::Quaterniond::Identity(), {x_m, 0.0, -1.0}}; };
+  scene.setInstant({at(0.0), at(2.0)}, {at(1.0)});
+  const auto placeOf = [&](const QString& name) {
+    for (const SceneLabel& label : scene.labels())
+      if (label.text == name) return label.at_m.x();
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  QVERIFY(std::abs(placeOf("left")) < 0.2 && std::abs(placeOf("right") - 2.0) < 0.2);
+  QVERIFY(std::abs(placeOf("imu") - 1.0) < 0.2);
+  scene.setVisible(SceneLayer::ImuAxes, false);
+  QVERIFY(std::isnan(placeOf("imu")) && !std::isnan(placeOf("right")));
 }
 
 void TestTrajectoryScreen::theme_changesThePicture() {

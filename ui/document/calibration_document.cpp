@@ -8,6 +8,7 @@
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_keys.h"
 
+#include <QDir>
 #include <QFileInfo>
 #include <QUndoCommand>
 
@@ -99,7 +100,10 @@ CalibrationDocument::~CalibrationDocument() {
 }
 
 QString CalibrationDocument::title() const {
-  if (!file_.isEmpty()) return QFileInfo(file_).fileName();
+  if (!file_.isEmpty()) {
+    const QFileInfo file(file_);  // most sessions are called session.yaml: their folder tells them apart
+    return file.absoluteDir().dirName() + '/' + file.fileName();
+  }
   if (!hasSession()) return {};
   return QString::fromStdString(session_.recording.filename().string());
 }

@@ -121,6 +121,7 @@ struct TrajectoryScene::Private {
   std::vector<PlacedBoard> further_boards;
   std::vector<CameraShape> cameras;
   std::vector<CameraKind> kinds;
+  std::vector<QString> camera_names, imu_names;
   std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
   std::optional<Vector3d> gravity_m_s2;
   std::vector<RigidTransform> raw, current_cameras, current_imus;
@@ -132,6 +133,10 @@ struct TrajectoryScene::Private {
   Part ground, board, board_edge, track, stations, current, imu_axes, raw_poses, gravity, axes, image_plane,
       events;
 
+  double currentDepth_m(std::size_t camera) const {
+    return lengthOf(kind(camera)) * kCurrentDepth * unit_m();
+  }
+  void addSensorNames(std::vector<SceneLabel>& labels) const;
   std::array<Part*, 12> parts() {
     return {&ground,      &board,    &board_edge, &track,   &stations, &current,
             &image_plane, &imu_axes, &raw_poses,  &gravity, &axes,     &events};
@@ -206,6 +211,24 @@ struct TrajectoryScene::Private {
   Vector3d arrowEnd() const { return arrowStart() - kArrow * unit_m() * up(); }
 };
 
+// Names above the images of cameras, and behind the axes of IMUs.
+void TrajectoryScene::Private::addSensorNames(std::vector<SceneLabel>& labels) const {
+  const auto shows = [&](SceneLayer layer) { return visible[static_cast<std::size_t>(layer)]; };
+  if (shows(SceneLayer::CurrentCamera)) {
+    for (std::size_t k = 0; k < std::min({camera_names.size(), current_cameras.size(), cameras.size()});
+         ++k) {
+      const auto& corners = cameras[k].corners;
+      const Vector3d top = 0.5 * (corners[0] + corners[1]), above(top.x(), 1.3 * top.y(), top.z());
+      labels.push_back(
+          {current_cameras[k] * (currentDepth_m(k) * above), camera_names[k], cameraColour(kind(k))});
+    }
+  }
+  if (!shows(SceneLayer::ImuAxes)) return;
+  const Vector3d behind = -0.3 * kImuAxes * unit_m() * Vector3d::Ones();
+  for (std::size_t k = 0; k < std::min(imu_names.size(), current_imus.size()); ++k)
+    labels.push_back({current_imus[k] * behind, imu_names[k], theme().text});
+}
+
 QColor cameraColour(CameraKind kind) {
   switch (kind) {
     case CameraKind::Events:
@@ -246,6 +269,11 @@ void TrajectoryScene::setCameraKinds(const std::vector<CameraKind>& kinds) {
   d_->kinds = kinds;
   buildStations();
   buildInstant();
+}
+
+void TrajectoryScene::setSensorNames(std::vector<QString> cameras, std::vector<QString> imus) {
+  d_->camera_names = std::move(cameras);
+  d_->imu_names = std::move(imus);
 }
 
 void TrajectoryScene::setTrack(std::shared_ptr<const TrajectoryTrack> track) {
@@ -344,6 +372,7 @@ std::vector<SceneLabel> TrajectoryScene::labels() const {
       labels.push_back({tip, names[k], theme().axes[k]});
     }
   }
+  d_->addSensorNames(labels);
   if (isVisible(SceneLayer::Gravity) && d_->gravity_m_s2) {
     const Vector3d below = d_->arrowEnd() - 0.03 * d_->unit_m() * d_->up();
     labels.push_back({below, QStringLiteral("gravity"), theme().text});
@@ -414,7 +443,7 @@ void TrajectoryScene::buildInstant() {
   ShapeBuilder frusta, planes, axes;
   for (std::size_t k = 0; k < d_->current_cameras.size(); ++k) {
     const CameraKind kind = d_->kind(k);
-    const double depth_m = lengthOf(kind) * kCurrentDepth * d_->unit_m();
+    const double depth_m = d_->currentDepth_m(k);
     frusta.setColour(cameraColour(kind));
     planes.setColour(cameraColour(kind));
     addFrustum(frusta, d_->camera(k), d_->current_cameras[k], depth_m);
@@ -433,7 +462,7 @@ void TrajectoryScene::buildEvents() {
   ShapeBuilder shapes;
   const std::size_t camera = d_->events_data.camera;
   if (camera < d_->current_cameras.size()) {
-    const double depth_m = lengthOf(d_->kind(camera)) * kCurrentDepth * d_->unit_m();
+    const double depth_m = d_->currentDepth_m(camera);
     for (const FrustumEvent& event : d_->events_data.events) {
       shapes.setColour(event.brighter ? theme().brighter : theme().darker);
       shapes.point(d_->current_cameras[camera] * (depth_m * event.at));

@@ -66,6 +66,7 @@ class TrajectoryScene {
   // By camera; by default event cameras. Kinds differ in colour and in the length of their frustums, since
   // cameras of one sensor coincide.
   void setCameraKinds(const std::vector<CameraKind>& kinds);
+  void setSensorNames(std::vector<QString> cameras, std::vector<QString> imus);  // shown at their poses
   void setTrack(std::shared_ptr<const TrajectoryTrack> track);
   void setGravity(const std::optional<Eigen::Vector3d>& gravity_in_world_m_s2);
   // Poses from single views, of cameras or converted to the IMU.

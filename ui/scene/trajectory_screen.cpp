@@ -66,6 +66,13 @@ std::optional<double> timeUnder(const QPointF& position, const std::vector<Timed
   return time_s;
 }
 
+template <class Sensor>
+std::vector<QString> namesOf(const std::vector<Sensor>& sensors) {
+  std::vector<QString> names;
+  for (const Sensor& sensor : sensors) names.push_back(QString::fromStdString(sensor.name));
+  return names;
+}
+
 ViewPose throughCamera(const RigidTransform& world_from_camera, const CameraShape& shape) {
   const double half_view = std::atan(kCameraViewMargin * std::tan(0.5 * shape.vertical_view_rad));
   return {world_from_camera.translation_m, world_from_camera * Vector3d::UnitZ(),
@@ -228,6 +235,7 @@ void TrajectoryScreen::Private::setBoards(const Session& session) {
   for (const AdditionalBoard& further : session.further_boards) further_boards.push_back(further.board);
   seen_boards.clear();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) seen_boards.push_back(session.seenBoard(k));
+  scene.setSensorNames(namesOf(session.cameras), namesOf(session.imus));
   placeFurtherBoards();
   if (board == session.board) return;
   board = session.board;

@@ -40,7 +40,7 @@ QIcon iconOf(const Finding& finding) {
 
 QString wordsOf(const Finding& finding) {
   if (finding.changed)
-    return QObject::tr("Differs from the old value by %1 sigmas; chance explains at most %2")
+    return QObject::tr("Differs from the old value: its test value is %1, and chance explains at most %2")
         .arg(finding.sigmas, 0, 'f', 1)
         .arg(finding.limit_sigmas, 0, 'f', 1);
   if (finding.isConclusive()) return QObject::tr("No change; a relevant one would have been detected");
@@ -64,7 +64,8 @@ QTreeWidgetItem* itemOf(const Finding& finding) {
   item->setText(FindingTable::kVerdict, verdictWords(finding.verdict()));
   item->setText(FindingTable::kSource, sourceWords(finding.source));
   item->setText(FindingTable::kChange, changeText(finding));
-  item->setText(FindingTable::kSigmas, QString::number(finding.sigmas, 'f', 1));
+  item->setText(FindingTable::kTest,
+                QObject::tr("%1 of %2").arg(finding.sigmas, 0, 'f', 1).arg(finding.limit_sigmas, 0, 'f', 1));
   if (finding.edge_px > 0.0) item->setText(FindingTable::kEdge, sizeText(finding.edge_px, "px"));
   item->setText(FindingTable::kDetectable, sizeText(finding.smallest_detectable_change, finding.unit));
   for (int column = 0; column < FindingTable::kColumns; ++column) item->setToolTip(column, wordsOf(finding));
@@ -90,9 +91,11 @@ FindingTable::FindingTable(QWidget* parent) : CopyTable(parent) {
   setAccessibleName(tr("Change of each quantity"));
   setColumnCount(kColumns);
   setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Before"), tr("Now"),
-                   QString(QChar(0x3c3)), tr("At the edge"), tr("Detectable")});
+                   tr("Test"), tr("At the edge"), tr("Detectable")});
   headerItem()->setToolTip(kSource, tr("Source: stops, another IMU, or the trajectory"));
-  headerItem()->setToolTip(kSigmas, tr("The change in standard deviations"));
+  headerItem()->setToolTip(kTest,
+                           tr("Change of all numbers of the quantity relative to their covariance, and the\n"
+                              "largest value that chance explains"));
   headerItem()->setToolTip(kEdge, tr("Shift of points at the image's edge, in pixels"));
   headerItem()->setToolTip(kDetectable, tr("Smallest change that these data show in 95 of 100 cases"));
   headerItem()->setToolTip(kNow, tr("Estimate from the new data alone"));

@@ -20,7 +20,7 @@ class FindingTable : public CopyTable {
     kChange,
     kBefore,
     kNow,  // the columns up to here are visible at 1280 px
-    kSigmas,
+    kTest,
     kEdge,
     kDetectable,
     kColumns

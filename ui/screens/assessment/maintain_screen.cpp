@@ -15,6 +15,7 @@
 #include <QTabWidget>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -140,7 +141,10 @@ void MaintainScreen::setMaintenance(const Maintenance& maintenance) {
       more << tr("Quantity that the stops of %1 determine least: %2.")
                   .arg(QString::fromStdString(imu.name), QString::fromStdString(imu.weakest));
   }
-  showAssessment(maintenance, more);
+  const auto changed = [](const Finding& finding) { return finding.changed; };
+  const bool during_logs =
+      maintenance.verdict == Verdict::Changed && std::ranges::none_of(maintenance.findings, changed);
+  showAssessment(maintenance, more, during_logs ? tr("Changed during the logs") : QString());
   steps_->setSteps(maintenance.steps);
   table_->setFindings(maintenance.findings);
 }
