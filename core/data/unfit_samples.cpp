@@ -273,6 +273,17 @@ UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
   return unfit;
 }
 
+std::array<double, kImuAxes.size()> saturatedShares(std::span<const ImuSample> samples) {
+  const UnfitSamples unfit = findUnfitSamples(samples);
+  std::array<double, kImuAxes.size()> shares{};
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+    const std::size_t others = (kImuAxes[axis].rate ? unfit.without_rate : unfit.without_force).size();
+    shares[axis] = static_cast<double>(unfit.saturated[axis].size()) /
+                   std::max(1.0, static_cast<double>(samples.size() - others));
+  }
+  return shares;
+}
+
 std::vector<RecordingFault> heldFaults(const std::string& stream, std::span<const ImuSample> samples,
                                        const UnfitSamples& unfit) {
   std::vector<RecordingFault> faults;

@@ -26,7 +26,9 @@ bool ProblemBuilder::scaleIsHeld() const {
 }
 
 bool ProblemBuilder::delayIsHeld(std::size_t imu) const {
-  return weights.scales.accelerometers[imu] > options.delay_misfit;
+  constexpr double kUnknown_s = 0.05;  // a prior as wide as this states that the delay is not small
+  return weights.scales.accelerometers[imu] > options.delay_misfit &&
+         options.accelerometer_delay_sigma_s < kUnknown_s;
 }
 
 bool ProblemBuilder::drifts(const SensorPrior& prior) const {

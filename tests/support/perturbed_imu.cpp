@@ -175,6 +175,14 @@ void timesRates(Recorded& recorded, double times) {
 void timesForces(Recorded& recorded, double times) {
   changeSamples(recorded, [&](ImuSample& sample) { sample.specific_force_m_s2 *= times; });
 }
+// Only noise, as of an IMU on the table.
+void gyroscopeAtRest(Recorded& recorded, double) {
+  std::mt19937_64 generator(recorded.scenario.seed);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  changeSamples(recorded, [&](ImuSample& sample) {
+    for (double& rate : sample.angular_rate_rad_s) rate = noise(generator);
+  });
+}
 void exchangeSensors(Recorded& recorded, double) {
   changeSamples(recorded,
                 [](ImuSample& sample) { std::swap(sample.angular_rate_rad_s, sample.specific_force_m_s2); });
@@ -227,6 +235,7 @@ std::vector<Perturbation> imuPerturbations() {
        walkingBiases},
       {"rates times", "", {0.0175, 0.5, 2, 16, 57.3, 1000}, {"angular_rate_unit", "rates are"}, timesRates},
       {"forces times", "", {0.102, 2, 3.28, 9.81, 100, 1000}, {"accelerations is"}, timesForces},
+      {"gyroscope at rest", "", {1}, {"at rest"}, gyroscopeAtRest},
       {"sensors exchanged", "", {1}, {"exchanged"}, exchangeSensors},
       {"stated noise", "of truth", {0.001, 0.01, 0.1, 0.33, 3, 57.3, 1e4}, {"noise_density"}, statedNoise}};
 }

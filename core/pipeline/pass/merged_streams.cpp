@@ -36,6 +36,15 @@ std::int64_t firstTime_ns(const SensorPacket& packet) {
   return time_ns;
 }
 
+// Power of 1000 by which one time since 1970 is larger than another, as in a table whose unit is wrong; 0 if it is none.
+double unitRatio(double time_s, double other_s) {
+  constexpr double kNear = 1e-3, kLeast_s = 1e5;
+  if (time_s <= 0.0 || other_s <= 0.0 || std::max(time_s, other_s) < kLeast_s) return 0.0;
+  const double thousands = std::round(std::log(time_s / other_s) / std::log(1e3));
+  const double ratio = std::pow(1e3, thousands);
+  return thousands != 0.0 && std::abs(time_s / other_s / ratio - 1.0) < kNear ? ratio : 0.0;
+}
+
 void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vector<RawImuSample>& raw,
                  std::vector<ImuSample>& samples) {
   toSi(raw, imu.acceleration_unit.value_or(info.acceleration_unit),
@@ -149,11 +158,15 @@ void MergedStreams::checkClocks(const std::function<std::string(double)>& advice
     if (std::ranges::equal(file.streams, first.streams, {}, &Stream::sensor, &Stream::sensor)) continue;
     const double later_s = secondsSince(file.time_ns(), first.time_ns());
     if (std::abs(later_s) < kFurthestStarts_s) continue;
+    const double ratio = unitRatio(secondsSince(0, file.time_ns()), secondsSince(0, first.time_ns()));
     throw badInput(
         file.path.string(),
         fmt::format("its clock is unrelated to that of {}: it starts at {:.3f} s, the other at {:.3f} s",
                     first.path.string(), secondsSince(0, file.time_ns()), secondsSince(0, first.time_ns())),
-        advice(later_s));
+        ratio == 0.0 ? advice(later_s)
+                     : fmt::format("Its times seem to be {:g} times too {}: correct their unit, in a table's "
+                                   "header or where it was written",
+                                   std::max(ratio, 1.0 / ratio), ratio > 1.0 ? "large" : "small"));
   }
 }
 

@@ -378,7 +378,7 @@ class Calibration {
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) {
       flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
-      flagDoubtful(saturationIn(input_, options), result, "saturation");
+      flagDoubtful(saturationIn(input_, options), result);
     }
     flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
     result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
@@ -449,10 +449,13 @@ class Calibration {
       std::erase_if(run_.result.causes, [](const QualityWarning& each) { return !isWrongInput(each); });
       flagDoubtful(misfit.failure, run_.result, "misfit");
       flagDoubtful(cause, run_.result);
+      flagDoubtful(saturationIn(input_, options), run_.result);
       for (const QualityWarning& noise : wrong_noise_) flagDoubtful(noise, run_.result);
       rankReasons(run_.result);
-      throw calibrationFailed(session_.source.string(), run_.result.reason,
-                              "Check the board, the lens and the streams " + howTo(HowTo::EditSession))
+      const bool is_unknown = run_.result.causes.front().name == "misfit";
+      throw calibrationFailed(
+          session_.source.string(), run_.result.reason,
+          is_unknown ? "Check the board, the lens and the streams " + howTo(HowTo::EditSession) : "")
           .repairedBy(run_.result.repair);
     }
     if (misfit.doubt.empty() && cause.text.empty()) flagDoubtful(held, run_.result);

@@ -20,6 +20,7 @@ namespace evical {
 const Repair kFreeLenses{"optimisation.model.camera_intrinsics", "free"};
 const Repair kFreeTurn{"optimisation.model.gyroscope_rotation", "true"};
 const Repair kFreeBow{"optimisation.model.board_bow", "true"};
+const Repair kFreeDelay{"optimisation.priors.accelerometer_delay_sigma_s", "0.1"};
 const Repair kFreeLineDelays{"optimisation.model.line_delay", "true"};
 
 namespace {
@@ -90,8 +91,30 @@ std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& f
   return bowWords(freed.state.boardAt(most), input.boardAt(most), input.boardWords(most));
 }
 
-const std::array<Trial, 3> kTrials = {
-    {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
+constexpr double kLongestDelay_s = 0.1;  // kFreeDelay
+
+bool delayIsHeld(const BatchSolution& solution, const OptimisationOptions& options) {
+  return !solution.state.imus.empty() && options.free_imu_intrinsics &&
+         options.accelerometer_delay_sigma_s < kLongestDelay_s;
+}
+void releaseDelay(OptimisationOptions& options) {
+  options.accelerometer_delay_sigma_s = kLongestDelay_s;
+}
+std::string delayWords(const CalibrationInput& input, const BatchSolution& freed) {
+  const auto latest = std::ranges::max_element(
+      freed.state.imus, {}, [](const ImuState& imu) { return std::abs(imu.accelerometer_delay_s); });
+  const double delay_ms = 1e3 * latest->accelerometer_delay_s;
+  return fmt::format("{}: the accelerometer's samples seem to be {:.2g} ms {} than the gyroscope's",
+                     input.imus[static_cast<std::size_t>(latest - freed.state.imus.begin())].name,
+                     std::abs(delay_ms), delay_ms > 0.0 ? "later" : "earlier");
+}
+
+const std::array<Trial, 4> kTrials = {
+    {{CauseKind::LateAccelerometer, &delayIsHeld, &releaseDelay, &delayWords,
+      "check how the driver stamps and filters them, or calibrate with "
+      "optimisation.priors.accelerometer_delay_sigma_s: 0.1",
+      kFreeDelay},
+     {CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
       "mount it on glass, or calibrate with optimisation.model.board_bow: true", kFreeBow},
      {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
       "calibrate with optimisation.model.camera_intrinsics: free, and measure the board", kFreeLenses},
@@ -112,6 +135,7 @@ struct RankedReason {
 constexpr std::array kRanks = {RankedReason{"mirrored_image", Explains::Itself, Reason::Independent},
                                RankedReason{kWrongUnit, Explains::Symptoms, Reason::Independent},
                                RankedReason{kWrongClock, Explains::Symptoms, Reason::Independent},
+                               RankedReason{"heavy_saturation", Explains::Symptoms, Reason::Independent},
                                RankedReason{kWrongLens, Explains::Symptoms},
                                RankedReason{kWrongBoard, Explains::Symptoms},
                                RankedReason{"first_look_at_lens"},
@@ -120,6 +144,7 @@ constexpr std::array kRanks = {RankedReason{"mirrored_image", Explains::Itself, 
                                RankedReason{kWrongNoise, Explains::WeakData},
                                RankedReason{"clock_step", Explains::Itself, Reason::Independent},
                                RankedReason{"other"},
+                               RankedReason{"late_accelerometer", Explains::Symptoms},
                                RankedReason{"gyroscope_turned"},
                                RankedReason{"lens"},
                                RankedReason{"board_bow"},
@@ -164,7 +189,8 @@ void rankReasons(CalibrationResult& result) {
 }
 
 const char* causeName(CauseKind kind) {
-  constexpr std::array kNames = {"gyroscope_turned", "lens", "board_bow"};  // in the enumeration's order
+  constexpr std::array kNames = {"gyroscope_turned", "lens", "board_bow",
+                                 "late_accelerometer"};  // in the enumeration's order
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

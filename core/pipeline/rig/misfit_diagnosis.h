@@ -13,7 +13,7 @@
 
 namespace evical {
 
-enum class CauseKind { GyroscopeTurned, Lens, BentBoard };
+enum class CauseKind { GyroscopeTurned, Lens, BentBoard, LateAccelerometer };
 
 struct Cause {
   CauseKind kind;
@@ -23,7 +23,7 @@ struct Cause {
 };
 const char* causeName(CauseKind kind);
 // Settings that free parameters which are fixed by default.
-extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kFreeLineDelays;
+extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kFreeDelay, kFreeLineDelays;
 
 // Absent if none of the groups explains a large share.
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,

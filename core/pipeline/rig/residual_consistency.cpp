@@ -1,6 +1,5 @@
 #include "core/pipeline/rig/residual_consistency.h"
 
-#include "core/data/quality_warning.h"
 #include "core/data/unfit_samples.h"
 
 #include <fmt/format.h>
@@ -161,22 +160,23 @@ std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const 
   return notes;
 }
 
-std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
+QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
   std::string words;
+  double most = 0.0;
   for (const ImuData& imu : input.imus) {
-    const UnfitSamples unfit = findUnfitSamples(imu.samples);
+    const std::array<double, kImuAxes.size()> shares = saturatedShares(imu.samples);
     for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
-      const std::size_t others = (kImuAxes[axis].rate ? unfit.without_rate : unfit.without_force).size();
-      const double share = static_cast<double>(unfit.saturated[axis].size()) /
-                           std::max(1.0, static_cast<double>(imu.samples.size() - others));
+      const double share = shares[axis];
       if (share <= options.saturated_share) continue;
+      most = std::max(most, share);
       words += fmt::format("{}{}: {} is saturated in {:.0f} % of the samples", words.empty() ? "" : ", ",
                            imu.name, kImuAxes[axis].name, 100.0 * share);
     }
   }
-  return words.empty()
-             ? words
-             : words + ", which were excluded: move more slowly, or increase the IMU's measuring range";
+  if (words.empty()) return {};
+  return {words + ", which were excluded: move more slowly, or increase the IMU's measuring range",
+          {},
+          most > kHeavySaturation ? "heavy_saturation" : "saturation"};
 }
 
 double totalMisfit(const BatchSolution& solution) {

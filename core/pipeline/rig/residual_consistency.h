@@ -4,6 +4,7 @@
 
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
+#include "core/data/quality_warning.h"
 #include "core/data/recording_fault.h"
 #include "core/optimisation/batch_optimiser.h"
 
@@ -33,8 +34,9 @@ std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolutio
 void addStampErrors(const CalibrationInput& input, const std::vector<double>& steps_s,
                     const VerdictOptions& options, CalibrationResult& result);
 
-// IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others.
-std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);
+// IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others, and of all if a
+// large part of the samples is missing.
+QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options);
 
 // A note for each event camera whose ON and OFF events have different delays.
 std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options);

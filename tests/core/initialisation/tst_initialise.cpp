@@ -284,7 +284,7 @@ class TestInitialise : public QObject {
         [](auto& input) {
           for (ImuSample& sample : input.imus[0].samples) sample.angular_rate_rad_s = {0.02, 0.0, 0.0};
         },
-        "hardly moves");
+        "is at rest while left turns");
     row(
         "IMU an hour later",
         [](auto& input) {

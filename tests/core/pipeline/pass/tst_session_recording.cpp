@@ -55,6 +55,7 @@ class TestSessionRecording : public QObject {
   void twoFilesOfOneImu_areJoined();
   void twoImusOfOneTable_areRead();
   void clocksWithoutRelation_areRefused();
+  void clockInAnotherUnit_isNamed();
   void missingStream_namesFileAndStreams();
   void intrinsicsOfAnotherResolution_areRefused();
   void samplesThatAreNoMeasurements_stayOutside();
@@ -351,6 +352,21 @@ void TestSessionRecording::clocksWithoutRelation_areRefused() {
   std::size_t imu_sensor = 0;
   const Recording read = readSession(imu_sensor);
   QVERIFY(std::abs(read.imu_samples.front().time_ns - written_.imu_samples.front().time_ns) < 1000);
+}
+
+void TestSessionRecording::clockInAnotherUnit_isNamed() {
+  useTwoFiles();
+  Recording samples = written_;
+  samples.events.clear();
+  for (ImuSample& sample : samples.imu_samples)
+    sample.time_ns /= 1000;  // microseconds that are called nanoseconds
+  writeAll(*createBag(path("imu.bag"), sampleStreams(), false), samples);
+  try {
+    SessionRecording recording(session_);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains("1000 times too small: correct their unit"), error.what());
+  }
 }
 
 void TestSessionRecording::missingStream_namesFileAndStreams() {

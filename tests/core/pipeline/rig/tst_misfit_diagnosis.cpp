@@ -124,6 +124,10 @@ class TestCauses : public QObject {
     row("clock drift", 1e4, "clocks of left and left_imu differ by (0.9\\d|1) %.*left_imu.clock_scale: 0.99");
     row("clock drift", -5e3,
         "clocks of left and left_imu differ by 0.(4|5)\\d* %.*left_imu.clock_scale: 1.00[45]");
+    row("accelerometer late", 25,
+        "left_imu: the accelerometer's samples seem to be 2[3-7] ms later.*accelerometer_delay_sigma_s: 0.1");
+    row("gyroscope at rest", 1, "left_imu: the IMU is at rest while left turns.*files belong together");
+    row("rates clipped", 0.4, "left_imu: angular rate . is saturated in .*measuring range");
     row("distortion", -1, "left: the given lens differs.*distortion.*Remove intrinsics");
   }
   void wrongInput_isTheOnlyReason() {
@@ -263,6 +267,7 @@ class TestCauses : public QObject {
     row("gyroscope mirrored", 2, "imus.left_imu.gyroscope_axes=x,y,-z");
     row("gyroscope permuted", 1, "imus.left_imu.gyroscope_axes=z,x,y");
     row("gyroscope turned", 1, "optimisation.model.gyroscope_rotation=true");
+    row("accelerometer late", 25, "optimisation.priors.accelerometer_delay_sigma_s=0.1");
   }
   void repair_mendsIt() {
     QFETCH(QString, name);
