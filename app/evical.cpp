@@ -6,6 +6,7 @@
 #include "app/output.h"
 #include "app/version.h"
 #include "core/base/error.h"
+#include "core/base/process_memory.h"
 #include "core/recording/recording_server.h"
 
 #include <csignal>
@@ -93,6 +94,7 @@ int runOrFail(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace evical;
   beRecordingServer(argc, argv);
+  keepFreedMemory();
   holdStandardStreams();
   // Exceeding a file size limit is an error of write(), like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -2,6 +2,7 @@
 // The desktop program: builds the window and opens the given file.
 #include "app/manual_page.h"
 #include "app/version.h"
+#include "core/base/process_memory.h"
 #include "core/recording/recording_server.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"
@@ -12,10 +13,6 @@
 #include <QCommandLineParser>
 #include <QSettings>
 #include <QTextStream>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <algorithm>
 #include <clocale>
@@ -125,9 +122,7 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
 
 int main(int argc, char** argv) {
   evical::beRecordingServer(argc, argv);
-#ifdef __GLIBC__
-  mallopt(M_ARENA_MAX, 2);  // otherwise memory freed by a thread is not reused by others
-#endif
+  evical::keepFreedMemory();
   const bool without_display = doWithoutDisplay(argc, argv);
   std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: the exit codes of jobs are needed
   QApplication application(argc, argv);

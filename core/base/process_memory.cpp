@@ -15,6 +15,15 @@ double peakMemory_mb() {
   return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
 }
 
+void keepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kLargestBlock_bytes = 1 << 30, kKept_bytes = 1 << 29;
+  mallopt(M_ARENA_MAX, 2);  // otherwise memory freed by a thread is not reused by others
+  mallopt(M_MMAP_THRESHOLD, kLargestBlock_bytes);
+  mallopt(M_TRIM_THRESHOLD, kKept_bytes);
+#endif
+}
+
 void giveBackFreeMemory() {
 #ifdef __GLIBC__
   malloc_trim(0);

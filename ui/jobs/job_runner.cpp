@@ -3,14 +3,11 @@
 
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
+#include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/recording/separate_reader.h"
 
 #include <QMetaObject>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include <algorithm>
 #include <exception>
@@ -32,13 +29,6 @@ QString textOf(std::string_view text) {
 JobError internalError(const QString& what) {
   return {false, QObject::tr("internal error"), what,
           QObject::tr("Report this error, with the log and the session file")};
-}
-
-// The C library keeps a job's freed memory, which is more than all the rest, for the next job.
-void returnFreeMemory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
 }
 
 struct Ending {
@@ -206,7 +196,8 @@ void JobRunner::finish() {
   if (ending.error) emit failed(*ending.error);
   emit finished(ending.outcome);
   // After the end: it takes as long as a cancelled job may take in all.
-  if (!running_) thread_ = std::jthread(returnFreeMemory);
+  // A job's freed memory is more than all the rest, and is kept otherwise.
+  if (!running_) thread_ = std::jthread(giveBackFreeMemory);
 }
 
 }  // namespace evical::ui
