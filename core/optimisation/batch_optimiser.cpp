@@ -75,16 +75,27 @@ class Batch {
         fit_samples_(weights_.used_samples) {}
 
   BatchSolution run();
-  BatchSolution refine(std::vector<IterationRecord> before);
+  BatchSolution continueFrom(std::vector<IterationRecord> before);
+  BatchSolution refine();
+  BatchSolution tryOut();
 
  private:
   std::vector<ParameterStages> stages() const;
-  void solveStage(ParameterStages stage, int index, double tolerance);
+  void solveStage(ParameterStages stage, int index, const SolverLimits& limits);
+  SolverLimits loosely() const {
+    return {options_.max_iterations, 0.0, options_.stage_tolerance, options_.threads};
+  }
+  SolverLimits closely() const {
+    constexpr double kSameCost = 1e-9;
+    return {options_.max_iterations, options_.last_step_sigmas, kSameCost, options_.threads};
+  }
   void tellReleased(IterationReporter& reporter);
   void solveLastStage();
   void holdStillAxes();
   bool updateWeights();
+  bool updateWeights(const std::vector<CircleError>& errors);
   void updateSmoothness();
+  void takeSolution();
   BatchSolution finish();
   void reportFits();
   void reportNotes();
@@ -117,10 +128,9 @@ std::vector<ParameterStages> Batch::stages() const {
   return all;
 }
 
-void Batch::solveStage(ParameterStages stage, int index, double tolerance) {
+void Batch::solveStage(ParameterStages stage, int index, const SolverLimits& limits) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
   IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
-  const SolverLimits limits{options_.max_iterations, tolerance, options_.threads};
   solution_.converged = false;
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
@@ -154,7 +164,10 @@ void Batch::tellReleased(IterationReporter& reporter) {
 // Noise scales and outliers, both from all circles and samples; true if anything
 // changed enough to solve again.
 bool Batch::updateWeights() {
-  const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
+  return updateWeights(circleErrors(input_, problem_.state(), options_));
+}
+
+bool Batch::updateWeights(const std::vector<CircleError>& errors) {
   std::vector<double> circles;
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) circles.push_back(robustScale(errors, i));
   const std::vector<SampleErrors> imu_errors = imuErrors();
@@ -221,9 +234,14 @@ Batch::ImuFits Batch::imuFits(const std::vector<SampleErrors>& errors) const {
 
 BatchSolution Batch::run() {
   const std::vector<ParameterStages> all = stages();
-  updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
+  // By the initial errors: else most circles would start in the flat part of Huber's loss.
+  const std::vector<CircleError> initial = circleErrors(input_, problem_.state(), options_);
+  if (initial.empty())
+    throw calibrationFailed("optimisation", "no view of the board is within the trajectory's time range",
+                            "Check that camera and IMU recorded at the same time");
+  updateWeights(initial);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
+    solveStage(all[i], static_cast<int>(i), loosely());
     updateWeights();
     holdStillAxes();  // with noise scales that are those of a first solution
   }
@@ -241,19 +259,19 @@ void Batch::holdStillAxes() {
 // only the last solution converges.
 void Batch::solveLastStage() {
   const std::vector<ParameterStages> all = stages();
-  const auto solve = [&](double tolerance) {
-    solveStage(all.back(), static_cast<int>(all.size()), tolerance);
+  const auto solve = [&](const SolverLimits& limits) {
+    solveStage(all.back(), static_cast<int>(all.size()), limits);
   };
   constexpr int kMostReweightings = 3;
   bool changed = true;
   for (int i = 1; i < kMostReweightings && changed; ++i) {
-    solve(options_.stage_tolerance);
+    solve(loosely());
     changed = updateWeights();
   }
-  solve(options_.function_tolerance);
+  solve(closely());
 }
 
-BatchSolution Batch::refine(std::vector<IterationRecord> before) {
+BatchSolution Batch::continueFrom(std::vector<IterationRecord> before) {
   for (const IterationRecord& record : before)
     free_.insert(free_.end(), record.released.begin(), record.released.end());
   solution_.iterations = std::move(before);
@@ -263,11 +281,35 @@ BatchSolution Batch::refine(std::vector<IterationRecord> before) {
   return finish();
 }
 
-BatchSolution Batch::finish() {
+BatchSolution Batch::refine() {
+  updateWeights();
+  holdStillAxes();
+  solveStage(stages().back(), static_cast<int>(stages().size()), closely());
+  takeSolution();
+  return std::move(solution_);
+}
+
+BatchSolution Batch::tryOut() {
+  constexpr int kSolutions = 2;
+  updateWeights();
+  holdStillAxes();
+  for (int i = 0; i < kSolutions; ++i) {
+    solveStage(stages().back(), static_cast<int>(stages().size()), loosely());
+    updateWeights();
+  }
+  takeSolution();
+  return std::move(solution_);
+}
+
+void Batch::takeSolution() {
   solution_.state = problem_.state();
   solution_.scales = weights_.scales;
   solution_.used_circles = weights_.used_circles;
   solution_.used_samples = weights_.used_samples;
+}
+
+BatchSolution Batch::finish() {
+  takeSolution();
   reportFits();
   reportNotes();
   context_.progress.stageProgress(1.0);
@@ -288,7 +330,8 @@ void Batch::reportFits() {
   std::vector<std::vector<std::uint8_t>> view_used;
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
   std::vector<double> normalised2(input_.cameras.size());
-  for (const CircleError& error : circleErrors(input_, solution_.state, options_, &solution_.used_circles)) {
+  solution_.circle_errors = circleErrors(input_, solution_.state, options_, &solution_.used_circles);
+  for (const CircleError& error : solution_.circle_errors) {
     const bool used = solution_.used_circles[error.camera][error.view][error.index] != 0;
     CameraFit& fit = solution_.cameras[error.camera];
     ++(used ? fit.circles_used : fit.circles_rejected);
@@ -364,10 +407,6 @@ void assertComplete([[maybe_unused]] const CalibrationInput& input,
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, initial);
-  if (circleErrors(input, initial, options).empty()) {
-    throw calibrationFailed("optimisation", "no view of the board is within the trajectory's time range",
-                            "Check that camera and IMU recorded at the same time");
-  }
   return Batch(input, initial, options, context).run();
 }
 
@@ -375,13 +414,21 @@ BatchSolution continueBatch(const CalibrationInput& input, const CalibrationStat
                             std::vector<IterationRecord> before, const OptimisationOptions& options,
                             const RunContext& context) {
   assertComplete(input, solved);
-  return Batch(input, solved, options, context).refine(std::move(before));
+  return Batch(input, solved, options, context).continueFrom(std::move(before));
 }
 
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context) {
+  assertComplete(input, solved);
   const RunContext unobserved = context.unobserved();
-  return continueBatch(input, solved, {}, options, unobserved);
+  return Batch(input, solved, options, unobserved).refine();
+}
+
+BatchSolution tryBatch(const CalibrationInput& input, const CalibrationState& solved,
+                       const OptimisationOptions& options, const RunContext& context) {
+  assertComplete(input, solved);
+  const RunContext unobserved = context.unobserved();
+  return Batch(input, solved, options, unobserved).tryOut();
 }
 
 }  // namespace evical

@@ -7,6 +7,7 @@
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/weights.h"
 
@@ -25,6 +26,7 @@ struct BatchSolution {
   NoiseScales scales;
   CircleSelection used_circles;  // used in the last solve
   std::vector<SampleSelection> used_samples;
+  std::vector<CircleError> circle_errors;  // of all circles within the splines' range
 };
 
 // Input: a camera and an IMU, or two cameras, all with intrinsics. `initial` lists them all and gives the
@@ -39,9 +41,13 @@ BatchSolution continueBatch(const CalibrationInput& input, const CalibrationStat
                             std::vector<IterationRecord> before, const OptimisationOptions& options,
                             const RunContext& context);
 
-// Solves only the last stage, from a state that is already a solution for these or similar data. The stage
-// is not observed.
+// Solves only the last stage, unobserved, from a state that is already a solution for these or similar data. Its weights are
+// determined once, at that state, so the solution has no fits, notes or errors of circles.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context);
+
+// The same for a trial of other options: loosely solved, with scales at its solution, where residuals may be much smaller.
+BatchSolution tryBatch(const CalibrationInput& input, const CalibrationState& solved,
+                       const OptimisationOptions& options, const RunContext& context);
 
 }  // namespace evical

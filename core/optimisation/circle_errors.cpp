@@ -115,17 +115,25 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
     const std::size_t views = input.cameras[camera].observations.views.size();
     std::array<std::vector<CircleError>, kParts> parts;
     inParallel(options.threads, kParts, [&](std::size_t part) {
-      for (std::size_t view = part * views / kParts; view < (part + 1) * views / kParts; ++view)
+      const std::size_t begin = part * views / kParts, end = (part + 1) * views / kParts;
+      std::size_t circles = 0;
+      for (std::size_t view = begin; view < end; ++view)
+        circles += input.cameras[camera].observations.views[view].circles.size();
+      parts[part].reserve(circles);
+      for (std::size_t view = begin; view < end; ++view)
         appendView(input, state, options, model, camera, view, used, parts[part]);
     });
+    std::size_t count = errors.size();
+    for (const std::vector<CircleError>& part : parts) count += part.size();
+    errors.reserve(count);
     for (const std::vector<CircleError>& part : parts) errors.insert(errors.end(), part.begin(), part.end());
   }
   return errors;
 }
 
-std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,
-                                            const CircleSelection& used, const OptimisationOptions& options) {
-  const std::vector<CircleError> errors = circleErrors(input, state, options);
+std::vector<CircleResidual> circleResiduals(const CalibrationInput& input,
+                                            const std::vector<CircleError>& errors,
+                                            const CircleSelection& used) {
   std::vector<CircleResidual> residuals;
   residuals.reserve(errors.size());
   for (const CircleError& error : errors) {

@@ -34,8 +34,9 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                                       const CircleSelection* used = nullptr);
 
 // The same for files and displays, with the circles that were not used.
-std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,
-                                            const CircleSelection& used, const OptimisationOptions& options);
+std::vector<CircleResidual> circleResiduals(const CalibrationInput& input,
+                                            const std::vector<CircleError>& errors,
+                                            const CircleSelection& used);
 
 // Spread of a camera's errors in units of their sigmas, from the median, so that outliers
 // don't matter; 1 without circles.

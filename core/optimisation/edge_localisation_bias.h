@@ -33,6 +33,8 @@ inline EdgeLocalisationBias edgeBiasOf(const CameraState& camera) {
 inline EdgeLocalisationBiasEffect edgeBiasEffect(const CameraIntrinsics& camera,
                                                  const CircleObservation& circle,
                                                  double slow_edge_speed_px_s) {
+  if (circle.edge_localisation_bias_effect.isZero(0.0))
+    return {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   const Eigen::Matrix2d stretch = idealPixelScale(camera, circle.centre_px);
   const double speed_px_s = (stretch.inverse() * circle.velocity_px_s).norm();
   return {circle.edge_localisation_bias_effect,

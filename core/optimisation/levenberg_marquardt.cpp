@@ -126,12 +126,20 @@ Solver::Outcome Solver::step(SolverIteration& iteration) {
     return Outcome::Invalid;
   }
   numbers_.writeMoved(at_, *found);
+  // Without damping, the promise is half the step's squared length in sigmas. A short step keeps it.
+  const double enough =
+      std::max(0.5 * limits_.step_sigmas * limits_.step_sigmas, limits_.cost_change * equations_.cost);
   const Eigen::VectorXd moved = numbers_.read();
-  const double cost = costOf(columns_, limits_.threads, stop_), change = equations_.cost - cost;
   iteration.step_norm = (moved - at_).norm();
+  if (radius_ >= kFirstRadius && promised <= enough) {
+    iteration.cost = equations_.cost - promised;
+    return Outcome::Converged;
+  }
+  const double cost = costOf(columns_, limits_.threads, stop_), change = equations_.cost - cost;
   const bool still = iteration.step_norm <= kParameterTolerance * (at_.norm() + kParameterTolerance);
-  if (still || std::abs(change) <= limits_.function_tolerance * equations_.cost) {
-    numbers_.write(at_);
+  if (still || std::abs(change) <= limits_.cost_change * equations_.cost) {
+    iteration.cost = std::min(cost, equations_.cost);
+    if (!(change >= 0.0)) numbers_.write(at_);
     return Outcome::Converged;
   }
   if (const double quality = change / promised; quality > kLeastGain) {
@@ -163,7 +171,11 @@ SolverEnd Solver::run(const std::function<bool(const SolverIteration&)>& after) 
     iteration.step_norm = 0.0;
     const Outcome outcome = step(iteration);
     end.converged = outcome == Outcome::Converged;
-    if (end.converged) return end;
+    if (end.converged) {
+      end.last_cost = iteration.cost;
+      after(iteration);
+      return end;
+    }
     invalid_steps = outcome == Outcome::Invalid ? invalid_steps + 1 : 0;
     if (outcome == Outcome::Taken) iteration.gradient_max_norm = gradientMaxNorm();
     iteration.cost = equations_.cost;

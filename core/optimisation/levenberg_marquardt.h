@@ -20,9 +20,11 @@ struct SolverIteration {
   double step_norm = 0.0;
 };
 
+// It ends with a step of at most this length, or with a change of the cost of at most this share.
 struct SolverLimits {
   int most_iterations = 0;
-  double function_tolerance = 0.0;  // relative cost change at which it ends
+  double step_sigmas = 0.0;  // of all unknowns together, so that each is nearer to the optimum
+  double cost_change = 0.0;
   int threads = 1;
 };
 

@@ -1,5 +1,6 @@
 #include "core/optimisation/measurement_residuals.h"
 
+#include "core/base/in_parallel.h"
 #include "core/base/time.h"
 #include "core/geometry/pose_times.h"
 #include "core/optimisation/bias_knots.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -32,11 +34,17 @@ std::size_t countOfPart(const ProblemBuilder& builder, CameraKind kind,
   return static_cast<std::size_t>(beyond - circles.begin());
 }
 
-// Adds one cost function for these circles, in order of time.
-void addView(ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
-             const PixelErrors& pixel_errors, const BoardView& view, std::span<const TimedCircle> circles) {
-  ParameterBlocks& parameters = builder.parameters;
-  CalibrationState& state = parameters.moved();
+struct ViewPart {
+  double time_s;  // of its first circle
+  SegmentTimes segments;
+  std::unique_ptr<ViewCost> cost;
+};
+
+// One cost function for these circles, in order of time.
+ViewPart partOf(const ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
+                const PixelErrors& pixel_errors, const BoardView& view,
+                std::span<const TimedCircle> circles) {
+  const CalibrationState& state = builder.parameters.moved();
   std::vector<CircleMeasurement> measured;
   measured.reserve(circles.size());
   for (const TimedCircle& circle : circles) {
@@ -46,12 +54,25 @@ void addView(ProblemBuilder& builder, std::size_t camera, const CircleModel& mod
     measured.back().pixel_error_px = pixel_errors.at(observed);
   }
   const SegmentTimes segments = segmentsBetween(state, circles.front().time_s, circles.back().time_s);
-  std::vector<double*> blocks =
-      blocksOfView(state, segments, camera, parameters.sensorOf(camera), builder.input.cameras[camera].board);
-  if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
-  auto* cost = new ViewCost(model, segments, std::move(measured));
-  builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
-                               camera, circles.front().time_s, cost});
+  return {circles.front().time_s, segments, std::make_unique<ViewCost>(model, segments, std::move(measured))};
+}
+
+std::vector<ViewPart> partsOf(const ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
+                              const PixelErrors& pixel_errors, std::size_t view) {
+  const CalibrationState& state = builder.parameters.moved();
+  const BoardObservations& observations = builder.input.cameras[camera].observations;
+  std::vector<TimedCircle> circles = circlesWithin(state, state.cameras[camera], observations.views[view]);
+  std::erase_if(circles, [&](const TimedCircle& circle) {
+    return !builder.weights.used_circles[camera][view][circle.index];
+  });
+  std::ranges::stable_sort(circles, {}, &TimedCircle::time_s);
+  std::vector<ViewPart> parts;
+  for (std::span<const TimedCircle> rest = circles; !rest.empty();) {
+    const auto part = rest.first(countOfPart(builder, observations.kind, rest));
+    parts.push_back(partOf(builder, camera, model, pixel_errors, observations.views[view], part));
+    rest = rest.subspan(part.size());
+  }
+  return parts;
 }
 
 // Used samples of the run, with their times and values.
@@ -121,21 +142,27 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run, double sigm
 
 }  // namespace
 
+// Cost functions are made in parallel, and added in order.
 void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
                 const PixelErrors& pixel_errors) {
-  const CalibrationState& state = builder.parameters.moved();
-  const BoardObservations& observations = builder.input.cameras[camera].observations;
-  for (std::size_t k = 0; k < observations.views.size(); ++k) {
-    const BoardView& view = observations.views[k];
-    std::vector<TimedCircle> circles = circlesWithin(state, state.cameras[camera], view);
-    std::erase_if(circles, [&](const TimedCircle& circle) {
-      return !builder.weights.used_circles[camera][k][circle.index];
-    });
-    std::ranges::stable_sort(circles, {}, &TimedCircle::time_s);
-    for (std::span<const TimedCircle> rest = circles; !rest.empty();) {
-      const auto part = rest.first(countOfPart(builder, observations.kind, rest));
-      addView(builder, camera, model, pixel_errors, view, part);
-      rest = rest.subspan(part.size());
+  constexpr std::size_t kAtOnce = 64;  // views of a thread
+  const std::size_t views = builder.input.cameras[camera].observations.views.size();
+  std::vector<std::vector<ViewPart>> parts(views);
+  inParallel(builder.options.threads, (views + kAtOnce - 1) / kAtOnce, [&](std::size_t k) {
+    for (std::size_t view = k * kAtOnce; view < std::min(views, (k + 1) * kAtOnce); ++view)
+      parts[view] = partsOf(builder, camera, model, pixel_errors, view);
+  });
+  ParameterBlocks& parameters = builder.parameters;
+  CalibrationState& state = parameters.moved();
+  IntrinsicsBlock* const intrinsics = parameters.intrinsics(camera);
+  for (std::vector<ViewPart>& of_view : parts) {
+    for (ViewPart& part : of_view) {
+      std::vector<double*> blocks = blocksOfView(state, part.segments, camera, parameters.sensorOf(camera),
+                                                 builder.input.cameras[camera].board);
+      if (intrinsics != nullptr) blocks.push_back(intrinsics->data());
+      ViewCost* const cost = part.cost.release();
+      builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks),
+                                   SensorKind::Circles, camera, part.time_s, cost});
     }
   }
 }

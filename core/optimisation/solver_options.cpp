@@ -6,8 +6,9 @@ namespace evical {
 namespace {
 
 constexpr std::tuple kSolverFields{
-    Field{"function_tolerance", &SolverOptions::function_tolerance, 1e-6, within(1e-14, 1e-2), "",
-          "Relative cost change at which the last stage ends."},
+    Field{"last_step_sigmas", &SolverOptions::last_step_sigmas, 0.5, within(1e-6, 10.0), "sigmas",
+          "Length of the last stage's last step, over all unknowns. The optimum is more than ten times "
+          "nearer."},
     Field{"stage_tolerance", &SolverOptions::stage_tolerance, 1e-4, within(1e-14, 1e-1), "",
           "Relative cost change at which a stage before the last ends."},
     Field{"max_iterations", &SolverOptions::max_iterations, 30, within(1, 1000), "", "Iterations per solve.",

@@ -6,7 +6,7 @@
 namespace evical {
 
 struct SolverOptions {
-  double function_tolerance;
+  double last_step_sigmas;
   double stage_tolerance;
   int max_iterations;
   int max_rounds;

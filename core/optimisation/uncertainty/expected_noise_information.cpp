@@ -11,9 +11,9 @@ namespace evical {
 namespace {
 
 // Information of the quantities at the current splines.
-Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, const RunContext& context) {
+Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, const RunContext& context,
+                                NormalEquations& equations) {
   const Eigen::Index quantities = columns.quantitySize(), knots = columns.driftSize();
-  NormalEquations equations(columns);
   assemble(columns, threads, context.stop, equations);
   const Eigen::MatrixXd left = equations.matrix.schurComplement();
   if (knots == 0) return left;
@@ -39,10 +39,11 @@ Eigen::MatrixXd informationFromNoise(const UnknownColumns& columns, const BandCh
   shift.head(of_splines.size()) = of_splines;
   const UnknownNumbers numbers(columns);
   const Eigen::VectorXd solution = numbers.read();
+  NormalEquations equations(columns);
   numbers.writeMoved(solution, shift);
-  const Eigen::MatrixXd ahead = informationHere(columns, threads, context);
+  const Eigen::MatrixXd ahead = informationHere(columns, threads, context, equations);
   numbers.writeMoved(solution, -shift);
-  const Eigen::MatrixXd behind = informationHere(columns, threads, context);
+  const Eigen::MatrixXd behind = informationHere(columns, threads, context, equations);
   numbers.write(solution);
   return 0.5 * (ahead + behind) - total;
 }

@@ -286,7 +286,7 @@ class Calibration {
         }))
       return false;
     const std::vector<CircleResidual> residuals =
-        circleResiduals(input_, solution.state, solution.used_circles, options_);
+        circleResiduals(input_, solution.circle_errors, solution.used_circles);
     bool any = false;
     for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
       if (input_.boardOf(k).type != BoardType::AprilGrid) continue;
@@ -381,7 +381,7 @@ class Calibration {
       flagDoubtful(saturationIn(input_, options), result);
     }
     flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
-    result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
+    result.circle_residuals = circleResiduals(input_, solution.circle_errors, solution.used_circles);
     referToPass(result.circle_residuals);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);

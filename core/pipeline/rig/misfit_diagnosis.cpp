@@ -1,6 +1,7 @@
 #include "core/pipeline/rig/misfit_diagnosis.h"
 
 #include "core/base/error.h"
+#include "core/base/in_parallel.h"
 #include "core/data/board_bow.h"
 #include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
@@ -200,29 +201,37 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
   constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times the expected ones
   const double before = totalMisfit(solution);
   if (before < kWorthExplaining) return std::nullopt;
+  // Side by side, since little of a solution is parallel; long recordings one after the other, for less memory.
+  constexpr std::size_t kMany = 100'000;
+  const int at_once = solution.circle_errors.size() < kMany ? options.threads : 1;
+  std::array<std::optional<BatchSolution>, kTrials.size()> refits;
+  const RunContext quiet{silentProgress(), context.stop};
+  inParallel(at_once, kTrials.size(), [&](std::size_t k) {
+    if (!kTrials[k].isHeld(solution, options)) return;
+    OptimisationOptions freed = options;
+    kTrials[k].release(freed);
+    freed.threads = options.threads / at_once;
+    try {
+      refits[k] = tryBatch(input, solution.state, freed, quiet);
+    } catch (const CalibrationError&) {
+      return;  // a trial without a solution explains nothing
+    }
+  });
   double least = kExplains * before;
   std::optional<Cause> best;
-  const RunContext quiet{silentProgress(), context.stop};
-  for (const Trial& trial : kTrials) {
-    if (!trial.isHeld(solution, options)) continue;
-    OptimisationOptions freed = options;
-    trial.release(freed);
-    try {
-      const BatchSolution refit = refineBatch(input, solution.state, freed, quiet);
-      const double after = totalMisfit(refit);
-      if (after >= least) continue;
-      least = after;
-      const bool is_next =
-          trial.kind == CauseKind::GyroscopeTurned && options.gyroscope_rotation == Estimated::Auto;
-      best = Cause{
-          trial.kind,
-          fmt::format("{} (freeing this reduces residuals from {:.2g} to {:.2g} times the expected size){}",
-                      trial.words(input, refit), std::exp(before), std::exp(after),
-                      is_next ? "" : fmt::format("; {}", trial.advice)),
-          trial.repair, 1.0 - after / before};
-    } catch (const CalibrationError&) {
-      continue;  // a trial without a solution explains nothing
-    }
+  for (std::size_t k = 0; k < kTrials.size(); ++k) {
+    const Trial& trial = kTrials[k];
+    const double after = refits[k] ? totalMisfit(*refits[k]) : least;
+    if (after >= least) continue;
+    least = after;
+    const bool is_next =
+        trial.kind == CauseKind::GyroscopeTurned && options.gyroscope_rotation == Estimated::Auto;
+    best = Cause{
+        trial.kind,
+        fmt::format("{} (freeing this reduces residuals from {:.2g} to {:.2g} times the expected size){}",
+                    trial.words(input, *refits[k]), std::exp(before), std::exp(after),
+                    is_next ? "" : fmt::format("; {}", trial.advice)),
+        trial.repair, 1.0 - after / before};
   }
   return best;
 }

@@ -41,9 +41,9 @@ constexpr double kUntilState = 0.3, kUntilBatch = 0.7;
 // If the motion leaves directions unobservable, the first steps are not enough: large residuals make sigmas
 // several times too large.
 OptimisationOptions shortened(OptimisationOptions options) {
-  constexpr double kNear = 1e-5, kNearInStage = 1e-3;
+  constexpr double kNear_sigmas = 2.0, kNearInStage = 1e-3;
   options.stage_tolerance = std::max(options.stage_tolerance, kNearInStage);
-  options.function_tolerance = std::max(options.function_tolerance, kNear);
+  options.last_step_sigmas = std::max(options.last_step_sigmas, kNear_sigmas);
   options.threads = 1;  // runs in the background
   return options;
 }

@@ -141,7 +141,7 @@ class TestBatchOptimiser : public QObject {
     QCOMPARE(solution.cameras[0].windows_used,
              static_cast<int>(rig.input.cameras[0].observations.views.size()));
     QCOMPARE(
-        circleResiduals(rig.input, solution.state, solution.used_circles, OptimisationOptions{}).size(),
+        circleResiduals(rig.input, solution.circle_errors, solution.used_circles).size(),
         static_cast<std::size_t>(solution.cameras[0].circles_used + solution.cameras[0].circles_rejected));
     QVERIFY(!solution.iterations.empty());
     QCOMPARE(solution.iterations.front().cameras.size(), std::size_t{1});

@@ -85,7 +85,7 @@ Solved byCeres(CalibrationProblem& problem, const SolverLimits& limits) {
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // without additional threads
   options.max_num_iterations = limits.most_iterations;
-  options.function_tolerance = limits.function_tolerance;
+  options.function_tolerance = limits.cost_change;
   options.gradient_tolerance = options.parameter_tolerance = 1e-12;
   options.max_num_consecutive_invalid_steps = 20;
   options.initial_trust_region_radius = 1e12;
@@ -119,9 +119,14 @@ double differenceInSigmas(CalibrationProblem& a, CalibrationProblem& b) {
   const std::vector<Quantity> of_a = a.quantities(), of_b = b.quantities();
   for (std::size_t i = 0; i < of_a.size(); ++i) {
     const Eigen::Index first = columns.firstColumn()[i], size = columns.firstColumn()[i + 1] - first;
-    const double least = covariance.diagonal().segment(first, size).minCoeff();
-    for (int k = 0; k < a.problem().ParameterBlockSize(of_a[i].block); ++k)
-      largest = std::max(largest, std::abs(of_a[i].block[k] - of_b[i].block[k]) / std::sqrt(least));
+    std::vector<double> difference(static_cast<std::size_t>(size));
+    if (const ceres::Manifold* const manifold = a.problem().GetManifold(of_a[i].block))
+      manifold->Minus(of_a[i].block, of_b[i].block, difference.data());
+    else
+      std::transform(of_a[i].block, of_a[i].block + size, of_b[i].block, difference.begin(), std::minus<>());
+    for (Eigen::Index k = 0; k < size; ++k)
+      largest = std::max(largest, std::abs(difference[static_cast<std::size_t>(k)]) /
+                                      std::sqrt(covariance(first + k, first + k)));
   }
   return largest;
 }
@@ -143,7 +148,8 @@ class TestLevenbergMarquardt : public QObject {
     QTest::newRow("cameras alone") << static_cast<int>(Kind::CamerasAlone);
     QTest::newRow("priors") << static_cast<int>(Kind::Priors);
   }
-  // The path is the same, too: the end does not depend on the solver.
+  // The path is the same, too. Ceres does not take the last step, which is below its tolerance in cost, but may be a sigma of
+  // a quantity that is hardly determined.
   void optimum_isThatOfCeres() {
     QFETCH(int, kind);
     const Case test = caseOf(static_cast<Kind>(kind));
@@ -152,16 +158,15 @@ class TestLevenbergMarquardt : public QObject {
     ours.build(lastStage(test.options), givenWeights(test.rig.input));
     ceres.build(lastStage(test.options), givenWeights(test.rig.input));
     QVERIFY(!ours.quantities().empty());
-    const SolverLimits limits{30, 1e-6, 2};
-    const Solved a = byOurs(ours, limits), b = byCeres(ceres, limits);
+    const Solved a = byOurs(ours, {30, OptimisationOptions{}.last_step_sigmas, 1e-9, 2}),
+                 b = byCeres(ceres, {100, 0.0, 1e-15, 2});
     QVERIFY(a.converged && b.converged);
-    QCOMPARE(a.costs.size(), b.costs.size());
-    QVERIFY(a.costs.size() > 2);
-    for (std::size_t i = 0; i < a.costs.size(); ++i)
-      QVERIFY2(std::abs(a.costs[i] / b.costs[i] - 1.0) < 1e-9, qPrintable(QString::number(i)));
-    // Rounding, if the delays of two IMUs are hardly separable; else 1e-8.
+    QVERIFY(a.costs.size() > 2 && a.costs.size() <= b.costs.size());
+    for (std::size_t i = 0; i < a.costs.size(); ++i)  // the last one is promised
+      QVERIFY2(std::abs(a.costs[i] / b.costs[i] - 1.0) < (i + 1 < a.costs.size() ? 1e-9 : 1e-6),
+               qPrintable(QString::number(i)));
     const double sigmas = differenceInSigmas(ours, ceres);
-    QVERIFY2(sigmas < 1e-6, qPrintable(QString("%1 sigmas apart").arg(sigmas)));
+    QVERIFY2(sigmas < 1e-2, qPrintable(QString("%1 sigmas apart").arg(sigmas)));
   }
 
   // If the optimum is beyond a bound, the bounded parameter ends at the bound, and all others at the optimum
@@ -181,7 +186,7 @@ class TestLevenbergMarquardt : public QObject {
       const Solved solved = by(problem);
       return std::pair{solved, lens[kFirstDistortion]};
     };
-    const SolverLimits limits{60, 1e-12, 1};
+    const SolverLimits limits{60, 0.0, 1e-12, 1};
     const auto [ours, at] = solve([&](CalibrationProblem& problem) { return byOurs(problem, limits); });
     const auto [ceres, at_by_ceres] =
         solve([&](CalibrationProblem& problem) { return byCeres(problem, limits); });
@@ -200,7 +205,7 @@ class TestLevenbergMarquardt : public QObject {
     for (const int threads : {1, 2, 3}) {
       CalibrationProblem problem(test.rig.input, test.options, test.start);
       problem.build(lastStage(test.options), givenWeights(test.rig.input));
-      costs.push_back(byOurs(problem, {30, 1e-10, threads}).costs);
+      costs.push_back(byOurs(problem, {30, 0.0, 1e-10, threads}).costs);
     }
     QVERIFY(costs[0] == costs[1] && costs[0] == costs[2]);
   }
@@ -212,7 +217,7 @@ class TestLevenbergMarquardt : public QObject {
     std::stop_source stop;
     SolverMemory memory;
     int iterations = 0;
-    QVERIFY_THROWS_EXCEPTION(Cancelled, solveNormalEquations(problem, {30, 1e-10, 2}, stop.get_token(),
+    QVERIFY_THROWS_EXCEPTION(Cancelled, solveNormalEquations(problem, {30, 0.0, 1e-10, 2}, stop.get_token(),
                                                              memory, [&](const SolverIteration&) {
                                                                stop.request_stop();
                                                                ++iterations;
@@ -227,7 +232,7 @@ class TestLevenbergMarquardt : public QObject {
     problem.build(lastStage(test.options), givenWeights(test.rig.input));
     SolverMemory memory;
     int iterations = 0;
-    const SolverEnd end = solveNormalEquations(problem, {30, 1e-10, 1}, {}, memory,
+    const SolverEnd end = solveNormalEquations(problem, {30, 0.0, 1e-10, 1}, {}, memory,
                                                [&](const SolverIteration&) { return ++iterations < 2; });
     QCOMPARE(iterations, 2);
     QVERIFY(!end.converged && end.failure.empty() && end.last_cost < end.first_cost);
