@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <cstddef>
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -26,7 +28,8 @@ void keepFreedMemory() {
 
 void giveBackFreeMemory() {
 #ifdef __GLIBC__
-  malloc_trim(0);
+  constexpr std::size_t kWorthIt_bytes = 1 << 26;
+  if (mallinfo2().fordblks > kWorthIt_bytes) malloc_trim(0);  // interrupts the other processors for each block
 #endif
 }
 
