@@ -181,8 +181,8 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
         {name, FaultKind::Unit, 0.0,
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
                      in_g                           ? ": the file has it in g"
-                     : norm < kStandardGravity_m_s2 ? "; is gravity removed, or the unit different?"
-                     : !raw                         ? "; is the unit different?"
+                     : norm < kStandardGravity_m_s2 ? ": gravity is removed, or the unit is another"
+                     : !raw                         ? ": its unit is probably another"
                             : fmt::format("; are these raw counts? Give the size of a count "
                                           "as acceleration_unit; {:.3g} g would give gravity",
                                           1.0 / norm))});

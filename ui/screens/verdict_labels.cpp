@@ -4,6 +4,7 @@
 #include "ui/forms/form_words.h"
 
 #include <QObject>
+#include <QRegularExpression>
 
 #include <algorithm>
 #include <utility>
@@ -61,7 +62,8 @@ QString titleOf(AssessedThing thing) {
 
 QString sentence(QString text) {
   text = inFormWords(std::move(text));
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
+  static const QRegularExpression name("^[^ ]+: ");  // of a sensor or a key, which is not changed
+  if (!text.isEmpty() && !text.contains(name)) text[0] = text[0].toUpper();
   if (!text.isEmpty() && !text.endsWith('.') && !text.endsWith('?')) text += '.';
   return text;
 }

@@ -10,6 +10,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLocale>
+#include <QRegularExpression>
 
 #include <algorithm>
 
@@ -88,6 +89,12 @@ QTableWidgetItem* readOnlyItem(const QString& shown) {
   return item;
 }
 
+// A text in which lines do not break within the coordinates of a pixel.
+QString withWholePixels(QString text) {
+  static const QRegularExpression pixel("\\((\\d+), (\\d+)\\)");
+  return text.replace(pixel, QString("(\\1,%1\\2)").arg(QChar(QChar::Nbsp)));
+}
+
 }  // namespace
 
 StreamTable::StreamTable(QWidget* parent) : QTableWidget(0, kStreamColumns, parent) {
@@ -154,7 +161,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
 void StreamTable::addFaults(int row, const StreamSummary& stream, const std::vector<RecordingFault>& faults) {
   QStringList own;
   for (const RecordingFault& fault : faults)
-    if (fault.stream == stream.info.name) own << fromCore(fault.text);
+    if (fault.stream == stream.info.name) own << withWholePixels(fromCore(fault.text));
   const QString note = fromCore(stream.note);
   const QString none = stream.count == 0 ? QString() : note.isEmpty() ? tr("none found") : note;
   setItem(row, kFaults,

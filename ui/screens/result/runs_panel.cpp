@@ -49,7 +49,7 @@ QString differencesText(const RunSummary* before, const RunSummary& run) {
   QStringList texts;
   for (const std::string& text : differingFrom(*before, run)) texts << QString::fromStdString(text);
   if (run.rejected_windows != before->rejected_windows) texts.prepend(QObject::tr("event windows rejected"));
-  return texts.isEmpty() ? QObject::tr("no option") : texts.join(", ");
+  return texts.isEmpty() ? QObject::tr("none") : texts.join(", ");
 }
 
 }  // namespace
