@@ -6,7 +6,6 @@
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/levenberg_marquardt.h"
-#include "core/optimisation/parameter_stage_names.h"
 #include "core/optimisation/sample_errors.h"
 #include "core/optimisation/trajectory_smoothness.h"
 
@@ -15,6 +14,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 namespace evical {
@@ -25,6 +25,46 @@ namespace {
 constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales, so that a sensor with another fault neither dominates nor loses all weight.
 constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
+
+// Name for people.
+std::string wordsOf(const QuantityInfo& info) {
+  std::string_view title = info.title;
+  if (info.shape == QuantityShape::UpperTriangle) return std::string(title) + " scale and misalignment";
+  constexpr std::string_view kAsNumbers = " vector";
+  if (title.ends_with(kAsNumbers)) title.remove_suffix(kAsNumbers.size());
+  switch (info.owner) {
+    case QuantityOwner::Camera:
+      return "camera " + std::string(title);
+    case QuantityOwner::Imu:
+      // The title without the name of one of the two sensors.
+      if (title.starts_with("gyroscope") || title.starts_with("accelerometer")) return std::string(title);
+      return "IMU " + std::string(title);
+    case QuantityOwner::Board:
+      return "board " + std::string(title);
+    case QuantityOwner::Rig:
+      break;
+  }
+  return std::string(title);
+}
+
+// Names of free quantities, in the order of their table: "camera time offset", once for all cameras.
+std::vector<std::string> quantityWords(const std::vector<Quantity>& quantities) {
+  std::vector<std::string> words;
+  for (const Quantity& quantity : quantities) {
+    std::string word = wordsOf(*quantity.info);
+    if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(std::move(word));
+  }
+  return words;
+}
+
+// Names of `now` that are not among the earlier ones.
+std::vector<std::string> releasedWords(const std::vector<std::string>& now,
+                                       const std::vector<std::string>& before) {
+  std::vector<std::string> released;
+  for (const std::string& word : now)
+    if (std::find(before.begin(), before.end(), word) == before.end()) released.push_back(word);
+  return released;
+}
 
 class IterationReporter {
  public:
@@ -63,6 +103,14 @@ class IterationReporter {
   std::vector<std::string> released_;
 };
 
+SolverLimits loosely(const SolverOptions& options) {
+  return {options.max_iterations, 0.0, options.stage_tolerance, options.threads};
+}
+SolverLimits closely(const SolverOptions& options) {
+  constexpr double kSameCost = 1e-9;
+  return {options.max_iterations, options.last_step_sigmas, kSameCost, options.threads};
+}
+
 class Batch {
  public:
   Batch(const CalibrationInput& input, const CalibrationState& initial, const OptimisationOptions& options,
@@ -76,19 +124,11 @@ class Batch {
 
   BatchSolution run();
   BatchSolution continueFrom(std::vector<IterationRecord> before);
-  BatchSolution refine();
-  BatchSolution tryOut();
+  BatchSolution refine(int solutions, const SolverLimits& limits);
 
  private:
   std::vector<ParameterStages> stages() const;
   void solveStage(ParameterStages stage, int index, const SolverLimits& limits);
-  SolverLimits loosely() const {
-    return {options_.max_iterations, 0.0, options_.stage_tolerance, options_.threads};
-  }
-  SolverLimits closely() const {
-    constexpr double kSameCost = 1e-9;
-    return {options_.max_iterations, options_.last_step_sigmas, kSameCost, options_.threads};
-  }
   void tellReleased(IterationReporter& reporter);
   void solveLastStage();
   void holdStillAxes();
@@ -241,7 +281,7 @@ BatchSolution Batch::run() {
                             "Check that camera and IMU recorded at the same time");
   updateWeights(initial);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    solveStage(all[i], static_cast<int>(i), loosely());
+    solveStage(all[i], static_cast<int>(i), loosely(options_));
     updateWeights();
     holdStillAxes();  // with noise scales that are those of a first solution
   }
@@ -265,10 +305,10 @@ void Batch::solveLastStage() {
   constexpr int kMostReweightings = 3;
   bool changed = true;
   for (int i = 1; i < kMostReweightings && changed; ++i) {
-    solve(loosely());
+    solve(loosely(options_));
     changed = updateWeights();
   }
-  solve(closely());
+  solve(closely(options_));
 }
 
 BatchSolution Batch::continueFrom(std::vector<IterationRecord> before) {
@@ -281,21 +321,13 @@ BatchSolution Batch::continueFrom(std::vector<IterationRecord> before) {
   return finish();
 }
 
-BatchSolution Batch::refine() {
+// Weights by the residuals before each solution, and after several.
+BatchSolution Batch::refine(int solutions, const SolverLimits& limits) {
   updateWeights();
   holdStillAxes();
-  solveStage(stages().back(), static_cast<int>(stages().size()), closely());
-  takeSolution();
-  return std::move(solution_);
-}
-
-BatchSolution Batch::tryOut() {
-  constexpr int kSolutions = 2;
-  updateWeights();
-  holdStillAxes();
-  for (int i = 0; i < kSolutions; ++i) {
-    solveStage(stages().back(), static_cast<int>(stages().size()), loosely());
-    updateWeights();
+  for (int i = 0; i < solutions; ++i) {
+    solveStage(stages().back(), static_cast<int>(stages().size()), limits);
+    if (solutions > 1) updateWeights();
   }
   takeSolution();
   return std::move(solution_);
@@ -421,14 +453,14 @@ BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState&
                           const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, solved);
   const RunContext unobserved = context.unobserved();
-  return Batch(input, solved, options, unobserved).refine();
+  return Batch(input, solved, options, unobserved).refine(1, closely(options));
 }
 
 BatchSolution tryBatch(const CalibrationInput& input, const CalibrationState& solved,
                        const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, solved);
   const RunContext unobserved = context.unobserved();
-  return Batch(input, solved, options, unobserved).tryOut();
+  return Batch(input, solved, options, unobserved).refine(2, loosely(options));
 }
 
 }  // namespace evical

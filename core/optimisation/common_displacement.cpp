@@ -1,6 +1,6 @@
 #include "core/optimisation/common_displacement.h"
 
-#include "core/optimisation/model_options.h"
+#include "core/optimisation/optimisation_options.h"
 
 #include <Eigen/Eigenvalues>
 

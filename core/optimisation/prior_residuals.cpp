@@ -3,7 +3,7 @@
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/prior_cost.h"
-#include "core/optimisation/smoothness_cost.h"
+#include "core/optimisation/trajectory_smoothness.h"
 #include "core/optimisation/weak_priors.h"
 
 #include <algorithm>

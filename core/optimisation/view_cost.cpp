@@ -311,6 +311,7 @@ ViewCost::ViewCost(const CircleModel& model, const SegmentTimes& segments,
   sizes.insert(sizes.end(), kBlockSizes.begin(), kBlockSizes.end() - (model.free_intrinsics ? 0 : 1));
   set_num_residuals(2 * static_cast<int>(circles_.size()));
   if (!model.free_intrinsics) return;
+  seen_.reserve(circles_.size());
   for (const CircleMeasurement& circle : circles_)
     seen_.push_back(seenCentre(model.camera, circle.centre_px));
 }

@@ -1,21 +1,65 @@
 #include "core/optimisation/uncertainty/covariance.h"
 
+#include "core/data/quantity.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/change_test.h"
-#include "core/optimisation/uncertainty/drift_uncertainty.h"
 #include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/observability.h"
 #include "core/optimisation/uncertainty/projected_information.h"
+#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/optimisation/uncertainty/scale_check.h"
 #include "core/optimisation/uncertainty/score_test.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
-#include "core/optimisation/uncertainty/uncertainty_report.h"
 
 namespace evical {
 namespace {
+
+// A covariance in the format of results: addresses, standard deviations and correlation of all numbers, and each quantity's
+// own sigmas.
+UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovariance& quantities) {
+  UncertaintyReport report;
+  report.cameras.resize(input.cameras.size());
+  report.imus.resize(input.imus.size());
+  report.further_boards.resize(input.further_boards.size());
+  report.standard_deviations = quantities.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(1e-300).cwiseInverse();
+  report.correlation = inverse.asDiagonal() * quantities.covariance * inverse.asDiagonal();
+  report.correlation.diagonal().setOnes();
+  for (std::size_t i = 0; i < quantities.quantities.size(); ++i) {
+    QuantityAddress number = quantities.quantities[i].address();
+    if (number.id == QuantityId::Intrinsics)
+      number.model = input.cameras[number.sensor].lens.detection_intrinsics->model;
+    // Unused numbers of intrinsics and gravity, without a column, come last.
+    for (Eigen::Index k = quantities.first_column[i]; k < quantities.first_column[i + 1];
+         ++k, ++number.component)
+      report.columns.push_back(number);
+  }
+  setSigmas(report);
+  return report;
+}
+
+// Fills the drifts' sigmas of the report's IMUs. `covariance`: of the information's quantities, in their tangent spaces, the
+// biases' means among them.
+void reportDrift(const ProjectedInformation& information, const std::vector<Quantity>& drift_blocks,
+                 const Eigen::MatrixXd& covariance, UncertaintyReport& report) {
+  for (std::size_t k = 0; k < drift_blocks.size(); ++k) {
+    const Quantity& knot = drift_blocks[k];
+    const auto row = static_cast<Eigen::Index>(3 * k);
+    const auto mean = columnOf(knot.address(), information.quantities, information.first_column);
+    if (!mean) continue;
+    Eigen::MatrixXd by_quantities = -information.drift_by_quantities.middleRows<3>(row);
+    by_quantities.middleCols<3>(*mean) += Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d variance = information.drift_covariance.diagonal().segment<3>(row) +
+                                     (by_quantities * covariance * by_quantities.transpose()).diagonal();
+    ImuUncertainty& imu = report.imus[knot.sensor];
+    const bool gyroscope = knot.info->id == QuantityId::GyroscopeBias;
+    (gyroscope ? imu.gyroscope_drift_std_rad_s : imu.accelerometer_drift_std_m_s2)
+        .push_back(variance.cwiseMax(0.0).cwiseSqrt());
+  }
+}
 
 ProjectedInformation projected(CalibrationProblem& problem, const CalibrationInput& input,
                                const BatchSolution& solution, const OptimisationOptions& options,

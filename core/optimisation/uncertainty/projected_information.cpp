@@ -1,27 +1,77 @@
 #include "core/optimisation/uncertainty/projected_information.h"
 
 #include "core/base/in_parallel.h"
+#include "core/numerics/band_cholesky.h"
 #include "core/optimisation/block_jacobian.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/normal_equations.h"
-#include "core/optimisation/uncertainty/expected_noise_information.h"
-#include "core/optimisation/uncertainty/spline_elimination.h"
 #include "core/optimisation/unknown_columns.h"
 
 #include <ceres/cost_function.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <random>
 #include <tuple>
 #include <utility>
 
 namespace evical {
 namespace {
 
-using RowMajorMatrix = SplineElimination::RowMajorMatrix;
+using RowMajorMatrix = BandCholesky::RowMajorMatrix;
+
+// Elimination of the splines, and of drifting biases' knots, from the batch's normal equations: the information on the
+// quantities if all else is free to follow.
+class SplineElimination {
+ public:
+  // `equations`: with the same columns.
+  SplineElimination(const UnknownColumns& columns, NormalEquations equations);
+
+  Eigen::Index quantities() const { return eliminated_.cols(); }
+  // Derivatives of a control point, or a knot, by the quantities. P is J_q + J_x followers of x + J_k
+  // followers of k.
+  auto ofSpline(Eigen::Index column) const { return -eliminated_.row(column); }
+  auto ofKnot(Eigen::Index column) const { return -drift_by_quantities_.row(column); }
+
+  const BandCholesky& splines() const { return splines_; }  // factored
+  // Negative derivatives of knots by quantities, and the knots' covariance if known.
+  const Eigen::MatrixXd& driftByQuantities() const { return drift_by_quantities_; }
+  const Eigen::MatrixXd& driftCovariance() const { return drift_covariance_; }
+
+ private:
+  void eliminateDrift(Eigen::Index quantities, const Eigen::MatrixXd& corner,
+                      const RowMajorMatrix& knots_with_splines);
+
+  BandCholesky splines_;
+  RowMajorMatrix eliminated_;  // (J_x^T J_x)^-1 J_x^T J_q, with knots following
+  Eigen::MatrixXd drift_by_quantities_, drift_covariance_;
+};
+
+SplineElimination::SplineElimination(const UnknownColumns& columns, NormalEquations equations)
+    : splines_(std::move(equations.matrix.band())), eliminated_(std::move(equations.matrix.mixed())) {
+  splines_.factorise();
+  const RowMajorMatrix knots = eliminated_.rightCols(columns.driftSize());
+  splines_.solveInPlace(eliminated_);
+  if (columns.driftSize() > 0) eliminateDrift(columns.quantitySize(), equations.matrix.corner(), knots);
+}
+
+void SplineElimination::eliminateDrift(Eigen::Index quantities, const Eigen::MatrixXd& corner,
+                                       const RowMajorMatrix& knots_with_splines) {
+  const Eigen::Index knots = knots_with_splines.cols();
+  Eigen::MatrixXd schur = corner.bottomRows(knots);
+  schur.rightCols(knots).triangularView<Eigen::StrictlyUpper>() = schur.rightCols(knots).transpose();
+  schur.noalias() -= knots_with_splines.transpose() * eliminated_;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(schur.rightCols(knots));
+  drift_covariance_ = solver.solve(Eigen::MatrixXd::Identity(knots, knots));
+  drift_by_quantities_ = solver.solve(schur.leftCols(quantities));
+  RowMajorMatrix kept = eliminated_.leftCols(quantities);
+  kept.noalias() -= eliminated_.rightCols(knots) * drift_by_quantities_;
+  eliminated_ = std::move(kept);
+}
 
 // Kinds of measurements without their sums, and the kind of each residual block.
 struct Groups {
@@ -109,6 +159,45 @@ void Sums::add(Sums&& other) {
     clusters.at(cluster) += theirs;  // clusters that both have
   for (std::size_t i = 0; i < other.pixel_errors.size(); ++i) addTo(pixel_errors, i, other.pixel_errors[i]);
   signed_rows.middleRows(other.first_row - first_row, other.signed_rows.rows()) += other.signed_rows;
+}
+
+// Information of the quantities at the current splines.
+Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, const RunContext& context,
+                                NormalEquations& equations) {
+  const Eigen::Index quantities = columns.quantitySize(), knots = columns.driftSize();
+  assemble(columns, threads, context.stop, equations);
+  const Eigen::MatrixXd left = equations.matrix.schurComplement();
+  if (knots == 0) return left;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(left.bottomRightCorner(knots, knots));
+  Eigen::MatrixXd of_quantities = left.topLeftCorner(quantities, quantities);
+  of_quantities.triangularView<Eigen::Lower>() -=
+      left.topRightCorner(quantities, knots) * solver.solve(left.bottomLeftCorner(knots, quantities));
+  return of_quantities.selfadjointView<Eigen::Lower>();
+}
+
+// Contribution of the splines' own errors to the information of the quantities: the mean, by simulation and extrapolation
+// (J. Cook, L. Stefanski, JASA 1994). Further errors of the size that the splines already have add the same contribution again.
+// `splines`: their factored information; `total`: that of the quantities at the solution's splines. Both signs, so that linear
+// terms cancel.
+Eigen::MatrixXd informationFromNoise(const UnknownColumns& columns, const BandCholesky& splines,
+                                     const Eigen::MatrixXd& total, int threads, const RunContext& context) {
+  constexpr std::uint64_t kSeed = 20260102;  // arbitrary
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd of_splines(columns.splineSize());
+  for (double& each : of_splines) each = normal(random);
+  splines.correlateInPlace(of_splines);
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(columns.size());
+  shift.head(of_splines.size()) = of_splines;
+  const UnknownNumbers numbers(columns);
+  const Eigen::VectorXd solution = numbers.read();
+  NormalEquations equations(columns);
+  numbers.writeMoved(solution, shift);
+  const Eigen::MatrixXd ahead = informationHere(columns, threads, context, equations);
+  numbers.writeMoved(solution, -shift);
+  const Eigen::MatrixXd behind = informationHere(columns, threads, context, equations);
+  numbers.write(solution);
+  return 0.5 * (ahead + behind) - total;
 }
 
 class Projection {

@@ -7,7 +7,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/verdict_options.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/report/truth_comparison.h"
 
 #include <fmt/format.h>

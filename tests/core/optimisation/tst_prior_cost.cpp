@@ -1,7 +1,7 @@
 // Residuals and derivatives of priors, fixed axes and smoothness at known states.
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/prior_cost.h"
-#include "core/optimisation/smoothness_cost.h"
+#include "core/optimisation/trajectory_smoothness.h"
 #include "tests/core/optimisation/residual_states.h"
 #include "tests/support/test_program.h"
 
