@@ -29,7 +29,8 @@ void keepFreedMemory() {
 void giveBackFreeMemory() {
 #ifdef __GLIBC__
   constexpr std::size_t kWorthIt_bytes = 1 << 26;
-  if (mallinfo2().fordblks > kWorthIt_bytes) malloc_trim(0);  // interrupts the other processors for each block
+  if (mallinfo2().fordblks > kWorthIt_bytes)
+    malloc_trim(0);  // interrupts the other processors for each block
 #endif
 }
 

@@ -101,7 +101,7 @@ CalibrationDocument::~CalibrationDocument() {
 
 QString CalibrationDocument::title() const {
   if (!file_.isEmpty()) {
-    const QFileInfo file(file_);  // most sessions are called session.yaml: their folder tells them apart
+    const QFileInfo file(file_);  // most are called session.yaml, so the folder is shown, too
     return file.absoluteDir().dirName() + '/' + file.fileName();
   }
   if (!hasSession()) return {};
