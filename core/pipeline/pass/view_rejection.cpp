@@ -20,9 +20,7 @@ bool earlier(const BoardView& a, const BoardView& b) {
 
 // Updates the report of a view's window, which has the same centre time.
 void reportAs(WindowOutcome outcome, double time_s, std::vector<WindowReport>& windows) {
-  const auto window =
-      std::lower_bound(windows.begin(), windows.end(), time_s,
-                       [](const WindowReport& each, double at_s) { return each.time_s < at_s; });
+  const auto window = std::ranges::lower_bound(windows, time_s, {}, &WindowReport::time_s);
   if (window != windows.end() && window->time_s == time_s) window->outcome = outcome;
 }
 
@@ -34,11 +32,13 @@ bool hasBoard(const WindowReport& window) {
 // The window with the board that contains this time; null: none. Frames without exposure have no width, and people round.
 const WindowReport* windowWithBoardAt(double time_s, const BoardObservations& camera) {
   constexpr double kRounding_s = 1e-3;
-  const WindowReport* nearest = nullptr;
-  for (const WindowReport& window : camera.windows)
-    if (hasBoard(window) &&
-        (nearest == nullptr || std::abs(window.time_s - time_s) < std::abs(nearest->time_s - time_s)))
-      nearest = &window;
+  const auto from = std::ranges::lower_bound(camera.windows, time_s, {}, &WindowReport::time_s);
+  const auto later = std::find_if(from, camera.windows.end(), hasBoard);
+  const auto before = std::find_if(std::make_reverse_iterator(from), camera.windows.rend(), hasBoard);
+  const WindowReport* nearest = later == camera.windows.end() ? nullptr : &*later;
+  if (before != camera.windows.rend() &&
+      (nearest == nullptr || time_s - before->time_s <= nearest->time_s - time_s))
+    nearest = &*before;
   if (nearest == nullptr) return nullptr;
   const double reach_s = std::max(kRounding_s, nearest->half_width_s);
   return std::abs(nearest->time_s - time_s) <= reach_s ? nearest : nullptr;
