@@ -46,8 +46,6 @@ struct UnfitSamples {
 // Expects only measurable samples.
 UnfitSamples findUnfitSamples(std::span<const ImuSample> samples);
 
-// Share of samples at a limit from which the rest is not enough.
-inline constexpr double kHeavySaturation = 0.2;
 // Shares of each axis' samples at its limit.
 std::array<double, kImuAxes.size()> saturatedShares(std::span<const ImuSample> samples);
 

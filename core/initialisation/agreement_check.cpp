@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -38,6 +39,17 @@ void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& t
   throw calibrationFailed(
       imu, batches->text(),
       "Configure the driver to stamp each sample, or distribute the stamps of a batch over its duration");
+}
+
+// Words for a gyroscope that is at its limit for a large part of the samples; empty if none is.
+std::string rateLimitOf(const ImuData& imu, double least_share) {
+  const std::array<double, kImuAxes.size()> shares = saturatedShares(imu.samples);
+  std::size_t worst = 0;
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis)
+    if (kImuAxes[axis].rate && shares[axis] > shares[worst]) worst = axis;
+  if (shares[worst] < least_share) return {};
+  return fmt::format("{} is at its limit in {:.0f} % of the samples", kImuAxes[worst].name,
+                     100.0 * shares[worst]);
 }
 
 }  // namespace
@@ -72,21 +84,6 @@ void checkAxesAlive(const ImuData& imu) {
       "Check the IMU and its driver");
 }
 
-namespace {
-
-// Words for a gyroscope that is at its limit for a large part of the samples; empty if none is.
-std::string rateLimitOf(const ImuData& imu) {
-  const std::array<double, kImuAxes.size()> shares = saturatedShares(imu.samples);
-  std::size_t worst = 0;
-  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis)
-    if (kImuAxes[axis].rate && shares[axis] > shares[worst]) worst = axis;
-  if (shares[worst] < kHeavySaturation) return {};
-  return fmt::format("{} is at its limit in {:.0f} % of the samples", kImuAxes[worst].name,
-                     100.0 * shares[worst]);
-}
-
-}  // namespace
-
 void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,
                          const InitialisationOptions& options, const RunContext& context) {
   const RotationAgreement& rotation = agreement.rotation;
@@ -114,9 +111,8 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
         cause ? cause->advice : "Change the sign of one axis, or swap two axes, in the recording software")
         .repairedBy(cause ? cause->repair : std::nullopt);
   }
-  constexpr double kSameMotion = 0.4;  // correlation of rates; that of two recordings is near 0
-  if (const std::string limit = rateLimitOf(input.imus[input.reference_imu]);
-      !limit.empty() && agreement.correlation > kSameMotion)
+  if (const std::string limit = rateLimitOf(input.imus[input.reference_imu], options.heavy_saturation_share);
+      !limit.empty() && agreement.correlation > options.same_motion_correlation)
     throw calibrationFailed(
         imu,
         limit + fmt::format(": {:.0f} % of its rotation is not visible in the images of {}",

@@ -5,10 +5,14 @@
 #include "core/base/number.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/knot_spacing.h"
+#include "core/initialisation/time_offset.h"
+#include "core/numerics/robust.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace evical {
 
@@ -45,6 +49,27 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
     throw calibrationFailed(imu.name, "has only " + counted(usable, "usable sample"),
                             "Check the IMU's stream, and record for 30 s");
   }
+}
+
+void checkTurnsWithCamera(const CalibrationInput& input, const ImuData& imu, const GyroRotation& gyro,
+                          const InitialisationOptions& options, const RunContext& context) {
+  const double imu_rad_s = gyro.rateRms_rad_s();
+  if (imu_rad_s >= options.least_rotation_rate_rad_s) return;
+  const CameraData& camera = input.cameras.front();
+  const CameraPoses found = estimateCameraPoses(camera, input.boardAt(camera.board), options, context);
+  std::vector<double> rates_rad_s;
+  for (const RatePair& pair : ratePairs(found.poses, options.pair_gap_s, options.longest_pair_s))
+    rates_rad_s.push_back(pair.rate_rad_s);
+  if (static_cast<int>(found.poses.size()) < options.least_views || rates_rad_s.empty()) return;
+  const double camera_rad_s = medianOf(std::move(rates_rad_s));
+  if (camera_rad_s < options.turning_camera_ratio * std::max(imu_rad_s, options.least_rotation_rate_rad_s))
+    return;
+  throw calibrationFailed(
+      imu.name,
+      fmt::format(
+          "the IMU is at rest while {} turns: its rate is {:.4f} rad/s RMS, the camera's {:.2g} rad/s",
+          camera.name, imu_rad_s, camera_rad_s),
+      "Fix the IMU and the camera to each other, and check that the files belong together");
 }
 
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,

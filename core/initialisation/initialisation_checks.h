@@ -14,6 +14,9 @@ namespace evical {
 
 // The board, cameras with intrinsics, and IMUs with samples or a second camera are present.
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options);
+// An IMU that is at rest while a camera turns is not on the rig, or its samples are from another recording.
+void checkTurnsWithCamera(const CalibrationInput& input, const ImuData& imu, const GyroRotation& gyro,
+                          const InitialisationOptions& options, const RunContext& context);
 // The gyroscope moves. Warns of gaps.
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
                     std::vector<std::string>& warnings);

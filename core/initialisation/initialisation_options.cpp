@@ -140,6 +140,13 @@ constexpr std::tuple kInitialisationFields{
           "Largest median acceleration, in units of gravity, if both sensors are exchanged."},
     Field{"least_imu_coverage", &InitialisationOptions::least_imu_coverage, 0.8, within(0.0, 1.0), "",
           "Smallest duration of an IMU's samples, in units of a camera's, without a note."},
+    Field{"turning_camera_ratio", &InitialisationOptions::turning_camera_ratio, 5.0, within(1.0, 1000.0), "",
+          "Smallest ratio of a camera's angular rate to that of an IMU that is at rest meanwhile."},
+    Field{"heavy_saturation_share", &InitialisationOptions::heavy_saturation_share, 0.2, within(0.0, 1.0), "",
+          "Share of samples at a limit from which saturation explains all symptoms."},
+    Field{
+        "same_motion_correlation", &InitialisationOptions::same_motion_correlation, 0.4, within(0.0, 1.0), "",
+        "Correlation of rates from which a saturated gyroscope is of the same recording; others are near 0."},
     Field{"ambiguous_pose_ratio", &InitialisationOptions::ambiguous_pose_ratio, 2.0, within(1.0, 100.0), "",
           "Largest ratio of errors up to which a plane's other pose is considered."},
     Field{"ambiguous_pose_px", &InitialisationOptions::ambiguous_pose_px, 0.02, within(0.0, 10.0), "px",

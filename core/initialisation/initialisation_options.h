@@ -60,6 +60,9 @@ struct InitialisationOptions {
   double gravity_rate_tolerance;
   double exchanged_force_share;
   double least_imu_coverage;
+  double turning_camera_ratio;
+  double heavy_saturation_share;
+  double same_motion_correlation;
   double ambiguous_pose_ratio;
   double ambiguous_pose_px;
   double fastest_view_ratio;

@@ -16,7 +16,6 @@
 
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/numerics/robust.h"
 
 #include <fmt/format.h>
 
@@ -333,38 +332,6 @@ void alignFurther(const CalibrationInput& input, const StatedSigns& stated,
   }
 }
 
-// Median angular rate between successive poses; 0 if there are too few.
-double medianRate_rad_s(const std::vector<CameraPose>& poses, double longest_pair_s) {
-  std::vector<double> rates_rad_s;
-  for (std::size_t k = 1; k < poses.size(); ++k) {
-    const double apart_s = poses[k].time_s - poses[k - 1].time_s;
-    if (apart_s <= 0.0 || apart_s > longest_pair_s) continue;
-    rates_rad_s.push_back(
-        poses[k].world_from_camera.rotation.angularDistance(poses[k - 1].world_from_camera.rotation) /
-        apart_s);
-  }
-  return rates_rad_s.empty() ? 0.0 : medianOf(std::move(rates_rad_s));
-}
-
-// An IMU at rest while a camera turns is not on the rig, or its samples are from another recording.
-void checkTurnsWithCamera(const CalibrationInput& input, const ImuData& imu, double imu_rms_rad_s,
-                          const InitialisationOptions& options, const RunContext& context) {
-  constexpr double kClearly = 5.0;
-  if (imu_rms_rad_s >= options.least_rotation_rate_rad_s) return;
-  const CameraData& camera = input.cameras.front();
-  const CameraPoses found = estimateCameraPoses(camera, input.boardAt(camera.board), options, context);
-  const double camera_rad_s = medianRate_rad_s(found.poses, options.longest_pair_s);
-  if (static_cast<int>(found.poses.size()) < options.least_views ||
-      camera_rad_s < kClearly * std::max(imu_rms_rad_s, options.least_rotation_rate_rad_s))
-    return;
-  throw calibrationFailed(
-      imu.name,
-      fmt::format(
-          "the IMU is at rest while {} turns: its rate is {:.4f} rad/s RMS, the camera's {:.2g} rad/s",
-          camera.name, imu_rms_rad_s, camera_rad_s),
-      "Fix the IMU and the camera to each other, and check that the files belong together");
-}
-
 Initialisation initialiseStraight(const CalibrationInput& input, const StatedSigns& stated,
                                   const InitialisationOptions& options, const RunContext& context) {
   Initialisation result;
@@ -380,7 +347,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
   const ImuData& imu = referenceImu(input);
   const std::vector<ImuSample> rates = withoutRateSpikes(imu.samples);
   const GyroRotation gyro(rates, input.start_ns);
-  checkTurnsWithCamera(input, imu, gyro.rateRms_rad_s(), options, context);
+  checkTurnsWithCamera(input, imu, gyro, options, context);
   checkGyroscope(imu, gyro, options, result.warnings);
   std::vector<AlignedCamera> cameras = alignCameras(input, stated, gyro, options, context, told, result);
   const TimeRange views = viewRange(cameras);

@@ -12,30 +12,6 @@ namespace {
 constexpr double kGrid_s = 0.005;      // of the gyroscope's rates; a fraction of a hand's shortest period
 constexpr double kLongestRatio = 1.5;  // of a pair's duration to the usual one
 
-struct RatePair {
-  double middle_s, rate_rad_s, duration_s;
-};
-
-// Pairs of nearly equal duration, so that both sensors' rates are averaged alike.
-std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap_s, double longest_s) {
-  std::vector<RatePair> pairs;
-  std::vector<double> durations;
-  for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
-    while (l < poses.size() && poses[l].time_s - poses[k].time_s < gap_s - 1e-6) ++l;
-    if (l >= poses.size()) break;
-    const double duration_s = poses[l].time_s - poses[k].time_s;
-    if (duration_s > longest_s) continue;
-    const double angle =
-        rotationAngleBetween_rad(poses[k].world_from_camera.rotation, poses[l].world_from_camera.rotation);
-    pairs.push_back({poses[k].time_s + 0.5 * duration_s, angle / duration_s, duration_s});
-    durations.push_back(duration_s);
-  }
-  if (pairs.empty()) return pairs;
-  const double longest_usual_s = kLongestRatio * medianOf(std::move(durations));
-  std::erase_if(pairs, [&](const RatePair& pair) { return pair.duration_s > longest_usual_s; });
-  return pairs;
-}
-
 // The gyroscope's rate averaged over `duration_s`, on a grid of middles.
 struct RateGrid {
   double begin_s;
@@ -103,6 +79,25 @@ TimeOffsetPeak peakAt(const std::vector<Correlation>& correlations, std::size_t 
 }
 
 }  // namespace
+
+std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap_s, double longest_s) {
+  std::vector<RatePair> pairs;
+  std::vector<double> durations;
+  for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
+    while (l < poses.size() && poses[l].time_s - poses[k].time_s < gap_s - 1e-6) ++l;
+    if (l >= poses.size()) break;
+    const double duration_s = poses[l].time_s - poses[k].time_s;
+    if (duration_s > longest_s) continue;
+    const double angle =
+        rotationAngleBetween_rad(poses[k].world_from_camera.rotation, poses[l].world_from_camera.rotation);
+    pairs.push_back({poses[k].time_s + 0.5 * duration_s, angle / duration_s, duration_s});
+    durations.push_back(duration_s);
+  }
+  if (pairs.empty()) return pairs;
+  const double longest_usual_s = kLongestRatio * medianOf(std::move(durations));
+  std::erase_if(pairs, [&](const RatePair& pair) { return pair.duration_s > longest_usual_s; });
+  return pairs;
+}
 
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
                                                 const GyroRotation& gyro,

@@ -17,6 +17,13 @@ struct TimeOffsetPeak {
   double width_s = 0.0;       // distance from the peak at which the correlation's parabola is lower by 0.1
 };
 
+// Mean angular rate between two views of a camera.
+struct RatePair {
+  double middle_s, rate_rad_s, duration_s;
+};
+// Pairs of nearly equal duration from `gap_s` to `longest_s`, so that both sensors' rates are averaged alike.
+std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap_s, double longest_s);
+
 // Local maxima of the correlation within plus or minus options.time_offset_search_s of the prior's time
 // offset (of 0 without one), the most significant first; only the given offset if there is one. Empty if
 // camera and gyroscope overlap for less than options.least_overlap_s at every offset.

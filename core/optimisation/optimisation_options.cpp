@@ -54,6 +54,8 @@ constexpr std::tuple kModelFields{
     Field{"delay_misfit", &ModelOptions::delay_misfit, 1.3, within(1.0, 1000.0), "",
           "Accelerometer delays are fixed if acceleration errors exceed the noise by this factor, since "
           "splines that do not follow the motion bias them."},
+    Field{"unknown_delay_sigma_s", &ModelOptions::unknown_delay_sigma_s, 0.05, within(1e-6, 1.0), "s",
+          "Sigma of the delays' prior from which they are estimated in spite of delay_misfit."},
     Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Auto, std::array{"auto", "constant", "linear"},
            "Biases: constant, or linear between knots with a random-walk prior. Auto: linear if a test shows "
            "that they change.",

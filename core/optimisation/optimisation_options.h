@@ -23,6 +23,7 @@ struct ModelOptions {
   CameraIntrinsicsChoice camera_intrinsics;
   Estimated gyroscope_rotation;
   double delay_misfit;
+  double unknown_delay_sigma_s;
   BiasModel bias_model;
   double bias_knot_spacing_s;
   int most_bias_knots;

@@ -26,9 +26,8 @@ bool ProblemBuilder::scaleIsHeld() const {
 }
 
 bool ProblemBuilder::delayIsHeld(std::size_t imu) const {
-  constexpr double kUnknown_s = 0.05;  // a prior as wide as this states that the delay is not small
   return weights.scales.accelerometers[imu] > options.delay_misfit &&
-         options.accelerometer_delay_sigma_s < kUnknown_s;
+         options.accelerometer_delay_sigma_s < options.unknown_delay_sigma_s;
 }
 
 bool ProblemBuilder::drifts(const SensorPrior& prior) const {

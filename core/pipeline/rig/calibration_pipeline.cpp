@@ -378,7 +378,7 @@ class Calibration {
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) {
       flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
-      flagDoubtful(saturationIn(input_, options), result);
+      flagDoubtful(saturation(), result);
     }
     flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
     result.circle_residuals = circleResiduals(input_, solution.circle_errors, solution.used_circles);
@@ -400,6 +400,10 @@ class Calibration {
     notes_ = std::move(solution.notes);
     for (const auto* more : {&uncertainty.notes, &priors.notes, &slow})
       notes_.insert(notes_.end(), more->begin(), more->end());
+  }
+
+  QualityWarning saturation() const {
+    return saturationIn(input_, options_, session_.options.initialisation->heavy_saturation_share);
   }
 
   // Doubt about the board's size. The initialisation detects large errors, since no prior pulls it towards
@@ -449,7 +453,7 @@ class Calibration {
       std::erase_if(run_.result.causes, [](const QualityWarning& each) { return !isWrongInput(each); });
       flagDoubtful(misfit.failure, run_.result, "misfit");
       flagDoubtful(cause, run_.result);
-      flagDoubtful(saturationIn(input_, options), run_.result);
+      flagDoubtful(saturation(), run_.result);
       for (const QualityWarning& noise : wrong_noise_) flagDoubtful(noise, run_.result);
       rankReasons(run_.result);
       const bool is_unknown = run_.result.causes.front().name == "misfit";

@@ -160,7 +160,8 @@ std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const 
   return notes;
 }
 
-QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
+QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options,
+                            double heavy_share) {
   std::string words;
   double most = 0.0;
   for (const ImuData& imu : input.imus) {
@@ -176,7 +177,7 @@ QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions&
   if (words.empty()) return {};
   return {words + ", which were excluded: move more slowly, or increase the IMU's measuring range",
           {},
-          most > kHeavySaturation ? "heavy_saturation" : "saturation"};
+          most > heavy_share ? "heavy_saturation" : "saturation"};
 }
 
 double totalMisfit(const BatchSolution& solution) {

@@ -36,7 +36,7 @@ void addStampErrors(const CalibrationInput& input, const std::vector<double>& st
 
 // IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others, and of all if a
 // large part of the samples is missing.
-QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options);
+QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options, double heavy_share);
 
 // A note for each event camera whose ON and OFF events have different delays.
 std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options);

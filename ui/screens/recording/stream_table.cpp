@@ -162,7 +162,7 @@ void StreamTable::addFaults(int row, const StreamSummary& stream, const std::vec
   QStringList own;
   for (const RecordingFault& fault : faults)
     if (fault.stream == stream.info.name) own << withWholePixels(fromCore(fault.text));
-  const QString note = fromCore(stream.note);
+  const QString note = withWholePixels(fromCore(stream.note));
   const QString none = stream.count == 0 ? QString() : note.isEmpty() ? tr("none found") : note;
   setItem(row, kFaults,
           readOnlyItem(own.isEmpty()     ? none
