@@ -80,12 +80,28 @@ Image clouds(int size, Random& random) {
   return sum;
 }
 
-// Overlapping rectangles, small ones more numerous (a dead-leaves picture).
-Image objects(int size, Random& random) {
+void addDisc(Image& image, Random& random) {
+  constexpr double kSmallest = 4.0, kLargest = 14.0;  // radii: those of circles on boards in usual recordings
+  const double radius = kSmallest + (kLargest - kSmallest) * random.uniform();
+  const double x0 = image.size * random.uniform(), y0 = image.size * random.uniform();
+  const auto value = static_cast<float>(random.normal());
+  const int reach = static_cast<int>(radius) + 1;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx)
+      if (std::hypot(dx, dy) <= radius)
+        image.at(static_cast<int>(x0) + dx, static_cast<int>(y0) + dy) = value;
+}
+
+// Overlapping rectangles, small ones more numerous (a dead-leaves picture), and discs.
+Image objects(int size, double round_share, Random& random) {
   constexpr int kObjects = 1200;
   constexpr double kSmallest = 6.0, kLargest = 110.0;  // half sides
   Image image(size);
   for (int k = 0; k < kObjects; ++k) {
+    if (round_share > 0.0 && random.uniform() < round_share) {
+      addDisc(image, random);
+      continue;
+    }
     const double half_length =
         kSmallest / std::sqrt(1.0 - random.uniform() * (1.0 - std::pow(kSmallest / kLargest, 2)));
     const double half_width = half_length * (0.3 + 0.7 * random.uniform());
@@ -127,7 +143,7 @@ ClutterTexture::ClutterTexture(const ClutterTextureOptions& options) {
   constexpr std::uint64_t kStream = 0xc1u;
   Random random(options.seed, kStream);
   Image cloudy = clouds(kSize, random);
-  Image flat = objects(kSize, random);
+  Image flat = objects(kSize, options.round_share, random);
   const double object_weight = options.contrast * std::sqrt(options.object_share),
                cloud_weight = options.contrast * std::sqrt(1.0 - options.object_share);
   for (std::size_t i = 0; i < flat.values.size(); ++i) {

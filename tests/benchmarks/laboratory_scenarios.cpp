@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 
@@ -161,14 +162,48 @@ void drawSession(Dice& dice, SessionErrors& errors) {
   errors.principal_point_px = dice.normal(0.7);
 }
 
+// What the laboratories of a family have in common, in place of what was drawn.
+void setFamily(LaboratoryFamily family, Dice& dice, Scenario& scenario) {
+  MotionModel& motion = scenario.motion;
+  EventPixelModel& pixel = scenario.cameras.front().pixel;
+  const double per_px = std::sqrt(scenario.cameras.front().intrinsics.focal_length_px.x() / 262.0);
+  switch (family) {
+    case LaboratoryFamily::Usual:
+      break;
+    case LaboratoryFamily::Calm:
+      motion.angle_amplitude_rad *= 0.5;
+      motion.target_amplitude_m *= 0.5;
+      motion.distance_amplitude_m *= 0.5;
+      motion.highest_frequency_hz = 1.0;
+      motion.image_speed_px_s = per_px * dice.between(25.0, 45.0);
+      break;
+    case LaboratoryFamily::Brisk:
+      motion.highest_frequency_hz = dice.between(1.5, 3.0);
+      motion.image_speed_px_s = per_px * dice.between(130.0, 200.0);
+      break;
+    case LaboratoryFamily::Dim:
+      pixel.low_pass_s = dice.between(5e-4, 1.2e-3);
+      pixel.background_rate_hz = 0.5;
+      break;
+    case LaboratoryFamily::Memory:
+      pixel.refractory_s = 1e-3;
+      break;
+    case LaboratoryFamily::Clutter:
+      scenario.scene.clutter_contrast = dice.between(0.3, 0.6);
+      scenario.scene.clutter_object_share = 0.9;
+      scenario.scene.clutter_round_share = 0.8;
+      break;
+  }
+}
+
 }  // namespace
 
-Scenario drawLaboratory(int number, bool exact) {
+Scenario drawLaboratory(LaboratoryFamily family, int number, bool exact) {
   constexpr std::uint64_t kFirstSeed = 41'000;
   const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(number);
   Dice dice(seed);
   Scenario scenario;
-  scenario.name = fmt::format("laboratory{}", number);
+  scenario.name = fmt::format("{}{}", kLaboratoryFamilies[static_cast<std::size_t>(family)], number);
   scenario.seed = seed;
   scenario.duration_s = dice.between(12.0, 24.0);
   const Eigen::Vector3d tilted = Eigen::Vector3d{dice.normal(0.05), 1.0, dice.normal(0.05)}.normalized();
@@ -179,6 +214,7 @@ Scenario drawLaboratory(int number, bool exact) {
   drawMotion(dice, scenario);
   drawScene(dice, scenario);
   drawSession(dice, scenario.session_errors);
+  setFamily(family, dice, scenario);
   if (exact) scenario.session_errors = {};
   return scenario;
 }

@@ -187,15 +187,19 @@ NormalisedErrors::NormalisedErrors(std::span<const Outcome> outcomes) : recordin
   }
 }
 
+bool NormalisedErrors::areRight() const {
+  constexpr std::size_t kEnoughRecordings = 20;
+  const auto isRight = [](const Sum& sum) { return sum.rms() >= 0.7 && sum.rms() <= 1.4; };
+  return recordings < kEnoughRecordings ||
+         (isRight(rotation) && isRight(translation) && isRight(time_offset) && isRight(all));
+}
+
 bool NormalisedErrors::print() const {
   fmt::print(
       "\nnormalised errors over {} recordings, RMS: rotation {:.2f}, translation {:.2f}, time offset {:.2f}, "
       "all quantities {:.2f} (target 0.7-1.4)\n",
       recordings, rotation.rms(), translation.rms(), time_offset.rms(), all.rms());
-  constexpr std::size_t kEnoughRecordings = 20;
-  const auto isRight = [](const Sum& sum) { return sum.rms() >= 0.7 && sum.rms() <= 1.4; };
-  return recordings < kEnoughRecordings ||
-         (isRight(rotation) && isRight(translation) && isRight(time_offset) && isRight(all));
+  return areRight();
 }
 
 bool isOf(const char* part, const QuantityDifference& number) {

@@ -48,8 +48,8 @@ struct NormalisedErrors {
   std::size_t recordings = 0;
 
   explicit NormalisedErrors(std::span<const Outcome> outcomes);
-  // False if an RMS of 20 recordings or more is outside 0.7 to 1.4.
-  bool print() const;
+  bool areRight() const;  // false if an RMS of 20 recordings or more is outside 0.7 to 1.4
+  bool print() const;     // returns that, too
 };
 
 // True for a number of this vector: ".rotation.", ".translation." or ".time_offset", which is not its drift.
