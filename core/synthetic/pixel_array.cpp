@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kMostSteps = 256;  // per interval
 constexpr char kMoving = -1;
+constexpr double kLeastFactor = 0.3;    // of a threshold, relative to its mean
 constexpr double kSettlingTimes = 3.0;  // time constants after which the low-pass filter follows a ramp
 
 }  // namespace
@@ -34,8 +35,9 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
   // Log intensity is assumed linear within a step, which must be short compared with the blur.
   constexpr float kLongest_px = 0.3f, kShareOfBlur = 0.5f;
   step_travel_px_ = std::min(kLongest_px, kShareOfBlur * static_cast<float>(model_.blur_px));
+  least_threshold_ =
+      static_cast<float>(std::max(1.0 - Random::kLargestNormal * model_.threshold_noise, kLeastFactor));
   constexpr std::uint64_t kThresholdStream = 0xe0u;
-  constexpr double kLeastFactor = 0.3;
   Random random(scenario.seed, kThresholdStream + camera);
   const auto factor = [&] {
     return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
@@ -126,7 +128,6 @@ float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const 
   const float mean = on ? pixel.threshold_on : pixel.threshold_off;
   if (model_.threshold_noise <= 0.0) return mean;
   constexpr std::uint64_t kStream = 0x150u;
-  constexpr double kLeastFactor = 0.3;
   const auto place = static_cast<std::uint64_t>(y * width_px_ + x);
   Random random(scenario_.seed, kStream + 2 * camera_ + (on ? 1 : 0), (place << 32) + pixel.event_count);
   return mean * static_cast<float>(std::max(1.0 + model_.threshold_noise * random.normal(), kLeastFactor));
@@ -238,6 +239,10 @@ void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pix
   pixel.input = input;
   pixel.level = after;
   pixel.reference -= step.leak * pixel.threshold_on;
+  // Most steps do not reach the least threshold that can be drawn, and need no draw.
+  if (after < pixel.reference + least_threshold_ * pixel.threshold_on &&
+      after > pixel.reference - least_threshold_ * pixel.threshold_off)
+    return;
   if (after < pixel.reference + thresholdNow(pixel, true, x, y) &&
       after > pixel.reference - thresholdNow(pixel, false, x, y))
     return;

@@ -82,6 +82,7 @@ class PixelArray {
   std::unique_ptr<RoomRenderer> room_;       // replaces the renderer if there is a room
   int width_px_;
   float step_travel_px_;
+  float least_threshold_;  // relative to the mean, that thresholdNow can return
   // True if pixels may be skipped when nothing moves; true if the lamp alone causes events.
   bool rests_, lamp_is_weak_;
   std::vector<float> own_light_;  // log, added to a pixel's light; empty if all pixels have the same response

@@ -18,6 +18,7 @@ class Random {
 
   std::uint64_t bits() { return mix(state_ += 0x9e3779b97f4a7c15ull); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
+  static constexpr double kLargestNormal = 8.6;  // no normal() is further from 0: sqrt(2 log 2^53)
   double normal() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
