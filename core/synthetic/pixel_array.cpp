@@ -240,10 +240,11 @@ void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pix
   pixel.level = after;
   pixel.reference -= step.leak * pixel.threshold_on;
   // Most steps do not reach the least threshold that can be drawn, and need no draw.
-  if (after < pixel.reference + least_threshold_ * pixel.threshold_on &&
+  const bool in_reset = model_.reset_s > 0.0 && pixel.last_event_s >= 0.0;
+  if (!in_reset && after < pixel.reference + least_threshold_ * pixel.threshold_on &&
       after > pixel.reference - least_threshold_ * pixel.threshold_off)
     return;
-  if (after < pixel.reference + thresholdNow(pixel, true, x, y) &&
+  if (!in_reset && after < pixel.reference + thresholdNow(pixel, true, x, y) &&
       after > pixel.reference - thresholdNow(pixel, false, x, y))
     return;
   // Steps are long compared with the filter's time constant: its response is curved within a step, and linear
@@ -267,6 +268,14 @@ void PixelArray::emitCrossings(const Step& step, double before, double after, in
   const double slope = (after - before) / (step.end_s - step.begin_s);
   double level = before, time_s = step.begin_s;
   for (;;) {
+    const double reset_end_s = pixel.last_event_s + model_.reset_s;
+    if (model_.reset_s > 0.0 && pixel.last_event_s >= 0.0) {
+      if (reset_end_s > step.end_s) return;
+      time_s = std::max(time_s, reset_end_s);
+      level = before + slope * (time_s - step.begin_s);
+      pixel.reference = static_cast<float>(level);
+      pixel.last_event_s = -1.0;
+    }
     const bool on = after > pixel.reference;
     const float threshold = thresholdNow(pixel, on, x, y);
     const double crossing = on ? pixel.reference + threshold : pixel.reference - threshold;

@@ -176,7 +176,7 @@ void readPixel(const YamlNode& map, EventPixelModel& pixel) {
   map.allowOnly({"threshold_on", "threshold_off", "threshold_mismatch", "refractory_s", "background_rate_hz",
                  "hot_pixels", "hot_pixel_rate_hz", "blur_px", "latency_s", "low_pass_s", "stamp_jitter_s",
                  "low_pass_light_power", "low_pass_polarity", "vignetting", "threshold_noise", "leak_rate_hz",
-                 "readout_rate_hz", "longest_wait_s"});
+                 "readout_rate_hz", "longest_wait_s", "reset_s"});
   get(map, "threshold_on", pixel.threshold_on, 0.01, 5.0, "");
   get(map, "threshold_off", pixel.threshold_off, 0.01, 5.0, "");
   get(map, "threshold_mismatch", pixel.threshold_mismatch, 0.0, 0.5, "");
@@ -194,6 +194,7 @@ void readPixel(const YamlNode& map, EventPixelModel& pixel) {
   get(map, "threshold_noise", pixel.threshold_noise, 0.0, 0.5, "");
   get(map, "leak_rate_hz", pixel.leak_rate_hz, 0.0, 100.0, "Hz");
   get(map, "readout_rate_hz", pixel.readout_rate_hz, 0.0, 1e10, "Hz");
+  get(map, "reset_s", pixel.reset_s, 0.0, 1.0, "s");
   get(map, "longest_wait_s", pixel.longest_wait_s, 0.0, 10.0, "s");
 }
 

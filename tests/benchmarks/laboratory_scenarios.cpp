@@ -215,6 +215,7 @@ Scenario drawLaboratory(LaboratoryFamily family, int number, bool exact) {
   drawScene(dice, scenario);
   drawSession(dice, scenario.session_errors);
   setFamily(family, dice, scenario);
+  scenario.cameras.front().pixel.reset_s = scenario.cameras.front().pixel.refractory_s;
   if (exact) scenario.session_errors = {};
   return scenario;
 }

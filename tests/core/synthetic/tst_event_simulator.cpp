@@ -202,6 +202,22 @@ class TestEventSimulator : public QObject {
     QVERIFY(std::abs(static_cast<double>(noisy.size()) / static_cast<double>(steady.size()) - 1.0) < 0.05);
   }
   // No more than the limit in any interval, in order, and none later than the longest wait.
+  // After each event the level moves on by the reset's length times the slope, which no further event reports.
+  void reset_costsEventsOfFastEdges() {
+    const auto countOf = [](double frequency_hz, double reset_s) {
+      Scenario scenario = slidingScenario(0.6, 0.2);
+      scenario.motion.lowest_frequency_hz = scenario.motion.highest_frequency_hz = frequency_hz;
+      scenario.duration_s = 0.5 / frequency_hz;
+      scenario.cameras[0].pixel.reset_s = reset_s;
+      return leadsOf(scenario).count;
+    };
+    constexpr double kReset_s = 5e-4;
+    const double fast = countOf(0.8, kReset_s) / countOf(0.8, 0.0),
+                 slow = countOf(0.1, kReset_s) / countOf(0.1, 0.0);
+    QVERIFY2(fast < 0.8, qPrintable(QString::number(fast)));
+    QVERIFY2(slow > 0.9 && slow < 1.01, qPrintable(QString::number(slow)));
+  }
+
   void arbiter_letsThroughOneByOne() {
     Scenario scenario = test::wavedScenario();
     scenario.duration_s = 0.3;
