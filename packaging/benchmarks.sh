@@ -47,13 +47,13 @@ run_accuracy() {
   run accuracy --verdicts --quantities "${rigs[@]}"
   for file in "$scenarios"/*_10s.yaml; do run accuracy --verdicts --seeds 20 "$file"; done
   # Circle centres along the motion, in ordinary and in small motions.
-  run centre_errors --speeds --common --duration 10 \
+  run centre_errors --speeds --agreement --duration 10 \
     "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4,realistic}.yaml
   run board_starts --duration 20 "${single[@]}"
 }
 
 run_laboratories() {
-  run laboratories --seeds 40 --common --faults 8
+  run laboratories --family all --seeds 40 --agreement --faults 8
 }
 
 run_lenses() {

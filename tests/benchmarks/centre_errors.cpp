@@ -62,17 +62,6 @@ void printSpeeds(const std::vector<CentreError>& errors) {
   fmt::print("\n");
 }
 
-// Errors that all circles of a window have in common, by fifths of the windows' speeds.
-void printCommon(const std::vector<CentreError>& errors, const ErrorFit& fit) {
-  fmt::print(
-      "\n| windows up to, px/s | common error along, across, px | stated by the centres | with the common "
-      "displacement | error / stated |\n|---|---|---|---|---|\n");
-  for (const CommonErrors& fifth : commonErrors(errors, fit))
-    fmt::print("| {:.0f} | {:.4f}, {:.4f} | {:.4f} | {:.4f} | {:.2f} |\n", fifth.up_to_px_s, fifth.along_px,
-               fifth.across_px, fifth.by_centres_px, fifth.stated_px, fifth.ratio());
-  fmt::print("\n");
-}
-
 // Sets an option of the groups that measurements depend on.
 void setOption(const std::string& group, const std::string& name, const std::string& value,
                FrontEndOptions& options) {
@@ -95,7 +84,7 @@ FrontEndOptions optionsOf(const std::string& variant) {
 }
 
 struct Tables {
-  bool speeds = false, common = false;
+  bool speeds = false, agreement = false;
 };
 
 void printHeader() {
@@ -127,7 +116,11 @@ void runVariant(const Scenario& scenario, const std::vector<Event>& events, cons
       1e6 * by_acceleration.third, accelerationPart_px(errors, by_acceleration.third), 1e3 * by_gain.third,
       rmsOf(errors, by_acceleration), by_acceleration.chi, spent_s);
   if (tables.speeds) printSpeeds(errors);
-  if (tables.common) printCommon(errors, by_acceleration);
+  if (tables.agreement) {
+    ErrorAgreement agreement;
+    agreement.add(errors, by_acceleration);
+    agreement.print();
+  }
   std::fflush(stdout);
 }
 
@@ -141,8 +134,8 @@ int run(int argc, char** argv) {
   scenarios.addTo(app);
   app.option("--variant", variants, "Options of a further run: group.option=value,...").repeated();
   app.flag("--speeds", tables.speeds, "Also the lag of centres by speed");
-  app.flag("--common", tables.common,
-           "Also the errors that all circles of a window have in common, by speed");
+  app.flag("--agreement", tables.agreement,
+           "Also how errors of circles of one window agree, by speed and distance");
   if (!app.parse(argc, argv)) return 0;
   variants.insert(variants.begin(), std::string());
   printHeader();

@@ -1,11 +1,11 @@
 #include "tests/benchmarks/centre_truth.h"
 
 #include "core/geometry/camera_model.h"
-#include "core/optimisation/common_displacement.h"
-#include "core/optimisation/optimisation_options.h"
 #include "core/synthetic/board_truth.h"
+#include "core/synthetic/session_errors.h"
 #include "core/synthetic/sinusoid_motion.h"
 
+#include <fmt/format.h>
 #include <Eigen/LU>
 
 namespace evical::benchmarks {
@@ -17,32 +17,17 @@ const TrueCircle* find(const std::vector<TrueCircle>& circles, int circle) {
   return found == circles.end() ? nullptr : &*found;
 }
 
-struct WindowError {
-  double speed_px_s = 0.0;
-  Eigen::Vector2d along_across_px = Eigen::Vector2d::Zero();
-  double by_centres_px2 = 0.0, stated_px2 = 0.0;  // variance an axis
-};
+// Index of the last limit that is not above the value.
+template <std::size_t N>
+std::size_t binOf(const std::array<double, N>& limits, double value) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(limits, value) - limits.begin() - 1);
+}
 
-// The weighted mean of the errors of a window, of which there are `count`.
-WindowError windowError(const CentreError* first, std::size_t count, const ErrorFit& fit) {
-  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), velocity = Eigen::Vector2d::Zero();
-  double common_px2 = 0.0;
-  WindowError window;
-  for (const CentreError* error = first; error != first + count; ++error) {
-    const Eigen::Matrix2d weight = error->whitening.transpose() * error->whitening;
-    information += weight;
-    sum += weight * (error->error_px + fit.delay_s * error->velocity_px_s - fit.lead_px * error->lead_effect);
-    velocity += error->velocity_px_s;
-    common_px2 += error->common_px * error->common_px / static_cast<double>(count);
-  }
-  const Eigen::Vector2d mean_px = information.inverse() * sum;
-  const Eigen::Vector2d along = velocity.norm() > 0.0 ? velocity.normalized() : Eigen::Vector2d::UnitX();
-  window.speed_px_s = velocity.norm() / static_cast<double>(count);
-  window.along_across_px = {along.dot(mean_px), along.x() * mean_px.y() - along.y() * mean_px.x()};
-  window.by_centres_px2 = 0.5 * information.inverse().trace();
-  window.stated_px2 = window.by_centres_px2 + common_px2;
-  return window;
+template <class Window>
+Eigen::Vector2d meanOf(const Window& window) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& each : window) sum += each.px;
+  return sum / static_cast<double>(window.size());
 }
 
 }  // namespace
@@ -51,10 +36,10 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
   constexpr double kStep_s = 1e-3;  // of the difference that gives accelerations
   const SinusoidMotion motion(scenario);
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  const CameraIntrinsics stated = asSessionSays(scenario).cameras.front().intrinsics;
   std::vector<CentreError> errors;
   std::vector<int> circles;
   std::vector<Eigen::Vector2d> truths;
-  const OptimisationOptions options;
   for (const BoardView& view : observations.views) {
     for (const CircleObservation& circle : view.circles) {
       const auto at = [&](double time_s) { return trueBoardView(motion, scenario, 0, time_s); };
@@ -64,9 +49,13 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
                        *later = find(after, circle.circle);
       if (!truth || !earlier || !later) continue;
       CentreError error;
+      error.circle = circle.circle;
+      error.place_spacings = scenario.board.point_m(circle.circle) / scenario.board.spacing_m;
       error.view = static_cast<std::size_t>(&view - observations.views.data());
-      error.common_px = commonDisplacement_px(observations.kind, circle, options);
-      error.error_px = circle.centre_px - truth->centre_px;
+      // In ideal pixels of the lens that the session states.
+      const auto stated_px = idealPixel(stated, pixelFromIdeal(camera, truth->centre_px));
+      if (!stated_px) continue;
+      error.error_px = circle.centre_px - *stated_px;
       error.velocity_px_s = truth->velocity_px_s;
       error.acceleration_px_s2 = (later->velocity_px_s - earlier->velocity_px_s) / (2.0 * kStep_s);
       error.lead_effect = circle.edge_localisation_bias_effect;
@@ -89,30 +78,69 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
   return errors;
 }
 
-std::array<CommonErrors, 5> commonErrors(const std::vector<CentreError>& errors, const ErrorFit& fit) {
-  constexpr std::size_t kEnoughCircles = 5;
-  std::vector<WindowError> windows;
-  for (std::size_t begin = 0, end = 0; begin < errors.size(); begin = end) {
-    while (end < errors.size() && errors[end].view == errors[begin].view) ++end;
-    if (end - begin >= kEnoughCircles) windows.push_back(windowError(&errors[begin], end - begin, fit));
-  }
-  std::ranges::sort(windows, {}, &WindowError::speed_px_s);
-  std::array<CommonErrors, 5> fifths;
-  for (std::size_t k = 0; k < fifths.size(); ++k) {
-    const std::size_t begin = k * windows.size() / fifths.size(),
-                      end = (k + 1) * windows.size() / fifths.size();
-    if (begin == end) continue;
-    Eigen::Array4d squares = Eigen::Array4d::Zero();
-    for (std::size_t i = begin; i < end; ++i) {
-      const WindowError& window = windows[i];
-      squares +=
-          Eigen::Array4d(std::pow(window.along_across_px.x(), 2), std::pow(window.along_across_px.y(), 2),
-                         window.by_centres_px2, window.stated_px2);
+void ErrorAgreement::addWindow(std::span<const Left> window) {
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const CentreError& error = *window[i].error;
+    const std::size_t speed = binOf(kSpeeds_px_s, error.speed_px_s);
+    stated_px2_[speed].add(0.5 * (error.whitening.transpose() * error.whitening).inverse().trace());
+    for (std::size_t k = i; k < window.size(); ++k) {
+      const double distance = (error.place_spacings - window[k].error->place_spacings).norm();
+      products_px2_[speed][binOf(kDistances, distance)].add(0.5 * window[i].px.dot(window[k].px));
     }
-    const Eigen::Array4d rms = (squares / static_cast<double>(end - begin)).sqrt();
-    fifths[k] = {windows[end - 1].speed_px_s, rms[0], rms[1], rms[2], rms[3]};
   }
-  return fifths;
+}
+
+void ErrorAgreement::addLater(std::span<const Left> window, std::span<const Left> later, std::size_t lag) {
+  const Eigen::Vector2d mean_px = meanOf(window), later_mean_px = meanOf(later);
+  windows_px2_[lag].add(0.5 * mean_px.dot(later_mean_px));
+  for (const Left& each : window)
+    for (const Left& same : later)
+      if (same.error->circle == each.error->circle)
+        circles_px2_[lag].add(0.5 * (each.px - mean_px).dot(same.px - later_mean_px));
+}
+
+void ErrorAgreement::add(const std::vector<CentreError>& errors, const ErrorFit& fit) {
+  constexpr double kWild = 6.0;
+  std::vector<Left> left;
+  for (const CentreError& error : errors) {
+    const Eigen::Vector2d px =
+        error.error_px + fit.delay_s * error.velocity_px_s - fit.lead_px * error.lead_effect;
+    if ((error.whitening * px).norm() < kWild * std::max(1.0, fit.chi)) left.push_back({px, &error});
+  }
+  std::vector<std::span<const Left>> windows;
+  for (std::size_t begin = 0, end = 0; begin < left.size(); begin = end) {
+    while (end < left.size() && left[end].error->view == left[begin].error->view) ++end;
+    addWindow(windows.emplace_back(&left[begin], end - begin));
+  }
+  for (std::size_t w = 0; w < windows.size(); ++w)
+    for (std::size_t lag = 0; lag < windows_px2_.size() && w + lag < windows.size(); ++lag)
+      addLater(windows[w], windows[w + lag], lag);
+}
+
+void ErrorAgreement::print() const {
+  constexpr std::array kNames = {"0 to 20", "20 to 40", "40 to 70", "70 to 120", "120 to 200", "from 200"};
+  fmt::print(
+      "\n| image speed, px/s | circles | error, px | stated, px | correlation of circles 1.4 spacings apart "
+      "| 2 | 2 to "
+      "2.9 | 2.9 to 4 | 4 to 5.5 | 5.5 to 8 | further | shared by neighbours, px |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t s = 0; s < kSpeeds_px_s.size(); ++s) {
+    const auto& products = products_px2_[s];
+    if (products[0].weight == 0.0) continue;
+    fmt::print("| {} | {} | {:.4f} | {:.4f} |", kNames[s], products[0].weight, std::sqrt(products[0].value()),
+               std::sqrt(stated_px2_[s].value()));
+    for (std::size_t d = 1; d < kDistances.size(); ++d)
+      fmt::print(" {:.2f} |", products[d].value() / std::max(products[0].value(), 1e-12));
+    fmt::print(" {:.4f} |\n", std::sqrt(std::max(0.0, products[1].value())));
+  }
+  const auto printLater = [](const char* what, const std::array<Mean, 5>& products) {
+    fmt::print("\nCorrelation of {} with that 1 to 4 windows later:", what);
+    for (std::size_t lag = 1; lag < products.size(); ++lag)
+      fmt::print(" {:.2f}", products[lag].value() / std::max(products[0].value(), 1e-12));
+    fmt::print("\n");
+  };
+  printLater("the mean of a window", windows_px2_);
+  printLater("a circle, less the mean,", circles_px2_);
 }
 
 }  // namespace evical::benchmarks

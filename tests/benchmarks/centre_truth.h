@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace evical::benchmarks {
@@ -23,7 +24,8 @@ struct CentreError {
   Eigen::Matrix2d whitening = Eigen::Matrix2d::Identity();
   double speed_px_s = 0.0;  // on the sensor
   std::size_t view = 0;
-  double common_px = 0.0;  // stated: commonDisplacement_px
+  int circle = 0;
+  Eigen::Vector2d place_spacings = Eigen::Vector2d::Zero();
 };
 
 std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations);
@@ -61,17 +63,31 @@ ErrorFit fitErrors(const std::vector<CentreError>& errors, Third third) {
   return fit;
 }
 
-// The error that all circles of a window have in common, RMS over a fifth of the windows, the slowest first. Delay and lead
-// are removed.
-struct CommonErrors {
-  double up_to_px_s = 0.0;
-  double along_px = 0.0, across_px = 0.0;  // the motion
-  double by_centres_px = 0.0;              // RMS an axis that the centres' covariances state for it
-  double stated_px = 0.0;                  // with the common displacement of the batch
-  double ratio() const {
-    return std::hypot(along_px, across_px) / (std::sqrt(2.0) * std::max(1e-9, stated_px));
-  }
+// How errors of circles agree, over many recordings: by speed and distance on the board, and over time. Delay and lead are
+// removed.
+class ErrorAgreement {
+ public:
+  void add(const std::vector<CentreError>& errors, const ErrorFit& fit);
+  void print() const;
+
+ private:
+  struct Left {
+    Eigen::Vector2d px;
+    const CentreError* error;
+  };
+  struct Mean {
+    double sum = 0.0, weight = 0.0;
+    void add(double value) { sum += value, ++weight; }
+    double value() const { return weight > 0.0 ? sum / weight : 0.0; }
+  };
+  void addWindow(std::span<const Left> window);
+  void addLater(std::span<const Left> window, std::span<const Left> later, std::size_t lag);
+
+  static constexpr std::array<double, 6> kSpeeds_px_s = {0.0, 20.0, 40.0, 70.0, 120.0, 200.0};
+  static constexpr std::array<double, 8> kDistances = {0.0, 0.1, 1.45, 2.05, 2.9, 4.0, 5.5, 8.0};  // spacings
+  std::array<std::array<Mean, kDistances.size()>, kSpeeds_px_s.size()> products_px2_;
+  std::array<Mean, kSpeeds_px_s.size()> stated_px2_;
+  std::array<Mean, 5> circles_px2_, windows_px2_;  // 0 to 4 windows later; circles less their window's mean
 };
-std::array<CommonErrors, 5> commonErrors(const std::vector<CentreError>& errors, const ErrorFit& fit);
 
 }  // namespace evical::benchmarks

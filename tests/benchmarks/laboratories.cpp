@@ -34,7 +34,7 @@ struct Arguments {
   std::vector<std::string> families;
   int seeds = 40, skipped = 0, faults = 0;
   double ideal_px = 0.0;
-  bool exact = false, quantities = false, common = false;
+  bool exact = false, quantities = false, agreement = false;
   std::string detections;
   std::vector<std::string> variants;
 
@@ -52,7 +52,8 @@ struct Arguments {
         .between(0.0, 10.0);
     app.flag("--exact", exact, "Sessions without errors");
     app.flag("--quantities", quantities, "Also the error and the sigma of every quantity");
-    app.flag("--common", common, "Also the errors that all circles of a window have in common, by speed");
+    app.flag("--agreement", agreement,
+             "Also how errors of circles of one window agree, by speed and distance");
     app.option("--detections", detections,
                "Folder for detected boards, which later runs with the same detector use again");
     app.option("--variant", variants, "Options of a further run: option=value,...").repeated();
@@ -114,17 +115,6 @@ std::string describe(const Scenario& scenario) {
       "{}x{}{}, {}x{}{}, {:.0f} px/s", camera.resolution_px.width_px, camera.resolution_px.height_px,
       camera.model == CameraModel::PinholeRadtan ? "" : " fisheye", scenario.board.rows, scenario.board.cols,
       scenario.board.circles == CircleShade::Bright ? " bright" : "", scenario.motion.image_speed_px_s);
-}
-
-// By fifths of the windows' speeds: RMS along and across the motion in px, and their ratio to the stated sigma.
-void printCommon(const Scenario& scenario, const BoardObservations& observations) {
-  const std::vector<CentreError> errors = errorsOf(scenario, observations);
-  const ErrorFit fit = fitErrors(errors, [](const CentreError& error) { return error.acceleration_px_s2; });
-  fmt::print("| {} | common error |", scenario.name);
-  for (const CommonErrors& fifth : commonErrors(errors, fit))
-    fmt::print(" to {:.0f} px/s: {:.4f}, {:.4f} ({:.4f}; {:.1f}) |", fifth.up_to_px_s, fifth.along_px,
-               fifth.across_px, fifth.by_centres_px, fifth.ratio());
-  fmt::print("\n");
 }
 
 // The errors of one variant in all laboratories of a family.
@@ -190,13 +180,18 @@ std::vector<Results> runFamily(const Arguments& arguments, std::size_t family, L
     results.emplace_back().family = kLaboratoryFamilies[family];
     results.back().variant = variant;
   }
+  ErrorAgreement agreement;
   for (int k = 0; k < arguments.seeds; ++k) {
     const Scenario scenario =
         drawLaboratory(static_cast<LaboratoryFamily>(family), arguments.skipped + k, arguments.exact);
     const std::filesystem::path file = fileOf(scenario, arguments);
     std::optional<DetectionResult> kept = keptDetections(file);
     const DetectionResult detections = kept ? std::move(*kept) : detectionsOf(scenario, arguments.ideal_px);
-    if (arguments.common) printCommon(scenario, detections.cameras.front());
+    if (arguments.agreement) {
+      const std::vector<CentreError> errors = errorsOf(scenario, detections.cameras.front());
+      agreement.add(errors,
+                    fitErrors(errors, [](const CentreError& error) { return error.acceleration_px_s2; }));
+    }
     for (Results& each : results) {
       const bool is_first = &each == &results.front();
       const auto change = [&](Session& session) {
@@ -212,6 +207,7 @@ std::vector<Results> runFamily(const Arguments& arguments, std::size_t family, L
       each.add(scenario, std::move(outcome));
     }
   }
+  if (arguments.agreement) agreement.print();
   return results;
 }
 
