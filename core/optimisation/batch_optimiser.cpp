@@ -407,12 +407,9 @@ void Batch::reportNotes() {
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
     for (std::string& note : notesOfUnused(input_, i, weights_.used_samples[i]))
       solution_.notes.push_back(std::move(note));
-    const UnexcitedAxes& held = weights_.held_axes[i];
-    sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
-            options_.estimatesGyroscopeRotations() ? "the gyroscope's scale and misalignment are fixed"
-                                                   : "the gyroscope's scale is fixed");
-    sayHeld(input_.imus[i].name, "changing acceleration", held.accelerometer.size(),
-            "the accelerometer's scale is fixed");
+    if (options_.estimatesGyroscopeRotations())
+      sayHeld(input_.imus[i].name, "rotation", weights_.held_axes[i].gyroscope.size(),
+              "the gyroscope's misalignment is fixed");
   }
   if (!input_.imus.empty()) {
     sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",

@@ -121,7 +121,6 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
         (release == QuantityRelease::ImuIntrinsics && builder.stage != ParameterStages::Mappings) ||
         (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
         (release == QuantityRelease::BoardBow && !(last && options_.board_bow)) ||
-        (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld()) ||
         (quantity.info->id == QuantityId::AccelerometerDelay && builder.delayIsHeld(quantity.sensor));
     if (held) builder.hold(quantity.block);
   }

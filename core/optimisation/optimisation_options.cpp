@@ -119,9 +119,11 @@ constexpr std::tuple kPriorFields{
         "Sigma of the prior, around 0, on the exposure's share between stamp and middle (0.5: stamped at the "
         "beginning), estimated if exposures vary.",
         Level::Expert, Applies::WithFrames},
-    Field{"mapping_sigma", &PriorOptions::mapping_sigma, 0.05, within(1e-6, 10.0), "",
-          "Sigma of the weak prior on each entry of M_g and M_a, around the identity.", Level::Expert,
-          Applies::WithImu},
+    Field{"mapping_sigma", &PriorOptions::mapping_sigma, 0.01, within(1e-6, 10.0), "",
+          "Sigma of the prior on scales (relative) and misalignments (rad) of gyroscopes and accelerometers, "
+          "the entries "
+          "of M_g and M_a. Default: typical of MEMS IMUs.",
+          Level::Expert, Applies::WithImu},
     Field{"gyroscope_rotation_sigma_deg", &PriorOptions::gyroscope_rotation_sigma_deg, 5.0,
           within(1e-3, 180.0), "deg",
           "Sigma of the weak prior, around 0, on gyroscope rotations relative to the accelerometer.",

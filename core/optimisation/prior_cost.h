@@ -75,28 +75,6 @@ class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
   PriorAxes axes_;
 };
 
-// Zero if an IMU's mapping agrees with its prior M_prior along an axis: r = (M - M_prior) axis / sigma,
-// without unit. Block: mapping.
-class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
- public:
-  HeldAxisCost(const Eigen::Vector3d& axis, const Eigen::Matrix3d& mapping, double sigma)
-      : axis_(axis), mapped_axis_(mapping * axis), weight_(1.0 / sigma) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::Vector3d> error(residuals);
-    error = weight_ * (mappingFromParameters(parameters[0]) * axis_ - mapped_axis_);
-    if (jacobians && jacobians[0]) {
-      Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> by_mapping(jacobians[0]);
-      by_mapping = weight_ * derivativeByMapping(axis_);
-    }
-    return true;
-  }
-
- private:
-  Eigen::Vector3d axis_, mapped_axis_;
-  double weight_;
-};
-
 // Zero if a translation agrees with its prior along an axis: r = axis . (translation - prior) / sigma,
 // without unit. Block: translation [m].
 class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {

@@ -57,14 +57,6 @@ void holdTranslation(ProblemBuilder& builder, double* translation_m,
   }
 }
 
-void holdMapping(ProblemBuilder& builder, double* mapping, const std::vector<Eigen::Vector3d>& axes,
-                 const std::optional<KnownMapping>& known) {
-  constexpr double kSigma = 1e-5;  // far below measurable values
-  if (!builder.has(mapping)) return;
-  const Eigen::Matrix3d prior = known ? known->value : Eigen::Matrix3d::Identity();
-  for (const Eigen::Vector3d& axis : axes) builder.addPrior(new HeldAxisCost(axis, prior, kSigma), {mapping});
-}
-
 void addCameraPriors(ProblemBuilder& builder) {
   std::vector<CameraState>& cameras = builder.parameters.moved().cameras;
   const auto add = [&](std::size_t i, std::initializer_list<QuantityId> ids) {
@@ -106,13 +98,8 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
   for (const ceres::ResidualBlockId id : addDriftPriors(builder.problem, builder.options, noise, state))
     builder.residuals.push_back({id});
   if (builder.stage != ParameterStages::Mappings) return;
-  const UnexcitedAxes& held = builder.weights.held_axes[imu];
   add({QuantityId::GyroscopeScaleMisalignment, QuantityId::AccelerometerScaleMisalignment,
        QuantityId::AccelerometerDelay});
-  holdMapping(builder, builder.parameters.of(state.gyroscope_scale_misalignment), held.gyroscope,
-              prior.gyroscope_scale_misalignment);
-  holdMapping(builder, builder.parameters.of(state.accelerometer_scale_misalignment), held.accelerometer,
-              prior.accelerometer_scale_misalignment);
   if (builder.turnsGyroscope(imu)) add({QuantityId::GyroscopeRotation});
 }
 

@@ -21,10 +21,6 @@ bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
          stage == ParameterStages::Mappings && weights.held_axes[imu].gyroscope.empty();
 }
 
-bool ProblemBuilder::scaleIsHeld() const {
-  return !input.imus.empty() && !weights.held_axes[input.reference_imu].accelerometer.empty();
-}
-
 bool ProblemBuilder::delayIsHeld(std::size_t imu) const {
   return weights.scales.accelerometers[imu] > options.delay_misfit &&
          options.accelerometer_delay_sigma_s < options.unknown_delay_sigma_s;

@@ -41,8 +41,6 @@ struct ProblemBuilder {
   bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
   // Without rotation about some axis, the gyroscope's rotation about it is undetermined.
   bool turnsGyroscope(std::size_t imu) const;
-  // Without acceleration along some axis, circle errors would be taken for another size of the board.
-  bool scaleIsHeld() const;
   // If splines cannot follow the accelerations, the delay would take the value with the smallest misfit.
   bool delayIsHeld(std::size_t imu) const;
   // A clock with this prior. A given offset belongs to a clock that is presumably the reference's own.

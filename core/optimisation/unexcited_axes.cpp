@@ -49,19 +49,15 @@ std::vector<Eigen::Vector3d> UnexcitedAxes::axesWithoutRotation() const {
 UnexcitedAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const Weights& weights,
                         std::size_t imu) {
   const ImuData& data = input.imus[imu];
-  Spread rates, forces;
+  Spread rates;
   for (std::size_t i = 0; i < data.samples.size(); ++i) {
     const ImuSample& sample = data.samples[i];
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
     const auto isWithin = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
     if (weights.used_samples[imu].gyroscope[i] && isWithin(referenceTime_s(state.imus[imu], imu_time_s)))
       rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
-    if (weights.used_samples[imu].accelerometer[i] &&
-        isWithin(accelerometerTime_s(state.imus[imu], imu_time_s)))
-      forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
   }
-  return {rates.axesWithout(weights.scales.gyroscopes[imu] * data.gyroscopeSigma_rad_s()),
-          forces.axesWithout(weights.scales.accelerometers[imu] * data.accelerometerSigma_m_s2())};
+  return {rates.axesWithout(weights.scales.gyroscopes[imu] * data.gyroscopeSigma_rad_s())};
 }
 
 }  // namespace evical

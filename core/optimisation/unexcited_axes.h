@@ -1,5 +1,5 @@
-// Axes of an IMU along which a recording contains only noise: scale and misalignment are undetermined there,
-// and a free estimate takes the scale that hides other errors, down to 0.
+// Axes of an IMU about which a recording contains no rotation, only noise: translations along them, and a gyroscope's
+// rotation relative to its accelerometer, are undetermined.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ struct Weights;
 
 // Unit vectors in the IMU's own frame, perpendicular to each other.
 struct UnexcitedAxes {
-  std::vector<Eigen::Vector3d> gyroscope, accelerometer;
+  std::vector<Eigen::Vector3d> gyroscope;
 
   // Directions along which a displacement does not change a mounted sensor's motion: the axis of a rotation
   // about a single axis, and all directions without rotation.
