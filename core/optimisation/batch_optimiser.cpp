@@ -204,7 +204,7 @@ void Batch::tellReleased(IterationReporter& reporter) {
 // Noise scales and outliers, both from all circles and samples; true if anything
 // changed enough to solve again.
 bool Batch::updateWeights() {
-  return updateWeights(circleErrors(input_, problem_.state(), options_));
+  return updateWeights(circleErrors(input_, problem_.state(), options_, weights_.scales));
 }
 
 bool Batch::updateWeights(const std::vector<CircleError>& errors) {
@@ -228,6 +228,9 @@ bool Batch::updateWeights(const std::vector<CircleError>& errors) {
   CircleSelection selection = selectCircles(input_, errors, weights_.scales.circles, options_);
   changed = changed || selection != weights_.used_circles;
   weights_.used_circles = std::move(selection);
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i)
+    weights_.scales.displacements[i] =
+        displacementScale(input_, problem_.state(), options_, errors, weights_.used_circles, i);
   return changed;
 }
 
@@ -275,7 +278,7 @@ Batch::ImuFits Batch::imuFits(const std::vector<SampleErrors>& errors) const {
 BatchSolution Batch::run() {
   const std::vector<ParameterStages> all = stages();
   // By the initial errors: else most circles would start in the flat part of Huber's loss.
-  const std::vector<CircleError> initial = circleErrors(input_, problem_.state(), options_);
+  const std::vector<CircleError> initial = circleErrors(input_, problem_.state(), options_, weights_.scales);
   if (initial.empty())
     throw calibrationFailed("optimisation", "no view of the board is within the trajectory's time range",
                             "Check that camera and IMU recorded at the same time");
@@ -362,7 +365,8 @@ void Batch::reportFits() {
   std::vector<std::vector<std::uint8_t>> view_used;
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
   std::vector<double> normalised2(input_.cameras.size());
-  solution_.circle_errors = circleErrors(input_, solution_.state, options_, &solution_.used_circles);
+  solution_.circle_errors =
+      circleErrors(input_, solution_.state, options_, solution_.scales, &solution_.used_circles);
   for (const CircleError& error : solution_.circle_errors) {
     const bool used = solution_.used_circles[error.camera][error.view][error.index] != 0;
     CameraFit& fit = solution_.cameras[error.camera];
@@ -378,6 +382,7 @@ void Batch::reportFits() {
     const double coordinates = 2.0 * std::max(1, fit.circles_used);
     fit.reprojection_rms_px = std::sqrt(2.0 * fit.reprojection_rms_px / coordinates);  // of distances
     fit.normalised_rms = std::sqrt(normalised2[i] / coordinates);
+    fit.neighbour_agreement = neighbourAgreement(input_, solution_.state, options_, weights_, i);
   }
 }
 

@@ -47,10 +47,11 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
     : input_(input), options_(options), parameters_(input, options, initial) {
   // Amplitude errors hardly matter between cameras, since each one observes the board's pose independently.
   const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
-  for (const CameraData& camera : input.cameras) {
+  for (std::size_t i = 0; i < input.cameras.size(); ++i) {
+    const CameraData& camera = input.cameras[i];
     const Board& board = input.boardAt(camera.board);
-    circle_models_.push_back(
-        {*camera.lens.detection_intrinsics, board.radius_m, options.huber_sigma, options.freesIntrinsics()});
+    circle_models_.push_back({*camera.lens.detection_intrinsics, board.radius_m, options.huber_sigma,
+                              modesOf(input, i, options), options.freesIntrinsics()});
     pixel_errors_.emplace_back(camera, board, pixel_error_px);
   }
 }

@@ -2,7 +2,7 @@
 
 #include "core/base/in_parallel.h"
 #include "core/numerics/robust.h"
-#include "core/optimisation/common_displacement.h"
+#include "core/optimisation/displacement_field.h"
 #include "core/optimisation/view_circles.h"
 
 #include <algorithm>
@@ -35,18 +35,23 @@ CircleFlags nearMedian(const std::vector<CircleMeasurement>& circles, std::span<
   return near;
 }
 
+// Distance of each circle's nearest neighbour.
+double nearestPoints_spacings(const Board& board) {
+  return board.type == BoardType::AsymmetricCircles ? std::sqrt(2.0) : 1.0;
+}
+
 // Whitens the errors of one view for the displacement that these of its circles have in common, as the solution does.
-void normalise(const std::vector<CircleMeasurement>& circles, const CircleFlags& common,
-               std::span<CircleError> errors) {
-  std::vector<Eigen::Matrix2d> roots;
+void normalise(const FieldModes& modes, const std::vector<CircleMeasurement>& circles,
+               const CircleFlags& common, std::span<CircleError> errors) {
+  std::vector<DisplacementField::Circle> displaced;
   std::vector<double> whitened;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!common[i]) continue;
-    roots.emplace_back(circles[i].common_px * circles[i].whitening_px);
+    displaced.push_back({circles[i].point, circles[i].rho});
     const Eigen::Vector2d in_sigmas = circles[i].whitening_px * errors[i].error_px;
     whitened.insert(whitened.end(), {in_sigmas.x(), in_sigmas.y()});
   }
-  CommonDisplacement(roots).whiten(whitened.data(), 1);
+  if (modes.size() > 0) DisplacementField(modes, displaced).whiten(whitened.data(), 1);
   const double* next = whitened.data();
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!common[i]) continue;
@@ -57,15 +62,16 @@ void normalise(const std::vector<CircleMeasurement>& circles, const CircleFlags&
 
 // Appends the errors of a view, and returns its measurements.
 std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const CalibrationState& state,
-                                            const OptimisationOptions& options, const CircleModel& model,
-                                            std::size_t camera, std::size_t view,
+                                            const OptimisationOptions& options, double displacements,
+                                            const CircleModel& model, std::size_t camera, std::size_t view,
                                             std::vector<CircleError>& errors) {
   const BoardView& seen = input.cameras[camera].observations.views[view];
   const std::vector<TimedCircle> within = circlesWithin(state, state.cameras[camera], seen);
   if (within.empty()) return {};
   std::vector<CircleMeasurement> circles;
   for (const TimedCircle& circle : within)
-    circles.push_back(measurementOf(input, state, options, camera, seen.circles[circle.index], 1.0));
+    circles.push_back(
+        measurementOf(input, state, options, camera, seen.circles[circle.index], {1.0, displacements}));
   const auto [first, last] = std::ranges::minmax(within, {}, &TimedCircle::time_s);
   const SegmentTimes segments = segmentsBetween(state, first.time_s, last.time_s);
   std::vector<const double*> blocks =
@@ -87,11 +93,12 @@ std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const
 
 // Appends the errors of a view. Circles that are used determine its displacement; null: those near the median error.
 void appendView(const CalibrationInput& input, const CalibrationState& state,
-                const OptimisationOptions& options, const CircleModel& model, std::size_t camera,
-                std::size_t view, const CircleSelection* used, std::vector<CircleError>& errors) {
+                const OptimisationOptions& options, double displacements, const CircleModel& model,
+                std::size_t camera, std::size_t view, const CircleSelection* used,
+                std::vector<CircleError>& errors) {
   const std::size_t first = errors.size();
   const std::vector<CircleMeasurement> circles =
-      appendErrors(input, state, options, model, camera, view, errors);
+      appendErrors(input, state, options, displacements, model, camera, view, errors);
   const std::span<CircleError> of_view = std::span(errors).subspan(first);
   if (of_view.empty()) return;
   CircleFlags common;
@@ -100,18 +107,20 @@ void appendView(const CalibrationInput& input, const CalibrationState& state,
   else
     for (const CircleError& error : of_view)
       common.push_back(error.inFront() && (*used)[camera][view][error.index]);
-  normalise(circles, common, of_view);
+  normalise(model.modes, circles, common, of_view);
 }
 
 }  // namespace
 
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
-                                      const OptimisationOptions& options, const CircleSelection* used) {
+                                      const OptimisationOptions& options, const NoiseScales& scales,
+                                      const CircleSelection* used) {
   constexpr std::size_t kParts = 8;  // of a camera's views, for threads
   std::vector<CircleError> errors;
   for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
     const CircleModel model{*input.cameras[camera].lens.detection_intrinsics, input.boardOf(camera).radius_m,
-                            options.huber_sigma, state.cameras[camera].lens.solved.has_value()};
+                            options.huber_sigma, modesOf(input, camera, options),
+                            state.cameras[camera].lens.solved.has_value()};
     const std::size_t views = input.cameras[camera].observations.views.size();
     std::array<std::vector<CircleError>, kParts> parts;
     inParallel(options.threads, kParts, [&](std::size_t part) {
@@ -121,7 +130,8 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
         circles += input.cameras[camera].observations.views[view].circles.size();
       parts[part].reserve(circles);
       for (std::size_t view = begin; view < end; ++view)
-        appendView(input, state, options, model, camera, view, used, parts[part]);
+        appendView(input, state, options, scales.displacements[camera], model, camera, view, used,
+                   parts[part]);
     });
     std::size_t count = errors.size();
     for (const std::vector<CircleError>& part : parts) count += part.size();
@@ -145,6 +155,56 @@ std::vector<CircleResidual> circleResiduals(const CalibrationInput& input,
                          used[error.camera][error.view][error.index] != 0});
   }
   return residuals;
+}
+
+// Some views decide as well as all of them.
+double displacementScale(const CalibrationInput& input, const CalibrationState& state,
+                         const OptimisationOptions& options, const std::vector<CircleError>& errors,
+                         const CircleSelection& used, std::size_t camera) {
+  constexpr std::size_t kViews = 60;
+  const BoardObservations& observations = input.cameras[camera].observations;
+  const FieldModes modes = modesOf(input, camera, options);
+  if (modes.size() == 0) return 1.0;
+  const std::size_t step = std::max<std::size_t>(1, observations.views.size() / kViews);
+  FieldSize size(modes);
+  std::vector<FieldSize::Circle> circles;
+  const auto begin = std::ranges::lower_bound(errors, camera, {}, &CircleError::camera);
+  for (auto error = begin; error != errors.end() && error->camera == camera;) {
+    circles.clear();
+    const std::size_t view = error->view;
+    for (; error != errors.end() && error->camera == camera && error->view == view; ++error) {
+      if (view % step != 0 || !error->inFront() || !used[camera][view][error->index]) continue;
+      const CircleObservation& observed = observations.views[view].circles[error->index];
+      const CircleMeasurement m = measurementOf(input, state, options, camera, observed, {});
+      circles.push_back({{m.point, m.rho / options.displacement_persistence},
+                         m.centre_px,
+                         m.whitening_px * error->error_px,
+                         m.whitening_px});
+    }
+    size.add(circles);
+  }
+  return size.mostProbable();
+}
+
+double neighbourAgreement(const CalibrationInput& input, const CalibrationState& state,
+                          const OptimisationOptions& options, const Weights& weights, std::size_t camera) {
+  const CameraData& data = input.cameras[camera];
+  if (data.observations.kind != CameraKind::Events) return 0.0;
+  const CircleScales scales{1.0, weights.scales.displacements[camera]};
+  double shares = 0.0, count = 0.0;
+  for (std::size_t view = 0; view < data.observations.views.size(); ++view) {
+    for (std::size_t i = 0; i < data.observations.views[view].circles.size(); ++i) {
+      if (!weights.used_circles[camera][view][i]) continue;
+      const CircleObservation& observed = data.observations.views[view].circles[i];
+      const double rho = measurementOf(input, state, options, camera, observed, scales).rho /
+                         options.displacement_persistence;
+      shares += rho * rho / (1.0 + rho * rho);
+      ++count;
+    }
+  }
+  return count > 0.0
+             ? shares / count * fieldCovariance(nearestPoints_spacings(input.boardOf(camera)), options)
+             : 0.0;
 }
 
 double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {

@@ -30,13 +30,22 @@ struct CircleError {
 // All circles whose times are in both splines' range, in order of camera, view and list. `used`: those that determine the
 // common displacement of their view, as in the solution; null before a selection.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
-                                      const OptimisationOptions& options,
+                                      const OptimisationOptions& options, const NoiseScales& scales,
                                       const CircleSelection* used = nullptr);
 
 // The same for files and displays, with the circles that were not used.
 std::vector<CircleResidual> circleResiduals(const CalibrationInput& input,
                                             const std::vector<CircleError>& errors,
                                             const CircleSelection& used);
+
+// Size of the displacements of a camera's circles, in their expected sigmas: NoiseScales::displacements.
+double displacementScale(const CalibrationInput& input, const CalibrationState& state,
+                         const OptimisationOptions& options, const std::vector<CircleError>& errors,
+                         const CircleSelection& used, std::size_t camera);
+
+// Correlation of the errors of neighbouring circles of one view, mean over a camera's used circles.
+double neighbourAgreement(const CalibrationInput& input, const CalibrationState& state,
+                          const OptimisationOptions& options, const Weights& weights, std::size_t camera);
 
 // Spread of a camera's errors in units of their sigmas, from the median, so that outliers
 // don't matter; 1 without circles.

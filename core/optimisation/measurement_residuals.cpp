@@ -45,12 +45,13 @@ ViewPart partOf(const ProblemBuilder& builder, std::size_t camera, const CircleM
                 const PixelErrors& pixel_errors, const BoardView& view,
                 std::span<const TimedCircle> circles) {
   const CalibrationState& state = builder.parameters.moved();
+  const NoiseScales& scales = builder.weights.scales;
   std::vector<CircleMeasurement> measured;
   measured.reserve(circles.size());
   for (const TimedCircle& circle : circles) {
     const CircleObservation& observed = view.circles[circle.index];
     measured.push_back(measurementOf(builder.input, state, builder.options, camera, observed,
-                                     builder.weights.scales.circles[camera]));
+                                     {scales.circles[camera], scales.displacements[camera]}));
     measured.back().pixel_error_px = pixel_errors.at(observed);
   }
   const SegmentTimes segments = segmentsBetween(state, circles.front().time_s, circles.back().time_s);

@@ -77,13 +77,20 @@ constexpr std::tuple kModelFields{
           "Image speed at which the additional edge localisation bias at low speed has decayed to 1/e."},
     Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
           "Sigma added in quadrature to the covariance of each measured centre."},
-    Field{"common_displacement_px", &ModelOptions::common_displacement_px, 0.008, within(0.0, 10.0), "px",
-          "Event cameras: sigma of a displacement that all circles of an event window have in common, fast "
+    Field{"displacement_px", &ModelOptions::displacement_px, 0.013, within(0.0, 10.0), "px",
+          "Event cameras: expected sigma of the displacement that neighbouring circles of an event window "
+          "share, fast "
           "motion."},
-    Field{"common_displacement_px2_s", &ModelOptions::common_displacement_px2_s, 2.0, within(0.0, 1000.0),
-          "px^2/s", "Event cameras: product of the same sigma and the image speed, slow motion."},
-    Field{"common_displacement_px_s", &ModelOptions::common_displacement_px_s, 15.0, within(0.1, 1000.0),
-          "px/s", "Event cameras: image speed below which the same sigma does not grow any more."},
+    Field{"displacement_px2_s", &ModelOptions::displacement_px2_s, 0.5, within(0.0, 1000.0), "px^2/s",
+          "Event cameras: product of the same sigma and the image speed, slow motion."},
+    Field{"displacement_px_s", &ModelOptions::displacement_px_s, 20.0, within(0.1, 1000.0), "px/s",
+          "Event cameras: image speed below which the same sigma does not grow any more."},
+    Field{"displacement_length_spacings", &ModelOptions::displacement_length_spacings, 2.5,
+          within(0.5, 100.0), "spacings", "Length of the displacement's Gaussian covariance over the board."},
+    Field{"displacement_constant_share", &ModelOptions::displacement_constant_share, 0.2, within(0.0, 1.0),
+          "", "Share of the displacement's variance that all circles of a window have in common."},
+    Field{"displacement_persistence", &ModelOptions::displacement_persistence, 1.5, within(1.0, 10.0), "",
+          "Factor of the displacement's sigma, since it hardly changes from one window to the next."},
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Threshold of Huber's loss for circle residuals."},
     Field{

@@ -31,7 +31,8 @@ struct ModelOptions {
   double accelerometer_random_walk;
   double slow_edge_speed_px_s;
   double least_centre_sigma_px;
-  double common_displacement_px, common_displacement_px2_s, common_displacement_px_s;
+  double displacement_px, displacement_px2_s, displacement_px_s;
+  double displacement_length_spacings, displacement_constant_share, displacement_persistence;
   double huber_sigma;
   double outlier_sigma;
   double outlier_window_fraction;

@@ -1,7 +1,7 @@
 #include "core/optimisation/view_circles.h"
 
 #include "core/optimisation/circle_errors.h"
-#include "core/optimisation/common_displacement.h"
+#include "core/optimisation/displacement_field.h"
 #include "core/optimisation/edge_localisation_bias.h"
 
 #include <Eigen/Cholesky>
@@ -35,14 +35,20 @@ std::vector<TimedCircle> circlesWithin(const CalibrationState& state, const Came
   return circles;
 }
 
+FieldModes modesOf(const CalibrationInput& input, std::size_t camera, const ModelOptions& options) {
+  return input.cameras[camera].observations.kind == CameraKind::Events
+             ? fieldModes(input.boardOf(camera), options)
+             : FieldModes();
+}
+
 CircleMeasurement measurementOf(const CalibrationInput& input, const CalibrationState& state,
                                 const ModelOptions& options, std::size_t camera,
-                                const CircleObservation& observed, double scale) {
+                                const CircleObservation& observed, const CircleScales& scales) {
   const CameraData& data = input.cameras[camera];
   const CameraIntrinsics& lens = *data.lens.detection_intrinsics;
   const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
   const Eigen::Matrix2d covariance =
-      scale * scale * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
+      scales.circles * scales.circles * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
   CircleMeasurement m;
   m.time_s = observed.time_s;
   m.by_drift_s = byDrift_s(state.cameras[camera], observed.time_s);
@@ -52,7 +58,9 @@ CircleMeasurement measurementOf(const CalibrationInput& input, const Calibration
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   m.lead = edgeBiasEffect(lens, observed, options.slow_edge_speed_px_s);
-  m.common_px = scale * commonDisplacement_px(data.observations.kind, observed, options);
+  m.rho = scales.circles * scales.displacements * options.displacement_persistence *
+          displacementSigma_px(data.observations.kind, observed, options) * std::sqrt(0.5) *
+          m.whitening_px.norm();
   m.point = observed.circle;
   m.place = placeOf(observed.centre_px, lens.resolution_px);
   return m;

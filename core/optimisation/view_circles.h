@@ -27,10 +27,17 @@ struct TimedCircle {
 std::vector<TimedCircle> circlesWithin(const CalibrationState& state, const CameraState& camera,
                                        const BoardView& view);
 
-// `scale`: of the camera's sigmas. Without pixel errors.
+// Empty for cameras without such a displacement.
+FieldModes modesOf(const CalibrationInput& input, std::size_t camera, const ModelOptions& options);
+
+// Factors of a camera's sigmas, and of those of its displacement field.
+struct CircleScales {
+  double circles = 1.0, displacements = 1.0;
+};
+// Without pixel errors.
 CircleMeasurement measurementOf(const CalibrationInput& input, const CalibrationState& state,
                                 const ModelOptions& options, std::size_t camera,
-                                const CircleObservation& observed, double scale);
+                                const CircleObservation& observed, const CircleScales& scales);
 
 // All segments between these times.
 SegmentTimes segmentsBetween(const CalibrationState& state, double first_s, double last_s);

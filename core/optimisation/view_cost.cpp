@@ -279,11 +279,11 @@ class ViewEvaluation {
   ViewRows::RowMajorMatrix by_points_;  // derivatives of a circle's pose, if there are no times
 };
 
-std::vector<Eigen::Matrix2d> rootsOf(std::span<const CircleMeasurement> circles) {
-  std::vector<Eigen::Matrix2d> roots;
-  for (const CircleMeasurement& circle : circles)
-    if (circle.common_px > 0.0) roots.emplace_back(circle.common_px * circle.whitening_px);
-  return roots;
+DisplacementField fieldOf(const CircleModel& model, std::span<const CircleMeasurement> circles) {
+  if (model.modes.size() == 0) return {};
+  std::vector<DisplacementField::Circle> displaced;
+  for (const CircleMeasurement& circle : circles) displaced.push_back({circle.point, circle.rho});
+  return {model.modes, displaced};
 }
 
 }  // namespace
@@ -303,7 +303,7 @@ ViewCost::ViewCost(const CircleModel& model, const SegmentTimes& segments,
     : model_(model),
       segments_(segments),
       circles_(std::move(circles)),
-      common_(rootsOf(circles_)),
+      field_(fieldOf(model, circles_)),
       columns_(columns) {
   std::vector<int>& sizes = *mutable_parameter_block_sizes();
   sizes.assign(rotationPointsOf(segments), 4);
@@ -318,7 +318,7 @@ ViewCost::ViewCost(const CircleModel& model, const SegmentTimes& segments,
 
 void ViewCost::evaluate(double const* const* parameters, std::span<const int> widths, ViewRows& rows) const {
   if (ViewEvaluation(model_, segments_, parameters, widths, rows).run(circles_, seen_, columns_))
-    common_.whiten(rows.values.data(), rows.stride);
+    field_.whiten(rows.values.data(), rows.stride);
   shorten(rows);
 }
 

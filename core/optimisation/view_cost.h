@@ -29,7 +29,7 @@
 #include "core/data/calibration_state.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/spline_segment.h"
-#include "core/optimisation/common_displacement.h"
+#include "core/optimisation/displacement_field.h"
 #include "core/optimisation/edge_localisation_bias.h"
 #include "core/optimisation/free_intrinsics.h"
 
@@ -51,7 +51,7 @@ struct CircleMeasurement {
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLocalisationBiasEffect lead;
   Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
-  double common_px = 0.0;                                    // commonDisplacement_px
+  double rho = 0.0;                                          // of DisplacementField
   int point = 0, place = 0;  // index on the board; cell of the image (placeOf)
 };
 
@@ -60,6 +60,7 @@ struct CircleModel {
   CameraIntrinsics camera;  // that was seen with
   double radius_m = 0.0;
   double huber_sigma = 0.0;
+  FieldModes modes;  // of the displacement; none without one
   bool free_intrinsics = false;
 };
 
@@ -92,7 +93,7 @@ class ViewCost final : public ceres::CostFunction {
   std::size_t controlPoints() const { return controlPointsOf(segments_); }
   const std::vector<CircleMeasurement>& circles() const { return circles_; }
   // Removes the common displacement of the view from errors over sigmas: two for each circle.
-  void whiten(double* errors) const { common_.whiten(errors, 1); }
+  void whiten(double* errors) const { field_.whiten(errors, 1); }
 
  private:
   void shorten(ViewRows& rows) const;
@@ -101,7 +102,7 @@ class ViewCost final : public ceres::CostFunction {
   SegmentTimes segments_;
   std::vector<CircleMeasurement> circles_;
   std::vector<SeenCentre> seen_;  // of the circles, where intrinsics are free
-  CommonDisplacement common_;
+  DisplacementField field_;
   PoseColumns columns_;
 };
 

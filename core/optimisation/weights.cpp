@@ -17,6 +17,7 @@ CircleSelection allCircles(const CalibrationInput& input) {
 Weights givenWeights(const CalibrationInput& input) {
   Weights weights;
   weights.scales.circles.assign(input.cameras.size(), 1.0);
+  weights.scales.displacements.assign(input.cameras.size(), 1.0);
   weights.scales.gyroscopes.assign(input.imus.size(), 1.0);
   weights.scales.accelerometers.assign(input.imus.size(), 1.0);
   weights.used_circles = allCircles(input);

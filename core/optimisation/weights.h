@@ -15,6 +15,7 @@ struct CalibrationInput;
 // noise densities or circle covariances do not change the balance between camera and IMU.
 struct NoiseScales {
   std::vector<double> circles;                          // by camera
+  std::vector<double> displacements;                    // by camera: of the displacement field's sigmas
   std::vector<double> gyroscopes, accelerometers;       // by IMU
   double smooth_rotation = 1.0, smooth_position = 1.0;  // without an IMU: accelerations at the knots
 };

@@ -121,6 +121,7 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
   get(map, "time_offset_at_s", state.time_offset_at_s);
   get(map, "reprojection_rms_px", fit.reprojection_rms_px);
   get(map, "normalised_rms", fit.normalised_rms);
+  get(map, "neighbour_agreement", fit.neighbour_agreement);
   if (const auto windows = map.find("windows")) {
     get(*windows, "total", fit.windows_total);
     get(*windows, "complete", fit.windows_complete);

@@ -110,6 +110,8 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   }
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
                       roundedYaml(fit.reprojection_rms_px), roundedYaml(fit.normalised_rms));
+  if (fit.neighbour_agreement > 0.0)
+    text += fmt::format("    neighbour_agreement: {}\n", roundedYaml(fit.neighbour_agreement));
   text += fmt::format(
       "    windows: {{total: {}, complete: {}, partial: {}, used: {}{}}}\n    circles: {{used: {}, rejected: "
       "{}}}\n",

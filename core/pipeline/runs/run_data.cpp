@@ -52,8 +52,9 @@ EVICAL_FIELDS(UncertaintyReport, columns, standard_deviations, correlation, came
               further_boards, given, gravity_direction_std_rad, gravity_norm_std_m_s2, observability, weakest,
               directions);
 EVICAL_FIELDS(SensorLatency, camera, against, latency_s, std_s);
-EVICAL_FIELDS(CameraFit, reprojection_rms_px, normalised_rms, windows_total, windows_complete,
-              windows_partial, windows_used, windows_rejected, circles_used, circles_rejected);
+EVICAL_FIELDS(CameraFit, reprojection_rms_px, normalised_rms, neighbour_agreement, windows_total,
+              windows_complete, windows_partial, windows_used, windows_rejected, circles_used,
+              circles_rejected);
 EVICAL_FIELDS(ImuFit, gyroscope_rms_rad_s, accelerometer_rms_m_s2);
 EVICAL_FIELDS(IterationRecord, stage, iteration, cost, gradient, step, cameras, released);
 EVICAL_FIELDS(CircleResidual, camera, view, circle, time_s, centre_px, residual_px, sigma_px, used);

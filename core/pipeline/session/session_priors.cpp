@@ -168,9 +168,10 @@ void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_li
 
 void readCameraPrior(const YamlNode& map, const std::string& name, Session& session) {
   SensorPrior& prior = sensorOf(map, name, session.cameras).prior;
-  allowOnlyKeys(map, kCameraQuantities,
-                {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows",
-                 "circles", "latency_s", "latency_std_s", "latency_against"});
+  allowOnlyKeys(
+      map, kCameraQuantities,
+      {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "neighbour_agreement",
+       "windows", "circles", "latency_s", "latency_std_s", "latency_against"});
   readPriors(map, kCameraQuantities, prior);
   if (name == session.reference && session.imus.empty()) dropOwnPlace(map, kCameraQuantities, prior);
 }

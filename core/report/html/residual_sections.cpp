@@ -249,9 +249,13 @@ void writeReprojection(const ReportData& data, const Measures& measures, ReportP
     page.text(paragraph(
         "", fmt::format(
                 "{} px RMS over {} circles of {} event windows or frames; {} circles rejected as outliers. "
-                "The residuals are {} times those expected by the front end.",
+                "The residuals are {} times those expected by the front end.{}",
                 significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
-                fit.circles_rejected, significant(fit.normalised_rms, 2))));
+                fit.circles_rejected, significant(fit.normalised_rms, 2),
+                fit.neighbour_agreement > 0.0
+                    ? fmt::format(" Errors of neighbouring circles agree to {:.2f} (correlation).",
+                                  fit.neighbour_agreement)
+                    : "")));
     page.beginRow();
     writeScatter(residuals, i, fit.reprojection_rms_px, page);
     if (i < measures.cameras.size()) writeBias(measures.cameras[i], i, page);

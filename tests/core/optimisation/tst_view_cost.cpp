@@ -12,10 +12,19 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kCommon_px = 0.5;
+// A displacement field of two modes for circlesNear.
+CircleModel displacedModel() {
+  CircleModel model = circleModel();
+  model.modes.resize(3, 2);
+  model.modes << 1.0, 0.0, 0.8, 0.6, 0.3, 0.9;
+  return model;
+}
 
 std::vector<CircleMeasurement> displaced(std::vector<CircleMeasurement> circles) {
-  for (CircleMeasurement& circle : circles) circle.common_px = kCommon_px;
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].point = static_cast<int>(i);
+    circles[i].rho = 2.0 + static_cast<double>(i);
+  }
   return circles;
 }
 
@@ -72,10 +81,10 @@ class TestViewCost : public QObject {
     }
   }
 
-  void jacobiansWithACommonDisplacement_matchNumericDifferences() {
+  void jacobiansWithADisplacementField_matchNumericDifferences() {
     for (const double near_sigma : {0.5, 30.0}) {
       States states(7);
-      const CircleModel model = circleModel();
+      const CircleModel model = displacedModel();
       const Blocks blocks = circleBlocks(states, 0.05);
       const ViewCost cost = exactCost(model, displaced(circlesNear(model, blocks, near_sigma, states)));
       const double error = worstJacobianError(cost, blocks, 1e-5);
@@ -84,18 +93,21 @@ class TestViewCost : public QObject {
   }
 
   // The squared residuals of a view are r^T (I + B B^T)^-1 r.
-  void commonDisplacement_isMarginalised() {
+  void displacementField_isMarginalised() {
     States states(9);
-    CircleModel model = circleModel();
+    CircleModel model = displacedModel();
     model.huber_sigma = 1e9;
     const Blocks blocks = circleBlocks(states, 0.05);
-    std::vector<CircleMeasurement> circles = displaced(circlesNear(model, blocks, 2.0, states));
+    const std::vector<CircleMeasurement> circles = displaced(circlesNear(model, blocks, 2.0, states));
     const double squares = residualsAt(exactCost(model, circles), blocks).squaredNorm();
-    for (CircleMeasurement& circle : circles) circle.common_px = 0.0;
-    const Eigen::VectorXd apart = residualsAt(exactCost(model, circles), blocks);
-    Eigen::MatrixXd roots(apart.size(), 2);
-    for (std::size_t i = 0; i < circles.size(); ++i)
-      roots.middleRows<2>(2 * static_cast<Eigen::Index>(i)) = kCommon_px * circles[i].whitening_px;
+    CircleModel without = model;
+    without.modes.resize(0, 0);
+    const Eigen::VectorXd apart = residualsAt(exactCost(without, circles), blocks);
+    Eigen::MatrixXd roots = Eigen::MatrixXd::Zero(apart.size(), 4);
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (const Eigen::Index axis : {0, 1})
+        roots.block<1, 2>(2 * i + axis, 2 * axis) =
+            circles[static_cast<std::size_t>(i)].rho * model.modes.row(i);
     const Eigen::MatrixXd covariance =
         Eigen::MatrixXd::Identity(apart.size(), apart.size()) + roots * roots.transpose();
     const double expected = apart.dot(covariance.llt().solve(apart));
