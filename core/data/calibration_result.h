@@ -96,7 +96,7 @@ struct SensorLatency {
 
 struct CameraFit {
   double reprojection_rms_px = 0.0;
-  double normalised_rms = 0.0;  // of residuals divided by their sigmas, with weights
+  double normalised_rms = 0.0;       // of residuals divided by their sigmas, with weights
   double neighbour_agreement = 0.0;  // correlation of the errors of neighbouring circles in an event window
   int windows_total = 0, windows_complete = 0, windows_partial = 0, windows_used = 0;
   int windows_rejected = 0;  // by a user

@@ -34,6 +34,29 @@ void addTo(double* __restrict sums, double factor, const double* __restrict row,
   for (Eigen::Index k = 0; k < count; ++k) sums[k] += factor * row[k];
 }
 
+constexpr Eigen::Index kMotions = 6;
+
+// Whitened derivatives of a view's centres by motions of the camera.
+Eigen::MatrixXd motionsOf(std::span<const FieldSize::Circle> view) {
+  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
+  for (const FieldSize::Circle& circle : view)
+    middle_px += circle.centre_px / static_cast<double>(view.size());
+  double extent_px = 1.0;
+  for (const FieldSize::Circle& circle : view)
+    extent_px = std::max(extent_px, (circle.centre_px - middle_px).norm());
+  Eigen::MatrixXd motions(2 * static_cast<Eigen::Index>(view.size()), kMotions);
+  Eigen::Index row = 0;
+  for (const FieldSize::Circle& circle : view) {
+    const Eigen::Vector2d at = (circle.centre_px - middle_px) / extent_px;
+    Eigen::Matrix<double, 2, kMotions> by_motion;
+    by_motion << 1.0, 0.0, -at.y(), at.x(), at.x() * at.x(), at.x() * at.y(),  //
+        0.0, 1.0, at.x(), at.y(), at.x() * at.y(), at.y() * at.y();
+    motions.middleRows<2>(row) = circle.whitening_px * by_motion;
+    row += 2;
+  }
+  return motions;
+}
+
 }  // namespace
 
 double displacementSigma_px(CameraKind kind, const CircleObservation& circle, const ModelOptions& options) {
@@ -81,6 +104,7 @@ DisplacementField::DisplacementField(const FieldModes& modes, std::span<const Ci
 void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
   constexpr Eigen::Index kAtOnce = 32, kFour = 4;
   const Eigen::Index circles = by_circle_.rows(), modes = by_circle_.cols(), width = 2 * columns;
+  if (circles == 0) return;
   std::array<double, kAtOnce * kMostModes> sums{}, gained{};
   for (Eigen::Index first = 0; first < width; first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, width - first);
@@ -110,40 +134,35 @@ void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
   }
 }
 
-// Columns: shift, rotation, distance and tilt of the camera, as a far board shows them.
+// Motions that the trajectory could follow are removed from each view: shift, rotation, distance and tilt of the camera, as a
+// far board shows them.
 void FieldSize::add(std::span<const Circle> view) {
-  constexpr Eigen::Index kMotions = 6;
-  const auto n = static_cast<Eigen::Index>(view.size());
-  if (2 * n <= 2 * kMotions) return;
-  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
-  for (const Circle& circle : view) middle_px += circle.centre_px / static_cast<double>(n);
-  double extent_px = 1.0;
-  for (const Circle& circle : view) extent_px = std::max(extent_px, (circle.centre_px - middle_px).norm());
-  const Eigen::Index modes = modes_.cols();
-  Eigen::MatrixXd motions(2 * n, kMotions), others = Eigen::MatrixXd::Zero(2 * n, 2 * modes + 1);
+  const auto n = static_cast<Eigen::Index>(view.size()), modes = modes_.cols();
+  if (n <= kMotions) return;
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(2 * n, 2 * modes + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Circle& circle = view[static_cast<std::size_t>(i)];
-    const Eigen::Vector2d at = (circle.centre_px - middle_px) / extent_px;
-    Eigen::Matrix<double, 2, kMotions> by_motion;
-    by_motion << 1.0, 0.0, -at.y(), at.x(), at.x() * at.x(), at.x() * at.y(),  //
-        0.0, 1.0, at.x(), at.y(), at.x() * at.y(), at.y() * at.y();
-    motions.middleRows<2>(2 * i) = circle.whitening_px * by_motion;
     const auto row = circle.displaced.rho * modes_.row(circle.displaced.point);
     for (Eigen::Index k = 0; k < modes; ++k) others(2 * i, k) = others(2 * i + 1, modes + k) = row[k];
     others.block<2, 1>(2 * i, 2 * modes) = circle.error_sigmas;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(motions);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(motionsOf(view));
   others.applyOnTheLeft(solver.householderQ().transpose());
-  const auto left = others.bottomRows(2 * n - kMotions);
-  const auto field = left.leftCols(2 * modes);
-  const auto error = left.col(2 * modes);
+  addSeparated(others.bottomRows(2 * n - kMotions));
+}
+
+// `left`: columns of the modes, and the errors.
+void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
+  constexpr double kNone = 1e-6;  // of the strongest
+  const auto field = left.leftCols(left.cols() - 1);
+  const auto error = left.rightCols<1>();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(field.transpose() * field);
   const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (field.transpose() * error);
   count_ += static_cast<double>(left.rows());
   rest_ += error.squaredNorm();
   for (Eigen::Index k = 0; k < along.size(); ++k) {
     const double strength = eigen.eigenvalues()[k];
-    if (strength < 1e-6 * eigen.eigenvalues().maxCoeff()) continue;
+    if (strength <= kNone * eigen.eigenvalues().maxCoeff()) continue;
     strengths_.push_back(strength);
     squares_.push_back(along[k] * along[k] / strength);
     rest_ -= squares_.back();
@@ -164,10 +183,14 @@ double FieldSize::misfit(double size) const {
 
 double FieldSize::mostProbable() const {
   constexpr double kLeast = 0.1, kMost = 10.0, kStep = 1.05;
-  double best = 1.0;
-  if (count_ <= 0.0) return best;
-  for (double size = kLeast; size < kMost; size *= kStep)
-    if (misfit(size) < misfit(best)) best = size;
+  if (count_ <= 0.0) return 1.0;
+  double best = 1.0, least = misfit(best);
+  for (double size = kLeast; size < kMost; size *= kStep) {
+    const double here = misfit(size);
+    if (here >= least) continue;
+    least = here;
+    best = size;
+  }
   return best;
 }
 

@@ -64,6 +64,7 @@ class FieldSize {
   double mostProbable() const;  // 1 without views
 
  private:
+  void addSeparated(const Eigen::MatrixXd& left);
   double misfit(double size) const;
 
   const FieldModes& modes_;

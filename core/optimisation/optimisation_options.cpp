@@ -85,7 +85,7 @@ constexpr std::tuple kModelFields{
           "Event cameras: product of the same sigma and the image speed, slow motion."},
     Field{"displacement_px_s", &ModelOptions::displacement_px_s, 20.0, within(0.1, 1000.0), "px/s",
           "Event cameras: image speed below which the same sigma does not grow any more."},
-    Field{"displacement_length_spacings", &ModelOptions::displacement_length_spacings, 2.5,
+    Field{"displacement_length_spacings", &ModelOptions::displacement_length_spacings, 2.0,
           within(0.5, 100.0), "spacings", "Length of the displacement's Gaussian covariance over the board."},
     Field{"displacement_constant_share", &ModelOptions::displacement_constant_share, 0.2, within(0.0, 1.0),
           "", "Share of the displacement's variance that all circles of a window have in common."},
@@ -128,8 +128,7 @@ constexpr std::tuple kPriorFields{
         Level::Expert, Applies::WithFrames},
     Field{"mapping_sigma", &PriorOptions::mapping_sigma, 0.01, within(1e-6, 10.0), "",
           "Sigma of the prior on scales (relative) and misalignments (rad) of gyroscopes and accelerometers, "
-          "the entries "
-          "of M_g and M_a. Default: typical of MEMS IMUs.",
+          "the entries of M_g and M_a. Default: typical of MEMS IMUs.",
           Level::Expert, Applies::WithImu},
     Field{"gyroscope_rotation_sigma_deg", &PriorOptions::gyroscope_rotation_sigma_deg, 5.0,
           within(1e-3, 180.0), "deg",

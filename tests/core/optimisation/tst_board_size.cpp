@@ -72,7 +72,7 @@ class TestBoardSize : public QObject {
     held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // otherwise lens and bow would absorb part of it
     held.board_bow = false;
     const BoardSizeRun blind = calibrateForBoardSize(boardOf(1.0, 0.005), held);
-    QVERIFY2(blind.translationError_m().norm() > 5.0 * run.translationError_m().norm(),
+    QVERIFY2(blind.translationError_m().norm() > 3.0 * run.translationError_m().norm(),
              qPrintable(QString::number(1e3 * blind.translationError_m().norm())));
   }
 
