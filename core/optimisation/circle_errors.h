@@ -23,12 +23,12 @@ struct CircleError {
   Eigen::Vector2d error_px =
       Eigen::Vector2d::Zero();  // predicted - measured, edge localisation bias included
   double normalised2 =
-      0.0;  // squared, over sigmas, without the common displacement of the view; infinite behind the camera
+      0.0;  // squared, over sigmas, without the displacement field of the view; infinite behind the camera
   bool inFront() const { return std::isfinite(normalised2); }
 };
 
 // All circles whose times are in both splines' range, in order of camera, view and list. `used`: those that determine the
-// common displacement of their view, as in the solution; null before a selection.
+// displacement field of their view, as in the solution; null before a selection.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options, const NoiseScales& scales,
                                       const CircleSelection* used = nullptr);

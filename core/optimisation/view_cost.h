@@ -5,7 +5,7 @@
 //     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
 // L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of the view are then whitened
-// for the displacement that its circles have in common (common_displacement.h), and each circle's residual is
+// for the displacement field of its circles (displacement_field.h), and each circle's residual is
 // shortened so that its square is Huber's loss.
 //
 // With free intrinsics, the prediction is that of free_intrinsics.h.
@@ -87,12 +87,12 @@ class ViewCost final : public ceres::CostFunction {
 
   // `widths`: columns of each block after the control points, 0 if it is fixed. Without any, rows are residuals only.
   void evaluate(double const* const* parameters, std::span<const int> widths, ViewRows& rows) const;
-  // Errors before the common displacement is removed: two for each circle, infinite behind the camera.
+  // Errors before the displacement field is removed: two for each circle, infinite behind the camera.
   std::vector<double> errorsInSigmas(double const* const* parameters) const;
 
   std::size_t controlPoints() const { return controlPointsOf(segments_); }
   const std::vector<CircleMeasurement>& circles() const { return circles_; }
-  // Removes the common displacement of the view from errors over sigmas: two for each circle.
+  // Removes the displacement field of the view from errors over sigmas: two for each circle.
   void whiten(double* errors) const { field_.whiten(errors, 1); }
 
  private:

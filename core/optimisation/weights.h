@@ -28,7 +28,7 @@ struct Weights {
   NoiseScales scales;
   CircleSelection used_circles;
   std::vector<SampleSelection> used_samples;  // by IMU
-  // By IMU: along these axes a mapping stays unchanged, and translations stay at 0.
+  // By IMU: along these axes translations stay at 0.
   std::vector<UnexcitedAxes> held_axes;
 };
 

@@ -162,7 +162,7 @@ void drawSession(Dice& dice, SessionErrors& errors) {
   errors.principal_point_px = dice.normal(0.7);
 }
 
-// What the laboratories of a family have in common, in place of what was drawn.
+// Sets the properties that the laboratories of a family have in common, in place of the drawn ones.
 void setFamily(LaboratoryFamily family, Dice& dice, Scenario& scenario) {
   MotionModel& motion = scenario.motion;
   EventPixelModel& pixel = scenario.cameras.front().pixel;

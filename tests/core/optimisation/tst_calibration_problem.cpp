@@ -130,7 +130,7 @@ class TestCalibrationProblem : public QObject {
     QVERIFY(countOf(problem, SensorKind::Gyroscope) > 0);
   }
 
-  // The displacement that its circles have in common is one, also if there are knots between their times.
+  // The displacement field of its circles is one, also if there are knots between their times.
   void viewAcrossKnots_isOneMeasurement() {
     const test::SimulatedRig rig = shortRig();
     const CalibrationInput input = oneView(rig.input);

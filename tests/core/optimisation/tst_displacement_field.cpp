@@ -105,8 +105,7 @@ class TestDisplacementField : public QObject {
   void size_isFound_whateverTheMotion() {
     for (const double size : {0.3, 1.0, 3.0}) {
       const double found = SimulatedViews(boardOf(11, 4)).foundSize(size, 0.03, 60);
-      QVERIFY2(found > 0.8 * size && found < 1.18 * size,
-               qPrintable(QString("%1: %2").arg(size).arg(found)));
+      QVERIFY2(found > 0.8 * size && found < 1.18 * size, qPrintable(QString("%1: %2").arg(size).arg(found)));
     }
     const double none = SimulatedViews(boardOf(7, 3)).foundSize(0.0, 0.03, 60);
     QVERIFY2(none < 0.35, qPrintable(QString::number(none)));
