@@ -2,6 +2,7 @@
 
 #include "core/optimisation/measurement_residuals.h"
 #include "core/optimisation/prior_residuals.h"
+#include "core/optimisation/view_circles.h"
 
 #include <algorithm>
 #include <cmath>
