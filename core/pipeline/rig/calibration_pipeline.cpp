@@ -372,7 +372,7 @@ class Calibration {
     flagDoubtful(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
     flagDoubtful(QualityWarning{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
     flagDoubtful(clock_doubt_, result, "clock_step");
-    for (const QualityWarning& wrong : wrongInputs(session_, input_, initial_, solution, uncertainty.report))
+    for (const QualityWarning& wrong : wrongInputs(session_, input_, initial_, solution, uncertainty))
       flagDoubtful(wrong, result);
     wrong_noise_ = wrongNoise(session_, input_, solution);
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);

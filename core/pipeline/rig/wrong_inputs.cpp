@@ -256,19 +256,32 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
                         kWrongBoard};
 }
 
+// Drift without the pull of its prior around 0, which is strong where a wrong clock makes the other errors large.
+// `as_weighed`: of the solution, so without what the errors add to the reported variance.
+double driftByData_ppm(double drift_ppm, const QuantityAddress& number,
+                       const UncertaintyEstimate& uncertainty, double prior_ppm) {
+  constexpr double kLeastShare = 0.3;  // of the information that the data hold: less is hardly a measurement
+  const std::optional<Eigen::Index> column = columnOf(number, uncertainty.report.columns);
+  if (!column) return drift_ppm;
+  const double of_prior = uncertainty.as_weighed(*column, *column) / (prior_ppm * prior_ppm);
+  return drift_ppm / std::max(kLeastShare, 1.0 - of_prior);
+}
+
 // Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
 // percent. The batch estimates either, but accelerations and rates then have wrong scales.
 std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const CalibrationState& state,
-                                         const UncertaintyReport& uncertainty, double prior_ppm,
+                                         const UncertaintyEstimate& uncertainty, double prior_ppm,
                                          const InitialisationOptions& options) {
   constexpr double kUsual = 4.0;  // sigmas of the prior
   const bool of_imu = !input.imus.empty();
   const std::string& reference = of_imu ? input.imus[input.reference_imu].name : input.cameras.front().name;
   std::optional<QualityWarning> wrong;
-  const auto test = [&](const char* group, const auto& data, double drift_ppm, double sigma_ppm) {
+  const auto test = [&](const char* group, const auto& data, const QuantityAddress& number,
+                        double estimated_ppm, double sigma_ppm) {
     const double least_ppm =
         std::max(options.wrong_clock_prior_sigmas * prior_ppm, options.wrong_clock_sigmas * sigma_ppm);
-    if (wrong || data.prior.time_offset_drift || !(std::abs(drift_ppm) > least_ppm)) return;
+    if (wrong || data.prior.time_offset_drift || !(std::abs(estimated_ppm) > least_ppm)) return;
+    const double drift_ppm = driftByData_ppm(estimated_ppm, number, uncertainty, prior_ppm);
     const double pace = 1.0 + 1e-6 * drift_ppm;
     wrong = QualityWarning{
         fmt::format("the clocks of {} and {} differ by {:.2g} % in their rates, others by less than "
@@ -280,11 +293,11 @@ std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const Ca
         kWrongClock};
   };
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
-    test("cameras", input.cameras[k], state.cameras[k].time_offset_drift_ppm,
-         uncertainty.cameras[k].time_offset_drift_std_ppm);
+    test("cameras", input.cameras[k], {QuantityOwner::Camera, k, QuantityId::TimeOffsetDrift},
+         state.cameras[k].time_offset_drift_ppm, uncertainty.report.cameras[k].time_offset_drift_std_ppm);
   for (std::size_t k = 0; k < input.imus.size(); ++k)
-    test("imus", input.imus[k], state.imus[k].time_offset_drift_ppm,
-         uncertainty.imus[k].time_offset_drift_std_ppm);
+    test("imus", input.imus[k], {QuantityOwner::Imu, k, QuantityId::TimeOffsetDrift},
+         state.imus[k].time_offset_drift_ppm, uncertainty.report.imus[k].time_offset_drift_std_ppm);
   return wrong;
 }
 
@@ -392,13 +405,14 @@ CalibrationError withWrongInput(const CalibrationError& error, const Session& se
 
 std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
                                         const Initialisation& initial, const BatchSolution& solution,
-                                        const UncertaintyReport& uncertainty) {
+                                        const UncertaintyEstimate& uncertainty) {
   const InitialisationOptions& options = *session.options.initialisation;
   std::vector<QualityWarning> wrong;
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const CameraLens& lens = solution.state.cameras[k].lens;
     if (!lens.given || !lens.solved || input.sensorOf(k) != k) continue;
-    if (!differs(*lens.given, *lens.solved, uncertainty.cameras[k].intrinsics_std, options.wrong_lens_sigmas))
+    if (!differs(*lens.given, *lens.solved, uncertainty.report.cameras[k].intrinsics_std,
+                 options.wrong_lens_sigmas))
       continue;
     const std::string words = wrongLensWords(*lens.given, *lens.solved, 0.0, options);
     if (!words.empty())

@@ -9,6 +9,7 @@
 #include "core/data/wrong_input.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "core/pipeline/session/session.h"
 
 #include <optional>
@@ -35,7 +36,7 @@ std::optional<QualityWarning> wrongUnit(const Session& session, const Calibratio
 // Wrong inputs of a solution, each with the value that would agree. They make any result doubtful.
 std::vector<QualityWarning> wrongInputs(const Session& session, const CalibrationInput& input,
                                         const Initialisation& initial, const BatchSolution& solution,
-                                        const UncertaintyReport& uncertainty);
+                                        const UncertaintyEstimate& uncertainty);
 
 // Noise densities that the recording contradicts: too small ones only with a misfit.
 std::vector<QualityWarning> wrongNoise(const Session& session, const CalibrationInput& input,
