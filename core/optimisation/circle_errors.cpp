@@ -157,16 +157,15 @@ std::vector<CircleResidual> circleResiduals(const CalibrationInput& input,
   return residuals;
 }
 
-// Some views decide as well as all of them.
 double displacementScale(const CalibrationInput& input, const CalibrationState& state,
                          const OptimisationOptions& options, const std::vector<CircleError>& errors,
                          const CircleSelection& used, std::size_t camera) {
-  constexpr std::size_t kViews = 60;
   const BoardObservations& observations = input.cameras[camera].observations;
   const FieldModes modes = modesOf(input, camera, options);
   if (modes.size() == 0) return 1.0;
-  const std::size_t step = std::max<std::size_t>(1, observations.views.size() / kViews);
-  FieldSize size(modes);
+  const std::size_t step = std::max<std::size_t>(
+      1, observations.views.size() / static_cast<std::size_t>(options.displacement_views));
+  FieldSize size(modes, options.displacement_size_sigma);
   std::vector<FieldSize::Circle> circles;
   const auto begin = std::ranges::lower_bound(errors, camera, {}, &CircleError::camera);
   for (auto error = begin; error != errors.end() && error->camera == camera;) {

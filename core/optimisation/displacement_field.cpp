@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr Eigen::Index kMostModes = 16;
+constexpr Eigen::Index kMostModes = 32;
 
 // (1 / sqrt(1 + l) - 1) / l, also for small l.
 double gainOf(double l) {
@@ -71,24 +71,37 @@ double fieldCovariance(double distance_spacings, const ModelOptions& options) {
          (1.0 - options.displacement_constant_share) * std::exp(-0.5 * lengths * lengths);
 }
 
-// Incomplete Cholesky factor of the kernel, with the largest remaining variance next.
-FieldModes fieldModes(const Board& board, const ModelOptions& options) {
-  constexpr double kNegligible = 0.1;  // of the variance
+// An incomplete Cholesky factor of the kernel, with the largest remaining variance next.
+FieldModes factorOf(const Board& board, const ModelOptions& options) {
+  constexpr double kNegligible = 0.01;  // of the variance
+  constexpr Eigen::Index kMost = 64;
   const std::vector<Eigen::Vector2d> points_m = boardPoints_m(board);
   const auto n = static_cast<Eigen::Index>(points_m.size());
   const auto point_m = [&](Eigen::Index i) { return points_m[static_cast<std::size_t>(i)]; };
-  FieldModes modes(n, 0);
+  FieldModes factor(n, 0);
   Eigen::VectorXd left = Eigen::VectorXd::Ones(n), column(n);
-  for (Eigen::Index at = 0; modes.cols() < std::min(n, kMostModes) && left.maxCoeff(&at) > kNegligible;) {
+  for (Eigen::Index at = 0; factor.cols() < std::min(n, kMost) && left.maxCoeff(&at) > kNegligible;) {
     for (Eigen::Index i = 0; i < n; ++i)
       column[i] = fieldCovariance((point_m(i) - point_m(at)).norm() / board.spacing_m, options);
-    column -= modes * modes.row(at).transpose();
+    column -= factor * factor.row(at).transpose();
     column /= std::sqrt(left[at]);
     left -= column.cwiseAbs2();
-    modes.conservativeResize(Eigen::NoChange, modes.cols() + 1);
-    modes.rightCols<1>() = column;
+    factor.conservativeResize(Eigen::NoChange, factor.cols() + 1);
+    factor.rightCols<1>() = column;
   }
-  return modes;
+  return factor;
+}
+
+// The strongest eigenvectors of the kernel: two thirds of the modes that the factor needs for the same remainder.
+FieldModes fieldModes(const Board& board, const ModelOptions& options) {
+  const FieldModes factor = factorOf(board, options);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(factor.transpose() * factor);
+  const FieldModes all = factor * eigen.eigenvectors().rowwise().reverse();
+  Eigen::VectorXd left = Eigen::VectorXd::Ones(factor.rows());
+  Eigen::Index count = 0;
+  while (count < std::min(all.cols(), kMostModes) && left.maxCoeff() > options.displacement_remainder)
+    left -= all.col(count++).cwiseAbs2();
+  return all.leftCols(count);
 }
 
 DisplacementField::DisplacementField(const FieldModes& modes, std::span<const Circle> circles)
@@ -105,12 +118,12 @@ void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
   constexpr Eigen::Index kAtOnce = 32, kFour = 4;
   const Eigen::Index circles = by_circle_.rows(), modes = by_circle_.cols(), width = 2 * columns;
   if (circles == 0) return;
-  std::array<double, kAtOnce * kMostModes> sums{}, gained{};
+  std::array<double, kAtOnce * kMostModes> sums, gained;  // filled below, as far as there are modes
   for (Eigen::Index first = 0; first < width; first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, width - first);
     double* const numbers = matrix + first;
-    sums.fill(0.0);
-    gained.fill(0.0);
+    std::fill_n(sums.begin(), modes * kAtOnce, 0.0);
+    std::fill_n(gained.begin(), modes * kAtOnce, 0.0);
     Eigen::Index i = 0;
     for (; i + kFour <= circles; i += kFour)
       for (Eigen::Index k = 0; k < modes; ++k)
@@ -171,14 +184,13 @@ void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
 
 // Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior.
 double FieldSize::misfit(double size) const {
-  constexpr double kPrior = 0.7;  // sigma of the logarithm
   double sum = rest_, logs = 0.0;
   for (std::size_t k = 0; k < strengths_.size(); ++k) {
     const double variance = 1.0 + size * size * strengths_[k];
     sum += squares_[k] / variance;
     logs += std::log(variance);
   }
-  return count_ * std::log(sum / count_) + logs + std::pow(std::log(size) / kPrior, 2);
+  return count_ * std::log(sum / count_) + logs + std::pow(std::log(size) / prior_sigma_, 2);
 }
 
 double FieldSize::mostProbable() const {

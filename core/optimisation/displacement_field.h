@@ -28,7 +28,8 @@ double displacementSigma_px(CameraKind kind, const CircleObservation& circle, co
 // k, of a distance in spacings.
 double fieldCovariance(double distance_spacings, const ModelOptions& options);
 
-// F: a row for each point of the board.
+// F: a row for each point of the board. Its columns leave at most displacement_remainder of the variance of a point, except on
+// boards that need more than 32 of them.
 using FieldModes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 FieldModes fieldModes(const Board& board, const ModelOptions& options);
 
@@ -58,7 +59,8 @@ class FieldSize {
     Eigen::Vector2d centre_px, error_sigmas;  // whitened by the circle's own covariance
     Eigen::Matrix2d whitening_px;             // L^-1
   };
-  explicit FieldSize(const FieldModes& modes) : modes_(modes) {}
+  // `prior_sigma`: of the size's logarithm.
+  FieldSize(const FieldModes& modes, double prior_sigma) : modes_(modes), prior_sigma_(prior_sigma) {}
 
   void add(std::span<const Circle> view);
   double mostProbable() const;  // 1 without views
@@ -68,6 +70,7 @@ class FieldSize {
   double misfit(double size) const;
 
   const FieldModes& modes_;
+  double prior_sigma_;
   std::vector<double> strengths_, squares_;  // of the modes that remain: eigenvalue, and error squared
   double rest_ = 0.0, count_ = 0.0;          // squared errors that no mode explains, and all numbers
 };

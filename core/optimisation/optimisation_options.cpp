@@ -91,6 +91,13 @@ constexpr std::tuple kModelFields{
           "", "Share of the displacement's variance that all circles of a window have in common."},
     Field{"displacement_persistence", &ModelOptions::displacement_persistence, 1.5, within(1.0, 10.0), "",
           "Factor of the displacement's sigma, since it hardly changes from one window to the next."},
+    Field{"displacement_size_sigma", &ModelOptions::displacement_size_sigma, 0.7, within(0.01, 10.0), "",
+          "Prior sigma of the logarithm of the displacement's size, which each recording shows."},
+    Field{
+        "displacement_remainder", &ModelOptions::displacement_remainder, 0.1, within(1e-4, 1.0), "",
+        "Share of the displacement's variance that the modes of a board may leave: fewer modes are faster."},
+    Field{"displacement_views", &ModelOptions::displacement_views, 60, within(1, 100000), "",
+          "Views that determine the displacement's size; more decide hardly better."},
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Threshold of Huber's loss for circle residuals."},
     Field{

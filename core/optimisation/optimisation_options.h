@@ -33,6 +33,8 @@ struct ModelOptions {
   double least_centre_sigma_px;
   double displacement_px, displacement_px2_s, displacement_px_s;
   double displacement_length_spacings, displacement_constant_share, displacement_persistence;
+  double displacement_size_sigma, displacement_remainder;
+  int displacement_views;
   double huber_sigma;
   double outlier_sigma;
   double outlier_window_fraction;
