@@ -161,11 +161,11 @@ double displacementScale(const CalibrationInput& input, const CalibrationState& 
                          const OptimisationOptions& options, const std::vector<CircleError>& errors,
                          const CircleSelection& used, std::size_t camera) {
   const BoardObservations& observations = input.cameras[camera].observations;
-  const FieldModes modes = modesOf(input, camera, options);
-  if (modes.size() == 0) return 1.0;
+  if (observations.kind != CameraKind::Events) return 1.0;
   const std::size_t step = std::max<std::size_t>(
       1, observations.views.size() / static_cast<std::size_t>(options.displacement_views));
-  FieldSize size(modes, options.displacement_size_sigma);
+  const FieldModes root = fieldRoot(input.boardOf(camera), options);
+  FieldSize size(root, options.displacement_size_sigma);
   std::vector<FieldSize::Circle> circles;
   const auto begin = std::ranges::lower_bound(errors, camera, {}, &CircleError::camera);
   for (auto error = begin; error != errors.end() && error->camera == camera;) {

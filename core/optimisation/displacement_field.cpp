@@ -72,7 +72,7 @@ double fieldCovariance(double distance_spacings, const ModelOptions& options) {
 }
 
 // An incomplete Cholesky factor of the kernel, with the largest remaining variance next.
-FieldModes factorOf(const Board& board, const ModelOptions& options) {
+FieldModes fieldRoot(const Board& board, const ModelOptions& options) {
   constexpr double kNegligible = 0.01;  // of the variance
   constexpr Eigen::Index kMost = 64;
   const std::vector<Eigen::Vector2d> points_m = boardPoints_m(board);
@@ -94,7 +94,7 @@ FieldModes factorOf(const Board& board, const ModelOptions& options) {
 
 // The strongest eigenvectors of the kernel: two thirds of the modes that the factor needs for the same remainder.
 FieldModes fieldModes(const Board& board, const ModelOptions& options) {
-  const FieldModes factor = factorOf(board, options);
+  const FieldModes factor = fieldRoot(board, options);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(factor.transpose() * factor);
   const FieldModes all = factor * eigen.eigenvectors().rowwise().reverse();
   Eigen::VectorXd left = Eigen::VectorXd::Ones(factor.rows());
@@ -150,12 +150,12 @@ void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
 // Motions that the trajectory could follow are removed from each view: shift, rotation, distance and tilt of the camera, as a
 // far board shows them.
 void FieldSize::add(std::span<const Circle> view) {
-  const auto n = static_cast<Eigen::Index>(view.size()), modes = modes_.cols();
+  const auto n = static_cast<Eigen::Index>(view.size()), modes = root_.cols();
   if (n <= kMotions) return;
   Eigen::MatrixXd others = Eigen::MatrixXd::Zero(2 * n, 2 * modes + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Circle& circle = view[static_cast<std::size_t>(i)];
-    const auto row = circle.displaced.rho * modes_.row(circle.displaced.point);
+    const auto row = circle.displaced.rho * root_.row(circle.displaced.point);
     for (Eigen::Index k = 0; k < modes; ++k) others(2 * i, k) = others(2 * i + 1, modes + k) = row[k];
     others.block<2, 1>(2 * i, 2 * modes) = circle.error_sigmas;
   }

@@ -33,6 +33,9 @@ double fieldCovariance(double distance_spacings, const ModelOptions& options);
 using FieldModes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 FieldModes fieldModes(const Board& board, const ModelOptions& options);
 
+// Such an F with more columns, which leave a hundredth: what the modes leave would count as errors of the circles.
+FieldModes fieldRoot(const Board& board, const ModelOptions& options);
+
 class DisplacementField {
  public:
   struct Circle {
@@ -60,7 +63,7 @@ class FieldSize {
     Eigen::Matrix2d whitening_px;             // L^-1
   };
   // `prior_sigma`: of the size's logarithm.
-  FieldSize(const FieldModes& modes, double prior_sigma) : modes_(modes), prior_sigma_(prior_sigma) {}
+  FieldSize(const FieldModes& root, double prior_sigma) : root_(root), prior_sigma_(prior_sigma) {}
 
   void add(std::span<const Circle> view);
   double mostProbable() const;  // 1 without views
@@ -69,7 +72,7 @@ class FieldSize {
   void addSeparated(const Eigen::MatrixXd& left);
   double misfit(double size) const;
 
-  const FieldModes& modes_;
+  const FieldModes& root_;
   double prior_sigma_;
   std::vector<double> strengths_, squares_;  // of the modes that remain: eigenvalue, and error squared
   double rest_ = 0.0, count_ = 0.0;          // squared errors that no mode explains, and all numbers
