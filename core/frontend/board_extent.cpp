@@ -2,8 +2,11 @@
 
 #include "core/frontend/circle_measurement.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace evical {
 namespace {
@@ -30,11 +33,39 @@ Line columnOf(const BoardScene& scene, int col) {
 
 enum class LineState { OutOfView, Absent, Unclear, Present };
 
+// How far a measured circle is from its place in the board's fit, and from its size there.
+struct Deviation {
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  double radius_px = 0.0;
+};
+
+Deviation deviationOf(const CircleObservation& circle, const CircleImage& place, const BoardMotion& motion,
+                      double middle_s) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> shape(place.shape);
+  return {circle.centre_px - motion.travel(circle.centre_px, circle.time_s - middle_s) - place.centre_px,
+          circle.semi_axes_px.maxCoeff() - 1.0 / std::sqrt(shape.eigenvalues().x())};
+}
+
 class ExtentJudge {
  public:
   ExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
               const FrontEndOptions& options)
-      : window_(window), trace_(trace), scene_(scene), options_(options) {}
+      : window_(window), trace_(trace), scene_(scene), options_(options) {
+    double centres_px2 = 0.0, radii_px2 = 0.0, radii_px = 0.0, count = 0.0;
+    for (const CircleObservation& circle : trace.circles) {
+      const auto place = imageOfCircle(trace.motion->ideal_from_board, scene, circle.circle);
+      if (!place) continue;
+      const Deviation deviation = deviationOf(circle, *place, *trace.motion, trace.report.time_s);
+      centres_px2 += 0.5 * deviation.centre_px.squaredNorm();
+      radii_px2 += deviation.radius_px * deviation.radius_px;
+      radii_px += deviation.radius_px;
+      ++count;
+    }
+    if (count == 0.0) return;
+    radius_px_ = radii_px / count;
+    radius_sigma_px_ = std::max(kLeast_px, std::sqrt(radii_px2 / count - radius_px_ * radius_px_));
+    centre_sigma_px_ = std::max(kLeast_px, std::sqrt(centres_px2 / count));
+  }
 
   void judgeRows(LatticeEnds& ends) const {
     const int rows = scene_.board.rows;
@@ -58,6 +89,22 @@ class ExtentJudge {
     return motion;
   }
 
+  // Circles that are where the board's lattice continues, and of the size of its circles, as precisely as its own ones.
+  int alike(const Line& line, const BoardMotion& motion) const {
+    constexpr double kSame_sigmas = 4.0;
+    int count = 0;
+    for (const CircleObservation& circle :
+         measureCircles(window_, motion, line.scene, {halfSlot_s()}, options_.tracking)) {
+      const auto place = imageOfCircle(motion.ideal_from_board, line.scene, circle.circle);
+      if (!place) continue;
+      const Deviation deviation =
+          deviationOf(circle, *place, motion, 1e-9 * static_cast<double>(motion.time_ns));
+      count += deviation.centre_px.norm() < kSame_sigmas * centre_sigma_px_ &&
+               std::abs(deviation.radius_px - radius_px_) < kSame_sigmas * radius_sigma_px_;
+    }
+    return count;
+  }
+
   LineState stateOf(const Line& line, int seen) const {
     const int expected = expectedCircles(motionOf(line), line.scene, halfSlot_s());
     const double least = options_.extent.least_line;
@@ -66,9 +113,19 @@ class ExtentJudge {
     return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }
 
+  // Discs of the background also lie on a line now and then. So most of the line must be in view, and there must be
+  // three circles of it, if it has as many.
   LineState beyond(const Line& line) const {
-    const auto seen = measureCircles(window_, motionOf(line), line.scene, {halfSlot_s()}, options_.tracking);
-    return stateOf(line, static_cast<int>(seen.size()));
+    constexpr double kMost = 0.75;
+    const BoardMotion motion = motionOf(line);
+    const int count = line.scene.board.pointCount();
+    const int expected = expectedCircles(motion, line.scene, halfSlot_s());
+    const double least = std::min(3, count), most = kMost * count;
+    if (expected < std::max(least, most)) return LineState::OutOfView;
+    const int seen = alike(line, motion);
+    if (seen >= std::max(least, kMost * expected)) return LineState::Present;
+    const LineState state = stateOf(line, seen);
+    return state == LineState::Present ? LineState::Unclear : state;
   }
 
   // First line of the board in the image, from an edge inwards.
@@ -101,6 +158,9 @@ class ExtentJudge {
   const WindowTrace& trace_;
   const BoardScene& scene_;
   const FrontEndOptions& options_;
+  static constexpr double kLeast_px = 0.1;
+  double centre_sigma_px_ = kLeast_px, radius_sigma_px_ = kLeast_px,
+         radius_px_ = 0.0;  // of the board's own circles
 };
 
 }  // namespace

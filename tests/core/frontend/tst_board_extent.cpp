@@ -4,6 +4,9 @@
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
 
+#include <span>
+#include <utility>
+
 namespace {
 
 using namespace evical;
@@ -16,10 +19,13 @@ struct Claim {
   int rows, cols, first_row = 0, first_col = 0;
 };
 
-BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0) {
+BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0,
+                  std::span<const SyntheticCircle> discs = {}) {
   std::mt19937 random(7);
   std::vector<EdgeCrossing> bursts = burstsOf(moving, kBoardExtentHalfWindow_s, 0.1, random);
   addRandomBursts(random_bursts, kBoardExtentHalfWindow_s, random, bursts);
+  for (const SyntheticCircle& disc : discs)
+    addBursts(disc, kBoardExtentHalfWindow_s, moving.board.circles, 0.1, random, bursts);
   const SyntheticWindow synthetic(bursts, moving.board.circles);
   Board claimed = moving.board;
   claimed.rows = claim.rows;
@@ -42,6 +48,29 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   return extent;
 }
 
+// Discs of the background, some of them near places where a larger board would have circles.
+std::vector<SyntheticCircle> discsBeside(const MovingBoard& moving, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Board larger = moving.board;  // by a line to all sides, with the same places
+  larger.rows += 4;
+  larger.cols += 2;
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  shift.topRightCorner<2, 1>() = -larger.point_m(2, 1);
+  const BoardScene scene(larger, kDavis_px, std::nullopt);
+  std::vector<SyntheticCircle> discs;
+  for (int row = 1; row < larger.rows - 1; ++row)
+    for (int col = 0; col < larger.cols; ++col) {
+      const bool on_board = row >= 2 && row < larger.rows - 2 && col >= 1 && col < larger.cols - 1;
+      const auto place = imageOfCircle(moving.homographyAt(0.0) * shift, scene, row * larger.cols + col);
+      if (on_board || !place || uniform(random) < -0.2) continue;
+      const Eigen::Vector2d velocity_px_s = moving.motionAt(0.0).velocityAt(place->centre_px);
+      discs.push_back({place->centre_px + 2.0 * Eigen::Vector2d(uniform(random), uniform(random)),
+                       (1.0 + 0.1 * uniform(random)) * velocity_px_s,
+                       (1.0 + 0.1 * uniform(random)) * place->largest_radius_px});
+    }
+  return discs;
+}
+
 QString describe(const LatticeEnds& ends) {
   return QString("beyond %1 of %2, missing %3 of %4")
       .arg(ends.beyond_seen)
@@ -55,8 +84,10 @@ class TestBoardExtent : public QObject {
  private slots:
   void lattice_isHeldAgainstTheClaim_data();
   void lattice_isHeldAgainstTheClaim();
+  void largerBoards_areLarger();
   void symmetricBoard_isJudgedAlike();
   void clutter_isNoLine();
+  void discsOfTheBackground_areNoLine();
   void boardOneStepOff_saysNothing();
   void boardCutByTheImage_isNotSmaller();
 };
@@ -96,6 +127,20 @@ void TestBoardExtent::lattice_isHeldAgainstTheClaim() {
   }
 }
 
+// Rows and columns beyond 9 x 4.
+void TestBoardExtent::largerBoards_areLarger() {
+  for (const auto& [rows, cols] : {std::pair{11, 4}, std::pair{11, 5}, std::pair{13, 4}, std::pair{9, 5}})
+    for (const int first_row : {0, rows - 9})
+      for (const int first_col : {0, cols - 4}) {
+        MovingBoard moving;
+        moving.board.rows = rows;
+        moving.board.cols = cols;
+        const BoardExtent extent = judge(moving, {9, 4, first_row, first_col});
+        QCOMPARE(extent.rows.beyond_seen, rows > 9 ? 1 : 0);
+        QCOMPARE(extent.cols.beyond_seen, cols > 4 ? 1 : 0);
+      }
+}
+
 void TestBoardExtent::symmetricBoard_isJudgedAlike() {
   MovingBoard moving;
   moving.board = {BoardType::SymmetricCircles, 6, 7, 0.03, 0.01, CircleShade::Dark, 0.0, {}};
@@ -109,6 +154,25 @@ void TestBoardExtent::clutter_isNoLine() {
   const BoardExtent extent = judge(MovingBoard{}, {11, 4}, 8000);
   QCOMPARE(extent.rows.beyond_seen, 0);
   QCOMPARE(extent.cols.beyond_seen, 0);
+}
+
+// Boards that fill the image, so that only a part of the lines beyond them is in view.
+void TestBoardExtent::discsOfTheBackground_areNoLine() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  constexpr int kViews = 60;
+  int seen = 0, in_view = 0;
+  for (int view = 0; view < kViews; ++view) {
+    MovingBoard moving;
+    moving.board.rows = 9;
+    moving.middle_m = {0.12 * uniform(random), 0.08 * uniform(random), 0.42};
+    const std::vector<SyntheticCircle> discs = discsBeside(moving, random);
+    const BoardExtent extent = judge(moving, {9, 4}, 0, discs);
+    seen += extent.rows.beyond_seen + extent.cols.beyond_seen;
+    in_view += extent.rows.beyond_in_view + extent.cols.beyond_in_view;
+  }
+  QVERIFY2(in_view > kViews / 2, qPrintable(QString::number(in_view)));
+  QVERIFY2(20 * seen < in_view, qPrintable(QString("%1 of %2").arg(seen).arg(in_view)));
 }
 
 void TestBoardExtent::boardOneStepOff_saysNothing() {
