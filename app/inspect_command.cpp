@@ -43,6 +43,9 @@ void printEvents(const StreamSummary& stream, bool checksum) {
     print("    {:<22} not in the file; events reach {} x {}\n", "resolution", stream.seen_px.width_px,
           stream.seen_px.height_px);
   }
+  if (stream.shortest_interval_s > 0.0)
+    print("    {:<22} at most {:.3g} ms (99 % of a pixel's intervals are longer)\n", "refractory period",
+          1e3 * stream.shortest_interval_s);
   if (!stream.note.empty()) print("    {:<22} {}\n", "note", stream.note);
   if (!checksum) return;
   print("    {:<22} x {}, y {}, t {} {} (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y, stream.sum_t,

@@ -21,7 +21,7 @@ constexpr std::size_t kMostNamedPixels = 8;
 }  // namespace
 
 EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions& options)
-    : options_(options) {
+    : options_(options), intervals_(kIntervals) {
   numbers_.info = info;
   counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargestGuess_px;
   counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargestGuess_px.width_px);
@@ -34,7 +34,7 @@ EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions
 unsigned EventStatistics::rowsWith(unsigned y_px) {
   if (y_px < static_cast<unsigned>(most_rows_)) {
     counted_px_.height_px = std::max(counted_px_.height_px, static_cast<int>(y_px) + 1);
-    pixel_counts_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
+    pixels_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
   }
   return static_cast<unsigned>(counted_px_.height_px);
 }
@@ -62,7 +62,12 @@ void EventStatistics::add(EventSpan events) {
     largest_y = std::max<unsigned>(largest_y, event.y_px);
     if (event.y_px >= height) height = rowsWith(event.y_px);
     if (event.x_px < width && event.y_px < height) {
-      ++pixel_counts_[static_cast<std::size_t>(event.y_px) * width + event.x_px];
+      Pixel& pixel = pixels_[static_cast<std::size_t>(event.y_px) * width + event.x_px];
+      const auto time_us = static_cast<std::uint32_t>(event.time_ns / 1000);
+      const std::uint32_t interval = (time_us - pixel.last_us) / kInterval_us;
+      if (pixel.events > 0 && interval < kIntervals) ++intervals_[interval];
+      pixel.last_us = time_us;
+      ++pixel.events;
     } else {
       ++outside_;
     }
@@ -95,6 +100,7 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
   numbers_.off = numbers_.count - numbers_.on;
   const double duration_s = secondsSince(numbers_.first_ns, numbers_.last_ns);
   if (duration_s > 0.0) numbers_.rate_hz = static_cast<double>(numbers_.count) / duration_s;
+  numbers_.shortest_interval_s = shortestInterval_s();
   numbers_.info = summary.info;
   summary = numbers_;
   faults.insert(faults.end(), faults_.begin(), faults_.end());
@@ -114,6 +120,17 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
   if (duration_s > 0.0) findHotPixels(duration_s, summary, faults);
 }
 
+// A quantile of the intervals that occur within edges: hot pixels and equal stamps are below it.
+double EventStatistics::shortestInterval_s() const {
+  constexpr std::uint64_t kLeastIntervals = 10'000, kOneIn = 100;
+  std::uint64_t all = 0, below = 0;
+  for (const std::uint32_t count : intervals_) all += count;
+  if (all < kLeastIntervals) return 0.0;
+  std::size_t interval = 0;
+  while (kOneIn * (below += intervals_[interval]) < all) ++interval;
+  return 1e-6 * kInterval_us * static_cast<double>(interval);
+}
+
 std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
   std::array<std::uint32_t, 8> counts{};
   std::size_t found = 0;
@@ -121,7 +138,7 @@ std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
     for (int x = std::max(0, x_px - 1); x <= std::min(counted_px_.width_px - 1, x_px + 1); ++x) {
       if (x == x_px && y == y_px) continue;
       const bool counted = y < counted_px_.height_px;
-      counts[found++] = counted ? pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)] : 0;
+      counts[found++] = counted ? pixels_[static_cast<std::size_t>(y * counted_px_.width_px + x)].events : 0;
     }
   }
   if (found == 0) return 0;
@@ -139,7 +156,7 @@ void EventStatistics::findHotPixels(double duration_s, StreamSummary& summary,
   const int columns = std::min(counted_px_.width_px, numbers_.seen_px.width_px);
   for (int y = 0; y < counted_px_.height_px; ++y) {
     for (int x = 0; x < columns; ++x) {
-      const double count = pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)];
+      const double count = pixels_[static_cast<std::size_t>(y * counted_px_.width_px + x)].events;
       if (count < least || count < options_.hot_pixel_factor * neighbourMedian(x, y)) continue;
       hot.push_back(fmt::format("({}, {})", x, y));
       share += count / static_cast<double>(numbers_.count);

@@ -19,8 +19,11 @@ class EventStatistics {
   void finish(StreamSummary& summary, std::vector<RecordingFault>& faults);
 
  private:
+  static constexpr std::uint32_t kInterval_us = 5, kIntervals = 4000;
+
   unsigned rowsWith(unsigned y_px);
   void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
+  double shortestInterval_s() const;
   void findHotPixels(double duration_s, StreamSummary& summary, std::vector<RecordingFault>& faults) const;
   std::uint32_t neighbourMedian(int x_px, int y_px) const;
   void addFault(FaultKind kind, std::int64_t at_ns, std::string text);
@@ -28,8 +31,12 @@ class EventStatistics {
   InspectionOptions options_;
   StreamSummary numbers_;
   std::vector<RecordingFault> faults_;
-  std::vector<std::uint32_t> pixel_counts_;  // row by row
-  Resolution counted_px_;                    // of pixel_counts_: as many rows as events reached
+  struct Pixel {
+    std::uint32_t events = 0, last_us = 0;  // time modulo 2^32
+  };
+  std::vector<Pixel> pixels_;             // row by row
+  std::vector<std::uint32_t> intervals_;  // of one pixel, by their length in kInterval_us
+  Resolution counted_px_;                 // of pixels_: as many rows as events reached
   int most_rows_ = 0;
   std::uint64_t outside_ = 0;
   StampStep stamp_step_;

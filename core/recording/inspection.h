@@ -30,7 +30,9 @@ struct StreamSummary {
   std::uint64_t on = 0, off = 0;
   std::uint64_t sum_x = 0, sum_y = 0, sum_t = 0;  // modulo 2^64; times in the file's own unit
   Resolution seen_px;                             // largest coordinates + 1
-  std::string note;                               // not a fault: hot pixels with few events
+  double shortest_interval_s =
+      0.0;           // between events of one pixel: its refractory period and more; 0: unknown
+  std::string note;  // not a fault: hot pixels with few events
 
   double shortest_exposure_s = 0.0, longest_exposure_s = 0.0;  // of frames; 0: unknown
 
@@ -55,8 +57,8 @@ struct Inspection {
   std::vector<RecordingFault> faults;
 };
 
-// Reads to the end, including frames, which are not decoded; requires a fresh reader. Memory for events is a
-// count per pixel; IMU samples are kept.
+// Reads to the end, including frames, which are not decoded; requires a fresh reader. Memory for events is eight
+// bytes per pixel; IMU samples are kept.
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
                             const RunContext& context = {});
 

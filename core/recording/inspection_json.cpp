@@ -51,6 +51,7 @@ Json streamJson(const StreamSummary& stream, bool with_checksums) {
   json["resolution_px"] = sizeJson(info.resolution_px);
   if (info.host_clock_offset_s) json["host_clock_offset_s"] = *info.host_clock_offset_s;
   json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
+  if (stream.shortest_interval_s > 0.0) json["shortest_interval_s"] = stream.shortest_interval_s;
   if (!stream.note.empty()) json["note"] = stream.note;
   if (with_checksums) {
     // In the file's own time unit.

@@ -58,6 +58,7 @@ class TestInspection : public QObject {
   void summary_matchesTheRecording();
   void eventFaults_areFound();
   void fewEventsOfHotPixels_areANote();
+  void shortestInterval_isTheRefractoryPeriod();
   void json_holdsTheContractsKeys();
   void frames_areCountedWithTheirExposures();
   void untimedPictures_areToldSo();
@@ -193,6 +194,31 @@ void TestInspection::eventFaults_areFound() {
   QVERIFY2(text.find("1 hot pixels") == 0 && text.find("(17, 23)") != std::string::npos, text.c_str());
 }
 
+// Pixels that rest for so long after each event, in bursts; and a few events of a hot pixel, which does not rest.
+void TestInspection::shortestInterval_isTheRefractoryPeriod() {
+  constexpr std::uint16_t kWidth = 40;
+  std::mt19937 random(5);
+  for (const double rest_s : {0.1e-3, 0.98e-3}) {
+    std::exponential_distribution<double> further_s(1.0 / 0.5e-3);
+    Recording recording = sampleRecording(10);
+    const std::int64_t start_ns = recording.events.front().time_ns;
+    recording.events.clear();
+    for (std::uint16_t pixel = 0; pixel < 1000; ++pixel) {
+      double time_s = 1e-6 * pixel;
+      for (int event = 0; event < 30; ++event) {
+        const auto x_px = static_cast<std::uint16_t>(pixel % kWidth),
+                   y_px = static_cast<std::uint16_t>(pixel / kWidth);
+        recording.events.push_back({start_ns + std::llround(1e9 * time_s), x_px, y_px, event % 2 == 0});
+        time_s += pixel == 0 ? 1e-5 : rest_s + further_s(random) + (event % 10 == 9 ? 0.1 : 0.0);
+      }
+    }
+    std::ranges::sort(recording.events, {}, &Event::time_ns);
+    writeAll(*createBag(path("resting.bag"), sampleStreams(), true), recording);
+    const double found_s =
+        inspectRecording(*openRecording(path("resting.bag"))).streams[0].shortest_interval_s;
+    QVERIFY2(found_s > 0.97 * rest_s && found_s < rest_s + 0.03e-3, qPrintable(QString::number(found_s)));
+  }
+}
 void TestInspection::fewEventsOfHotPixels_areANote() {
   Recording recording = sampleRecording(200'000);
   for (std::size_t i = 0; i < recording.events.size(); i += 500) {
