@@ -3,6 +3,7 @@
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/base/option_table.h"
+#include "core/base/plain_text.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -32,6 +34,13 @@ std::string adviceOnMissing(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     names.push_back(entry.path().filename().string());
+  for (const char* const ending : {".former.", ".part."})
+    for (const std::string& name : names)
+      if (name.starts_with(file.filename().string() + ending))
+        return fmt::format(
+            "A run was stopped while it replaced the file. '{}' may be the former one: rename it, or run "
+            "again",
+            name);
   const std::string nearest = nearestName(file.filename().string(), names);
   return nearest.empty() ? "Check the path" : fmt::format("Check the path. Did you mean '{}'?", nearest);
 }
@@ -124,6 +133,7 @@ std::vector<std::string> YamlNode::keys() const {
   for (const auto& entry : node_->yaml) {
     const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
     if (name.empty()) throw error("has a key that is not a plain word");
+    requirePlain(name, place(), "a key");
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw child(name, {entry.second, entry.first.Mark().line + 1})
           .error("occurs twice", "Remove one of them");
@@ -168,6 +178,12 @@ std::vector<YamlNode> YamlNode::items() const {
 }
 
 std::string YamlNode::text() const {
+  std::string text = anyText();
+  requirePlain(text, place(), "the text");
+  return text;
+}
+
+std::string YamlNode::anyText() const {
   if (!isScalar()) throw error(isNull() ? "has no value" : "must be one value, not a list or map");
   return node_->yaml.Scalar();
 }
@@ -210,21 +226,34 @@ std::size_t YamlNode::choice(std::span<const char* const> words) const {
   return detail::parseChoice(place(), text(), words);
 }
 
+namespace {
+
+// Words that YAML 1.1 or 1.2 reads as a truth value or as nothing.
+bool hasOtherMeaning(std::string_view word) {
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  constexpr std::string_view kWords[] = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"};
+  return std::find(std::begin(kWords), std::end(kWords), lower) != std::end(kWords);
+}
+
+}  // namespace
+
 std::string yamlText(std::string_view text) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '/' || c == '.'; };
   const bool word = !text.empty() && std::all_of(text.begin(), text.end(), plain) &&
                     (std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '/');
-  if (word && text != "true" && text != "false" && text != "null" && text != "yes" && text != "no")
-    return std::string(text);
-  std::string quoted = "\"";
+  if (word && !hasOtherMeaning(text)) return std::string(text);
+  std::string quoted;
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
-    if (c == '\n')
-      quoted += "\\n";
-    else
-      quoted += c;
+    quoted += c == '\n' ? "\\n" : std::string(1, c);
   }
-  return quoted + '"';
+  return '"' + visible(quoted) + '"';
+}
+
+std::string yamlLine(std::string_view text) {
+  return yamlText(visible(text));
 }
 
 }  // namespace evical

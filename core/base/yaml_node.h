@@ -28,7 +28,8 @@ class YamlNode {
   bool isNull() const;
 
   // Maps
-  std::vector<std::string> keys() const;  // throws if this is not a map, or if a key occurs twice
+  // Throws if this is not a map, or if a key occurs twice or has a control character.
+  std::vector<std::string> keys() const;
   void allowOnly(std::initializer_list<const char*> known) const;
   void allowOnly(const std::vector<std::string>& known) const;
   bool has(const std::string& key) const;
@@ -39,8 +40,9 @@ class YamlNode {
   std::vector<YamlNode> items() const;
 
   // Values
-  std::string text() const;
-  double real() const;  // finite
+  std::string text() const;     // throws if it has a control character (plain_text.h)
+  std::string anyText() const;  // for paths, and for texts that are shown only
+  double real() const;          // finite
   double real(double minimum, double maximum, const char* unit) const;
   int integer(int minimum, int maximum) const;
   std::int64_t nanoseconds() const;  // any integer
@@ -64,5 +66,7 @@ class YamlNode {
 
 // A string as a YAML scalar, in double quotes if necessary.
 std::string yamlText(std::string_view text);
+// The same of a text for people, whose control characters are written visibly, so that text() accepts it.
+std::string yamlLine(std::string_view text);
 
 }  // namespace evical

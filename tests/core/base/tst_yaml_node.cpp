@@ -1,5 +1,7 @@
 #include "core/base/yaml_node.h"
 
+#include "core/base/plain_text.h"
+
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -48,6 +50,68 @@ class TestYamlNode : public QObject {
     QVERIFY((root["reals"].reals() == std::vector<double>{1.0, 2.5, -3.0}));
     QCOMPARE(root["reals"].reals(3).size(), std::size_t(3));
     QCOMPARE(root["choice"].choice({"bright", "dark"}), std::size_t(1));
+  }
+
+  void controlCharacters_areSeen_data() {
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<bool>("control");
+    QTest::addColumn<QByteArray>("shown");    // visible()
+    QTest::addColumn<QByteArray>("printed");  // printable()
+    const auto row = [](const char* name, const QByteArray& text, bool control, const QByteArray& shown,
+                        const QByteArray& printed = {}) {
+      QTest::newRow(name) << text << control << shown << (printed.isNull() ? shown : printed);
+    };
+    row("nothing", "", false, "");
+    row("words", "a b, \xc3\xb6 \xe2\x82\xac \xf0\x9f\x93\xb7", false,
+        "a b, \xc3\xb6 \xe2\x82\xac \xf0\x9f\x93\xb7");
+    row("Hebrew, Arabic", "\xd7\xa9 \xd8\xb4 \xe2\x80\x8f", false, "\xd7\xa9 \xd8\xb4 \xe2\x80\x8f");
+    row("NUL", QByteArray("a\0b", 3), true, "a\\x00b");
+    row("newline", "a\nb", true, "a\\x0ab");
+    row("ESC", "\x1b[2J", true, "\\x1b[2J");
+    row("DEL", "\x7f", true, "\\u007f");
+    row("NEL", "\xc2\x85", true, "\\u0085");
+    row("CSI", "\xc2\x9b", true, "\\u009b");
+    row("no-break space", "\xc2\xa0", false, "\xc2\xa0");
+    row("line separator", "\xe2\x80\xa8", true, "\\u2028");
+    row("override", "\xe2\x80\xae", true, "\\u202e");
+    row("isolate", "\xe2\x81\xa7", true, "\\u2067");
+    row("no character", "\xef\xbf\xbf", true, "\\uffff");
+    row("Latin 1", "l\xf6g", false, "l\xf6g", "l\\xf6g");
+    row("byte of NEL", "\x85", false, "\x85", "\\x85");
+    row("overlong newline", "\xc0\x8a", false, "\xc0\x8a", "\\xc0\\x8a");
+    row("surrogate", "\xed\xa0\x80", false, "\xed\xa0\x80", "\\xed\\xa0\\x80");
+    row("beyond Unicode", "\xf4\x90\x80\x80", false, "\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80");
+    row("cut off", "\xe2\x82", false, "\xe2\x82", "\\xe2\\x82");
+  }
+  void controlCharacters_areSeen() {
+    QFETCH(QByteArray, text);
+    QFETCH(bool, control);
+    QFETCH(QByteArray, shown);
+    QFETCH(QByteArray, printed);
+    const std::string own = text.toStdString();
+    QCOMPARE(hasControl(own), control);
+    QCOMPARE(QByteArray::fromStdString(visible(own)), shown);
+    QCOMPARE(QByteArray::fromStdString(printable(own)), printed);
+    QCOMPARE(QByteArray::fromStdString(visible(own, "\n")), text == "a\nb" ? text : shown);
+    // In YAML every text reads back, and names are refused.
+    const YamlNode root =
+        yaml("key: " + yamlText(own) + "\n" + (text.isEmpty() ? "" : yamlText(own)) + ": 1\n");
+    QCOMPARE(QByteArray::fromStdString(root["key"].anyText()), text);
+    QCOMPARE(QByteArray::fromStdString(yaml("key: " + yamlLine(own))["key"].text()), shown);
+    if (!control) {
+      QCOMPARE(QByteArray::fromStdString(root["key"].text()), text);
+      return;
+    }
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, root["key"].text());
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, root.keys());
+  }
+
+  void wordsOfOtherTypes_areQuoted() {
+    for (const char* const word :
+         {"true", "False", "NULL", "yes", "No", "on", "OFF", "y", "N", "~", "1e5", ".inf", ""})
+      QCOMPARE(yamlText(word), "\"" + std::string(word) + "\"");
+    for (const char* const word : {"left", "/dvs/events", "one", "nothing"})
+      QCOMPARE(yamlText(word), std::string(word));
   }
 
   void places_nameFileKeyAndLine() {
