@@ -1,4 +1,3 @@
-#include "core/base/yaml_node.h"
 #include "core/export/data_set_cameras.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
@@ -74,7 +73,8 @@ std::string dsecChainText(const Places& places, std::size_t i) {
 
 std::string dsecCameraText(const Places& places, std::size_t i) {
   const Place& place = places[i];
-  return headText(place, i, false) + fmt::format("    camera_name: {}\n", yamlText(place.camera->name)) +
+  return headText(place, i, false) +
+         fmt::format("    camera_name: {}\n", stringIn(Language::Yaml, place.camera->name)) +
          dsecChainText(places, i) +
          fmt::format("    distortion_model: radtan\n    distortion_coeffs: [{}]\n    camera_matrix: [{}]\n",
                      realList(distortionOf(place.lens, 4)), matrixList(cameraMatrix(place.lens))) +

@@ -15,7 +15,7 @@ constexpr KnownModels kDvProcessingModels{kDvProcessingProgram, true, true, true
 
 // boost::property_tree writes every scalar as a string.
 std::string quoted(double value) {
-  return jsonText(real(value));
+  return stringIn(Language::Json, real(value));
 }
 
 std::string quotedList(const Eigen::MatrixXd& matrix) {
@@ -33,7 +33,7 @@ std::string field(const char* key, const std::string& value, int indent) {
 // The program reads it for IMUs; for cameras it would require the pattern, and is optional.
 std::string metadata(const std::string& comment) {
   return fmt::format("      \"metadata\": {{\"calibrationTime\": \"\", \"comment\": {}}}\n    }}",
-                     jsonText(comment));
+                     stringIn(Language::Json, comment));
 }
 
 std::string lastField(const char* key, const std::string& value) {
@@ -47,8 +47,9 @@ std::string dvProcessingCameraText(const Rig& rig, std::size_t i, ExportNotes& n
   const std::vector<double> d = distortionOf(own, radtan && own.distortion[4] != 0.0 ? 5 : 4);
   const RigidTransform this_from_first =
       inverse(camera.reference_from_camera) * rig.cameras[0].reference_from_camera;
-  return fmt::format("    \"C{}\": {{\n", i) + field("name", jsonText(camera.file_name), 6) +
-         field("position", jsonText(camera.name), 6) + field("master", i == 0 ? "\"true\"" : "\"false\"", 6) +
+  return fmt::format("    \"C{}\": {{\n", i) + field("name", stringIn(Language::Json, camera.file_name), 6) +
+         field("position", stringIn(Language::Json, camera.name), 6) +
+         field("master", i == 0 ? "\"true\"" : "\"false\"", 6) +
          field("resolution",
                fmt::format("[\"{}\", \"{}\"]", own.resolution_px.width_px, own.resolution_px.height_px), 6) +
          field("principalPoint", quotedList(own.principal_point_px), 6) +
@@ -65,8 +66,9 @@ std::string dvProcessingCameraText(const Rig& rig, std::size_t i, ExportNotes& n
 std::string dvProcessingImuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const ImuNoise noise = statedNoise(imu, notes);
   const auto number = [](const char* key, double value) { return field(key, quoted(value), 6); };
-  return "    \"S0\": {\n" + field("name", jsonText(rig.cameras[0].file_name), 6) + number("omegaMax", 0.0) +
-         number("accMax", 0.0) + field("omegaOffsetAvg", quotedList(imu.state.gyroscope_bias_rad_s), 6) +
+  return "    \"S0\": {\n" + field("name", stringIn(Language::Json, rig.cameras[0].file_name), 6) +
+         number("omegaMax", 0.0) + number("accMax", 0.0) +
+         field("omegaOffsetAvg", quotedList(imu.state.gyroscope_bias_rad_s), 6) +
          field("accOffsetAvg", quotedList(imu.state.accelerometer_bias_m_s2), 6) +
          number("omegaOffsetVar", 0.0) + number("accOffsetVar", 0.0) +
          number("omegaNoiseDensity", noise.gyroscope_density) +
@@ -88,8 +90,9 @@ std::string dvProcessingStereoText(const Rig& rig) {
   const Eigen::Matrix3d essential = essentialMatrix(right_from_left);
   const Eigen::Matrix3d fundamental =
       fundamentalMatrix(rig.cameras[0].intrinsics, rig.cameras[1].intrinsics, right_from_left);
-  return "    \"C0_C1\": {\n" + field("leftCameraName", jsonText(rig.cameras[0].file_name), 6) +
-         field("rightCameraName", jsonText(rig.cameras[1].file_name), 6) +
+  return "    \"C0_C1\": {\n" +
+         field("leftCameraName", stringIn(Language::Json, rig.cameras[0].file_name), 6) +
+         field("rightCameraName", stringIn(Language::Json, rig.cameras[1].file_name), 6) +
          field("fundamentalMatrix", quotedList(fundamental), 6) +
          field("essentialMatrix", quotedList(essential), 6) +
          "      \"metadata\": {\"epipolarError\": \"0.0\", \"comment\": \"from the estimated poses\"}\n    }";

@@ -1,4 +1,3 @@
-#include "core/base/yaml_node.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
@@ -15,7 +14,7 @@ constexpr KnownModels kEkalibrModels{"eKalibr", true, true, true};
 constexpr unsigned kEkalibrFirst = 0x80000000U;
 
 std::string key(const std::string& stream, const std::string& file_name) {
-  return yamlText(stream.empty() ? "/" + file_name : stream);
+  return stringIn(Language::Yaml, stream.empty() ? "/" + file_name : stream);
 }
 
 std::string vectorText(const Eigen::VectorXd& values) {
@@ -132,7 +131,7 @@ std::string parameterFile(const Rig& rig) {
               "measured = MAP true + BIAS, MAP upper triangular. GRAVITY is in the board's frame."}) +
          fmt::format(
              "CalibParam:\n  Header:\n    Software: Evical\n    Version: {}\n    Address: \"\"\n  EXTRI:\n",
-             yamlText(rig.program)) +
+             stringIn(Language::Yaml, rig.program)) +
          mapText("SO3_BiToBr", rig.imus, imu_rotation) + mapText("POS_BiInBr", rig.imus, imu_position) +
          mapText("SO3_CjToBr", rig.cameras, camera_rotation) +
          mapText("POS_CjInBr", rig.cameras, camera_position) + "  TEMPORAL:\n" +

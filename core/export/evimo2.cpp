@@ -17,7 +17,7 @@ std::string parametersText(const RigCamera& camera, const CameraIntrinsics& own)
   return fmt::format("res_x: {}\nres_y: {}\ndist_model: {}\nros_{}_topic: {}\n", own.resolution_px.height_px,
                      own.resolution_px.width_px,
                      own.model == CameraModel::PinholeRadtan ? "radtan" : "equidistant",
-                     camera.kind == CameraKind::Frames ? "image" : "event", stream);
+                     camera.kind == CameraKind::Frames ? "image" : "event", stringIn(Language::Text, stream));
 }
 
 std::string numbersLine(const std::vector<double>& numbers) {

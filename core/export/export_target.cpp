@@ -91,6 +91,16 @@ const ExportTarget& exportTarget(std::string_view name, std::string_view place) 
 
 namespace {
 
+// A sensor's name may be that of another file of the target: one would replace the other.
+void checkDistinct(const ExportedFiles& exported) {
+  std::set<std::filesystem::path> paths;
+  for (const FileContent& file : exported.files)
+    if (!paths.insert(file.path).second)
+      throw badInput("result",
+                     fmt::format("has a sensor of the name that another file has: {}", file.path.string()),
+                     "Rename the sensor in the session, and calibrate again");
+}
+
 struct Attempt {
   ExportedFiles files;
   std::optional<CalibrationError> last_refusal;
@@ -106,6 +116,7 @@ Attempt attempt(const NamedResult& result, std::span<const std::string> targets)
     ExportedFiles one;
     try {
       one = target.write(result);
+      checkDistinct(one);
     } catch (const CalibrationError& refusal) {
       all.last_refusal = refusal;
       all.files.refused.push_back(fmt::format("{}: not exported: {}", target.name, refusal.what()));

@@ -1,10 +1,16 @@
 #include "core/export/export_text.h"
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
+#include "core/base/shell_word.h"
+#include "core/base/yaml_node.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 namespace evical {
 
@@ -67,17 +73,75 @@ std::string dataMatrix(const Eigen::MatrixXd& matrix, int indent) {
                      matrix.cols(), rowMajor(matrix));
 }
 
-std::string jsonText(const std::string& text) {
-  std::string quoted = "\"";
+namespace {
+
+// The text with each of these letters replaced.
+std::string withReplaced(std::string_view text,
+                         std::initializer_list<std::pair<char, const char*>> replaced) {
+  std::string result;
   for (const char letter : text) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    if (static_cast<unsigned char>(letter) < 0x20) {
-      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
-    } else {
-      quoted += letter;
-    }
+    const auto* const found = std::find_if(replaced.begin(), replaced.end(),
+                                           [letter](const auto& each) { return each.first == letter; });
+    result += found == replaced.end() ? std::string(1, letter) : found->second;
   }
-  return quoted + "\"";
+  return result;
+}
+
+// XML comments must not contain two hyphens.
+std::string xmlComment(std::string_view lines) {
+  std::string comment = "<!-- ";
+  for (const char letter : lines) {
+    if (letter == '-' && comment.back() == '-') comment += ' ';
+    comment += letter;
+  }
+  return comment.append("-->\n");
+}
+
+std::string lineBeginning(Language language) {
+  switch (language) {
+    case Language::Yaml:
+    case Language::Shell:
+    case Language::Python:
+      return "# ";
+    case Language::Matlab:
+      return "% ";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::string commentIn(Language language, std::string_view lines) {
+  // Python takes the encoding of the source from words in its first comment, if this line does not state it.
+  std::string text = language == Language::Python ? "# -*- coding: utf-8 -*-\n" : "";
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    text += lineBeginning(language) + printable(line) + "\n";
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+  }
+  return language == Language::Xml ? xmlComment(text) : text;
+}
+
+std::string stringIn(Language language, std::string_view text) {
+  const std::string plain = printable(text);
+  switch (language) {
+    case Language::Yaml:
+      return yamlText(plain);
+    case Language::Json:
+      return '"' + withReplaced(plain, {{'"', "\\\""}, {'\\', "\\\\"}}) + '"';
+    case Language::Xml:
+      return '"' + withReplaced(plain, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}}) + '"';
+    case Language::Shell:
+      return shellWord(plain);
+    case Language::Python:
+      return "'" + withReplaced(plain, {{'\'', "\\'"}, {'\\', "\\\\"}}) + "'";
+    case Language::Matlab:
+      return "'" + withReplaced(plain, {{'\'', "''"}}) + "'";
+    case Language::Text:
+      break;
+  }
+  return plain;
 }
 
 }  // namespace evical

@@ -1,9 +1,10 @@
-// Numbers and matrices in a form that YAML and JSON readers of other programs accept.
+// Numbers, matrices, comments and strings in a form that YAML and JSON readers of other programs accept.
 #pragma once
 
 #include <Eigen/Core>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical {
@@ -31,7 +32,15 @@ std::string opencvMatrix(const char* key, const Eigen::MatrixXd& matrix, char dt
 // {rows, cols, data} as ROS and SVO write it, each line indented by `indent` blanks.
 std::string dataMatrix(const Eigen::MatrixXd& matrix, int indent);
 
-// A JSON string with its quotes.
-std::string jsonText(const std::string& text);
+// The languages of exported files. These two functions write every comment, and every text that is not Evical's own: a sensor's
+// name or a reason may come from a stranger's file, and must not become code. Control characters become escapes
+// (plain_text.h): which of them end a line depends on the language.
+enum class Language { Yaml, Json, Xml, Shell, Python, Matlab, Text };
+
+// Each line as a comment; in Language::Text it has no mark. Lines end at '\n'. JSON has no comments.
+std::string commentIn(Language language, std::string_view lines);
+
+// A string, with quotes where the language requires them.
+std::string stringIn(Language language, std::string_view text);
 
 }  // namespace evical

@@ -4,8 +4,6 @@
 #include "core/export/imu_frames.h"
 #include "core/export/kalibr_text.h"
 
-#include "core/base/yaml_node.h"
-
 #include <fmt/format.h>
 
 namespace evical {
@@ -18,9 +16,10 @@ std::string kalibrCameraText(const Rig& rig, std::size_t i, const CameraIntrinsi
   std::string overlaps;
   for (std::size_t other = 0; other < rig.cameras.size(); ++other)
     if (other != i) overlaps += fmt::format("{}{}", overlaps.empty() ? "" : ", ", other);
-  return fmt::format("  cam_overlaps: [{}]\n{}  resolution: [{}, {}]\n  rostopic: {}\n", overlaps,
-                     kalibrLensText(own), own.resolution_px.width_px, own.resolution_px.height_px,
-                     yamlText(camera.stream.empty() ? fmt::format("/{}", camera.file_name) : camera.stream));
+  return fmt::format(
+      "  cam_overlaps: [{}]\n{}  resolution: [{}, {}]\n  rostopic: {}\n", overlaps, kalibrLensText(own),
+      own.resolution_px.width_px, own.resolution_px.height_px,
+      stringIn(Language::Yaml, camera.stream.empty() ? fmt::format("/{}", camera.file_name) : camera.stream));
 }
 
 // Rows need more indentation than their key, or OpenCV's parser (OpenVINS) fails.
@@ -80,7 +79,7 @@ std::string camchainYaml(const std::string& stream, const CameraIntrinsics& c) {
     text += fmt::format("# k3 = {} is left out: Kalibr's radtan does not support it\n", c.distortion[4]);
   return text + fmt::format("cam0:\n{}  resolution: [{}, {}]\n  rostopic: {}\n  cam_overlaps: []\n",
                             kalibrLensText(c), c.resolution_px.width_px, c.resolution_px.height_px,
-                            yamlText(stream));
+                            stringIn(Language::Yaml, stream));
 }
 
 std::string kalibrChain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses,
@@ -106,7 +105,7 @@ std::string kalibrNoise(const RigImu& imu, int indent, ExportNotes& notes) {
       "{0}accelerometer_random_walk: {4}  # m/s^3/sqrt(Hz)\n{0}gyroscope_noise_density: {5}  # "
       "rad/s/sqrt(Hz)\n"
       "{0}gyroscope_random_walk: {6}  # rad/s^2/sqrt(Hz)\n",
-      blanks, yamlText(imu.stream.empty() ? fmt::format("/{}", imu.file_name) : imu.stream),
+      blanks, stringIn(Language::Yaml, imu.stream.empty() ? fmt::format("/{}", imu.file_name) : imu.stream),
       real(statedRate_hz(imu, notes)), real(noise.accelerometer_density),
       real(noise.accelerometer_random_walk), real(noise.gyroscope_density),
       real(noise.gyroscope_random_walk));

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-
 namespace evical {
 namespace {
 
@@ -25,19 +23,12 @@ std::string line(const std::string& owner, const char* field, const std::string&
   return fmt::format("{}.{} = {};\n", owner, field, value);
 }
 
-std::string comment(const Rig& rig, const std::vector<std::string>& lines) {
-  std::istringstream text(readMe(rig, lines));
-  std::string commented;
-  for (std::string each; std::getline(text, each);) commented += "% " + each + "\n";
-  return commented;
-}
-
 std::string matlabCameraText(const RigCamera& camera, const CameraIntrinsics& own, std::size_t number) {
   const std::string owner = fmt::format("rig.cameras({})", number);
   const auto& d = own.distortion;
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const Eigen::Vector2d from_one = own.principal_point_px + Eigen::Vector2d::Ones();
-  std::string text = line(owner, "Name", fmt::format("'{}'", camera.file_name)) +
+  std::string text = line(owner, "Name", stringIn(Language::Matlab, camera.file_name)) +
                      line(owner, "ImageSize",
                           fmt::format("[{}, {}]", own.resolution_px.height_px, own.resolution_px.width_px)) +
                      line(owner, "FocalLength", matlabMatrixText(own.focal_length_px.transpose())) +
@@ -54,7 +45,7 @@ std::string matlabCameraText(const RigCamera& camera, const CameraIntrinsics& ow
 std::string matlabImuText(const RigImu& imu, std::size_t number, ExportNotes& notes) {
   const std::string owner = fmt::format("rig.imus({})", number);
   const ImuNoise noise = statedNoise(imu, notes);
-  return line(owner, "Name", fmt::format("'{}'", imu.file_name)) +
+  return line(owner, "Name", stringIn(Language::Matlab, imu.file_name)) +
          line(owner, "ReferenceFromImu", matlabMatrixText(matrixOf(imu.state.reference_from_imu))) +
          line(owner, "TimeOffset", real(imu.state.time_offset_s)) +
          line(owner, "AccelerometerMatrix", matlabMatrixText(imu.state.accelerometer_scale_misalignment)) +
@@ -123,9 +114,9 @@ ExportedFiles exportMatlab(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
   const bool inertial = !rig.imus.empty();
-  std::string text = "function rig = evical_rig()\n" + comment(rig, kHelp);
+  std::string text = "function rig = evical_rig()\n" + headerComment(rig, kHelp, Language::Matlab);
   text += line("rig", "Reference",
-               fmt::format("'{}'", inertial ? rig.imus[0].file_name : rig.cameras[0].file_name));
+               stringIn(Language::Matlab, inertial ? rig.imus[0].file_name : rig.cameras[0].file_name));
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const CameraIntrinsics own = cameraFor(rig.cameras[i], kMatlabModels, exported.notes);
     if (own.model != CameraModel::PinholeRadtan)

@@ -1,4 +1,5 @@
 #include "core/base/element.h"
+#include "core/base/plain_text.h"
 #include "core/data/quantity.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/exporters.h"
@@ -89,7 +90,9 @@ void addImu(const RigImu& imu, const ImuUncertainty& uncertainty, Arrays& arrays
 
 void addCovariance(const NamedResult& named, Arrays& arrays) {
   if (named.result->uncertainty.columns.empty()) return;
-  arrays.add("covariance_names", npyList(columnNames(named)));
+  std::vector<std::string> names = columnNames(named);
+  for (std::string& name : names) name = printable(name);
+  arrays.add("covariance_names", npyList(names));
   arrays.add("covariance", npyMatrix(named.result->uncertainty.covariance()));
 }
 
@@ -114,7 +117,7 @@ ExportedFiles exportNumpy(const NamedResult& result) {
   arrays.add("imus", numpyNamesOf(rig.imus));
   std::string reference = inertial ? rig.imus.front().file_name : rig.cameras.front().file_name;
   for (const RigCamera& camera : rig.cameras)
-    if (!inertial && camera.name == result.reference) reference = camera.file_name;
+    if (!inertial && camera.name == printable(result.reference)) reference = camera.file_name;
   arrays.add("reference", npyText(reference));
   if (inertial) arrays.add("gravity_m_s2", rig.gravity_m_s2);
   addCovariance(result, arrays);
@@ -122,8 +125,9 @@ ExportedFiles exportNumpy(const NamedResult& result) {
     addNumpyCamera(rig.cameras[i], result.result->state.cameras[i], elementOrNone(uncertainty.cameras, i),
                    arrays);
   for (const RigImu& imu : rig.imus) {
-    const auto named = std::find_if(result.imus.begin(), result.imus.end(),
-                                    [&](const SensorDescription& each) { return each.name == imu.name; });
+    const auto named =
+        std::find_if(result.imus.begin(), result.imus.end(),
+                     [&](const SensorDescription& each) { return printable(each.name) == imu.name; });
     addImu(imu, elementOrNone(uncertainty.imus, static_cast<std::size_t>(named - result.imus.begin())),
            arrays);
   }

@@ -1,6 +1,6 @@
 #include "core/export/pose_text.h"
 
-#include "core/base/yaml_node.h"
+#include "core/base/plain_text.h"
 #include "core/export/export_text.h"
 #include "core/export/rig.h"
 #include "core/geometry/so3.h"
@@ -65,9 +65,9 @@ std::string yaml(const SensorPose& pose) {
   return fmt::format(
       "{}:  # {}\n  reference: {}\n  rotation_xyzw: [{}]\n  translation_m: [{}]\n  matrix:\n{}"
       "  time_offset_s: {}  # {}\n",
-      yamlText(pose.sensor), directionWords(pose), yamlText(pose.reference), realList(xyzw(pose)),
-      wordsOf(pose.reference_from_sensor.translation_m), rowsYaml(matrixOf(pose.reference_from_sensor), 4),
-      real(pose.time_offset_s), offsetWords(pose));
+      stringIn(Language::Yaml, pose.sensor), directionWords(pose), stringIn(Language::Yaml, pose.reference),
+      realList(xyzw(pose)), wordsOf(pose.reference_from_sensor.translation_m),
+      rowsYaml(matrixOf(pose.reference_from_sensor), 4), real(pose.time_offset_s), offsetWords(pose));
 }
 
 std::string numpy(const SensorPose& pose) {
@@ -171,7 +171,11 @@ std::span<const PoseForm> poseForms() {
 
 std::string poseText(const PoseForm& form, std::span<const SensorPose> poses) {
   std::string text;
-  for (const SensorPose& pose : poses) text += (text.empty() ? "" : "\n") + form.write(pose);
+  for (SensorPose pose : poses) {
+    pose.sensor = printable(pose.sensor);
+    pose.reference = printable(pose.reference);
+    text += (text.empty() ? "" : "\n") + form.write(pose);
+  }
   return text;
 }
 

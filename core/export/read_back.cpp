@@ -1,9 +1,12 @@
 #include "core/export/read_back.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/number.h"
+#include "core/base/plain_text.h"
 #include "core/export/imu_frames.h"
 #include "core/export/rig.h"
+#include "core/foreign/read_numbers.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/lens_fit.h"
@@ -15,7 +18,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -270,6 +277,67 @@ std::string checkTextOf(const ReadBackDifference& difference) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+// The file as lines, by the rules of all languages: YAML, Python and others know more ends of a line than '\n'.
+std::vector<std::string> linesOf(const std::string& content) {
+  constexpr std::string_view kEnds[] = {"\n",   "\r",   "\v",       "\f",           "\x1c",
+                                        "\x1d", "\x1e", "\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"};
+  std::vector<std::string> lines(1);
+  for (std::string_view rest = content; !rest.empty();) {
+    const auto* const end = std::find_if(std::begin(kEnds), std::end(kEnds),
+                                         [&](std::string_view each) { return rest.starts_with(each); });
+    if (end == std::end(kEnds)) {
+      lines.back() += rest.front();
+      rest.remove_prefix(1);
+    } else {
+      lines.emplace_back();
+      rest.remove_prefix(end->size());
+    }
+  }
+  return lines;
+}
+
+// Lines of the comments of a text file; nothing for JSON and binary files.
+std::set<std::string> commentsIn(const std::filesystem::path& path, const std::string& content) {
+  const std::string kind = path.extension().string();
+  const bool xml = kind == ".launch" || kind == ".urdf", all = path.filename() == "README.txt";
+  const char mark = kind == ".m" ? '%' : '#';
+  std::set<std::string> comments;
+  if (kind == ".json" || kind == ".npz" || kind == ".h5") return comments;
+  bool within = all;
+  for (const std::string& line : linesOf(content)) {
+    within = within || (xml && line.starts_with("<!--"));
+    const std::size_t begin = within ? 0 : line.find(mark);
+    if (begin != std::string::npos && (begin == 0 || line[begin - 1] == ' '))
+      comments.insert(line.substr(begin));
+    within = within && (all || line.find("-->") == std::string::npos);
+  }
+  return comments;
+}
+
+// Comments have directions, signs and the verdict. Lines that someone added are accepted, characters that end a line only in
+// some languages are not.
+std::vector<std::string> commentProblems(const NamedResult& result, const ExportTarget& target,
+                                         const std::filesystem::path& folder) {
+  std::vector<std::string> problems;
+  for (const FileContent& own : target.write(result).files) {
+    const std::set<std::string> wanted = commentsIn(own.path, contentOf(own));
+    if (wanted.empty() || !isThere(folder / own.path)) continue;
+    const std::string text = textOf(folder / own.path);
+    const std::set<std::string> found = commentsIn(own.path, text);
+    for (const std::string& line : wanted)
+      if (!found.contains(line))
+        problems.push_back(fmt::format("{}: the comment '{}' is missing", own.path.string(), line));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.ends_with('\r')) line.pop_back();  // an editor's
+      if (visible(line, "\t") != line)
+        problems.push_back(
+            fmt::format("{}: a line has a control character: '{}'", own.path.string(), printable(line)));
+    }
+  }
+  return problems;
+}
+
 }  // namespace
 
 ReadBackDifference differenceOf(const NamedResult& result, const ReadBack& read) {
@@ -279,7 +347,9 @@ ReadBackDifference differenceOf(const NamedResult& result, const ReadBack& read)
 ExportCheck checkExport(const NamedResult& result, const ExportTarget& target,
                         const std::filesystem::path& folder) {
   try {
-    const ReadBackDifference difference = differenceOf(result, target.read(folder / target.name));
+    ReadBackDifference difference = differenceOf(result, target.read(folder / target.name));
+    for (std::string& problem : commentProblems(result, target, folder / target.name))
+      difference.problems.push_back(std::move(problem));
     if (difference.problems.empty())
       return {true, fmt::format("{}: reads back: {}", target.name, checkTextOf(difference))};
     return {false,

@@ -2,8 +2,8 @@
 
 #include "core/base/element.h"
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/data/quantity.h"
-#include "core/export/export_text.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
                        (letter >= 'A' && letter <= 'Z') || letter == '_' || letter == '-' || letter == '.';
     text += plain ? letter : '_';
   }
-  if (text.empty() || text.front() == '.') text.insert(0, "sensor");
+  if (text.empty() || text.front() == '.' || text.front() == '-') text.insert(0, "sensor");
   std::string unique = text;
   for (int number = 2; !taken.insert(unique).second; ++number) unique = fmt::format("{}_{}", text, number);
   return unique;
@@ -49,15 +49,9 @@ RigCamera rigCameraOf(const NamedResult& result, std::size_t i, std::set<std::st
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
                    "Export the result.yaml of a calibration");
   checkNumbers(fmt::format("result: cameras.{}", name), kCameraQuantities, state);
-  return {name,
-          fileName(name, taken),
-          result.cameras[i].stream,
-          result.cameras[i].kind,
-          *intrinsics,
-          state.reference_from_camera,
-          state.time_offset_s,
-          state.line_delay_us,
-          elementOrNone(result.result->cameras, i)};
+  return {printable(name),        fileName(name, taken), printable(result.cameras[i].stream),
+          result.cameras[i].kind, *intrinsics,           state.reference_from_camera,
+          state.time_offset_s,    state.line_delay_us,   elementOrNone(result.result->cameras, i)};
 }
 
 RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
@@ -65,7 +59,7 @@ RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>&
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
+  return {printable(name), fileName(name, taken), printable(known.stream), known.noise, known.rate_hz, state};
 }
 
 // True if the estimate differs significantly from 0.
@@ -131,9 +125,9 @@ std::vector<std::string> timingRemarks(const NamedResult& result) {
 
 Rig rigOf(const NamedResult& result) {
   Rig rig;
-  rig.program = result.version.empty() ? "Evical" : "Evical " + result.version;
+  rig.program = printable(result.version.empty() ? "Evical" : "Evical " + result.version);
   rig.status = statusName(result.result->status);
-  if (!result.result->reason.empty()) rig.status += ": " + result.result->reason;
+  if (!result.result->reason.empty()) rig.status += ": " + printable(result.result->reason);
   rig.gravity_m_s2 = result.result->state.gravity_in_world_m_s2;
   if (!rig.gravity_m_s2.allFinite()) throwNotFinite("result: gravity_m_s2");
   std::set<std::string> taken;
@@ -141,7 +135,7 @@ Rig rigOf(const NamedResult& result) {
     rig.cameras.push_back(rigCameraOf(result, i, taken));
   for (std::size_t i = 0; i < result.imus.size(); ++i) rig.imus.push_back(rigImuOf(result, i, taken));
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
-                        [&](const RigImu& imu) { return imu.name == result.reference; });
+                        [&](const RigImu& imu) { return imu.name == printable(result.reference); });
   rig.timing = timingRemarks(result);
   for (const SensorDescription& imu : result.imus)
     if (!imu.accelerometer_stream.empty() && imu.accelerometer_stream != imu.stream)
@@ -149,6 +143,7 @@ Rig rigOf(const NamedResult& result) {
           "{}: gyroscope and accelerometer have separate topics, {} and {}. A program that takes one "
           "topic gets the gyroscope's",
           imu.name, imu.stream, imu.accelerometer_stream));
+  for (std::string& line : rig.timing) line = printable(line);
   return rig;
 }
 
@@ -247,23 +242,15 @@ std::string stampShifts(const Rig& rig) {
          fmt::format(" so that t_{} = t_cam + offset.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
 }
 
-std::string headerComment(const Rig& rig, const std::vector<std::string>& lines) {
-  std::string text;
-  std::string line = "# ";
-  for (const char letter : readMe(rig, lines)) {
-    text += line.empty() ? "" : line;
-    line = letter == '\n' ? "# " : "";
-    text += letter;
-  }
-  return text;
+std::string headerComment(const Rig& rig, const std::vector<std::string>& lines, Language language) {
+  std::string text = fmt::format("Written by {}. Calibration: {}\n", rig.program, rig.status);
+  for (const std::string& line : lines) text += line + "\n";
+  for (const std::string& line : rig.timing) text += line + "\n";
+  return commentIn(language, text);
 }
 
 std::string readMe(const Rig& rig, const std::vector<std::string>& lines) {
-  std::string text = fmt::format("Written by {}. Calibration: {}\n", rig.program, rig.status);
-  std::replace(text.begin(), text.end() - 1, '\n', ' ');
-  for (const std::string& line : lines) text += line + "\n";
-  for (const std::string& line : rig.timing) text += line + "\n";
-  return text;
+  return headerComment(rig, lines, Language::Text);
 }
 
 }  // namespace evical

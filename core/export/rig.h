@@ -1,6 +1,7 @@
-// A result prepared for exporters: every sensor with all of its data, the reference IMU first.
+// A result prepared for exporters: every sensor with all of its data, the reference IMU first. Texts are without control characters.
 #pragma once
 
+#include "core/export/export_text.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/report/result_yaml.h"
@@ -12,7 +13,8 @@
 namespace evical {
 
 struct RigCamera {
-  std::string name, file_name;  // file_name: the name with letters, digits and -_. only
+  // file_name: the name with letters, digits and -_. only, the first no hyphen: the same in all languages, and no option.
+  std::string name, file_name;
   std::string stream;
   CameraKind kind = CameraKind::Events;
   CameraIntrinsics intrinsics;
@@ -69,8 +71,9 @@ void noteLostCameras(const Rig& rig, std::size_t most, const char* program, Expo
 // For programs without time offsets: the shifts of the images' stamps.
 std::string stampShifts(const Rig& rig);
 
-// YAML comments: the program and status, the given lines, and remarks on timing.
-std::string headerComment(const Rig& rig, const std::vector<std::string>& lines);
+// The first comment of a file: the program and status, the given lines, and remarks on timing.
+std::string headerComment(const Rig& rig, const std::vector<std::string>& lines,
+                          Language language = Language::Yaml);
 // The same as text of a file next to a format without comments.
 std::string readMe(const Rig& rig, const std::vector<std::string>& lines);
 

@@ -1,4 +1,3 @@
-#include "core/base/yaml_node.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
@@ -20,7 +19,7 @@ std::string cameraInfoBody(const std::string& name, const CameraIntrinsics& came
   return fmt::format(
       "image_width: {}\nimage_height: {}\ncamera_name: {}\ncamera_matrix:\n{}distortion_model: {}\n"
       "distortion_coefficients:\n  rows: 1\n  cols: {}\n  data: [{}]\n",
-      camera.resolution_px.width_px, camera.resolution_px.height_px, yamlText(name),
+      camera.resolution_px.width_px, camera.resolution_px.height_px, stringIn(Language::Yaml, name),
       dataMatrix(cameraMatrix(camera), 2), radtan ? "plumb_bob" : "equidistant",
       radtan ? radtan_coefficients : 4, realList(distortionOf(camera, radtan ? radtan_coefficients : 4)));
 }
@@ -93,73 +92,74 @@ std::vector<std::string> poseArguments(const Joint& joint, std::span<const char*
   return arguments;
 }
 
-std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
-  std::string text =
-      "#!/bin/sh\n" + headerComment(rig, {"The pose of the child in the frame: transforms points of the "
-                                          "child to the frame. z of optical frames is forward.",
-                                          offsetsComment(rig)});
-  for (const Joint& joint : joints)
-    text += fmt::format("ros2 run tf2_ros static_transform_publisher {} &\n",
-                        fmt::join(poseArguments(joint, kRos2Flags), " "));
-  return text + "wait\n";
+std::string joined(Language language, const std::vector<std::string>& texts, const char* between) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + stringIn(language, text);
+  return all;
 }
 
-// XML comments must not contain two hyphens.
-std::string xmlComment(const std::string& text) {
-  std::string comment = "<!-- ";
-  for (const char letter : text) {
-    if (letter == '-' && comment.back() == '-') comment += ' ';
-    comment += letter;
-  }
-  return comment.append("-->\n");
+std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
+  std::string text =
+      "#!/bin/sh\n" + headerComment(rig,
+                                    {"The pose of the child in the frame: transforms points of the child to "
+                                     "the frame. z of optical frames is forward.",
+                                     offsetsComment(rig)},
+                                    Language::Shell);
+  for (const Joint& joint : joints)
+    text += fmt::format("ros2 run tf2_ros static_transform_publisher {} &\n",
+                        joined(Language::Shell, poseArguments(joint, kRos2Flags), " "));
+  return text + "wait\n";
 }
 
 std::string launchRos1(const Rig& rig, const std::vector<Joint>& joints) {
   std::string text =
       "<?xml version=\"1.0\"?>\n" +
-      xmlComment(readMe(rig, {"ROS 1, tf2_ros: x y z qx qy qz qw frame child. The pose transforms points of "
-                              "the child to the frame.",
-                              offsetsComment(rig)})) +
+      headerComment(rig,
+                    {"ROS 1, tf2_ros: x y z qx qy qz qw frame child. The pose transforms points of the child "
+                     "to the frame.",
+                     offsetsComment(rig)},
+                    Language::Xml) +
       "<launch>\n";
   for (std::size_t i = 0; i < joints.size(); ++i)
     text += fmt::format(
         "  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" name=\"static_transform_{}\" "
-        "args=\"{}\"/>\n",
-        i + 1, fmt::join(poseArguments(joints[i], {}), " "));
+        "args={}/>\n",
+        i + 1, stringIn(Language::Xml, joined(Language::Text, poseArguments(joints[i], {}), " ")));
   return text + "</launch>\n";
 }
 
 std::string launchRos2(const Rig& rig, const std::vector<Joint>& joints) {
   std::string text =
-      headerComment(rig, {"ROS 2, tf2_ros. The pose transforms points of the child to the frame.",
-                          offsetsComment(rig)}) +
+      headerComment(
+          rig, {"ROS 2, tf2_ros. The pose transforms points of the child to the frame.", offsetsComment(rig)},
+          Language::Python) +
       "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
       "def generate_launch_description():\n    return LaunchDescription([\n";
   for (std::size_t i = 0; i < joints.size(); ++i)
     text += fmt::format(
         "        Node(package='tf2_ros', executable='static_transform_publisher',\n"
-        "             name='static_transform_{}',\n             arguments=['{}']),\n",
-        i + 1, fmt::join(poseArguments(joints[i], kRos2Flags), "', '"));
+        "             name='static_transform_{}',\n             arguments=[{}]),\n",
+        i + 1, joined(Language::Python, poseArguments(joints[i], kRos2Flags), ", "));
   return text + "    ])\n";
 }
 
 std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
-  std::string text =
-      xmlComment(readMe(rig, {"The origin of a joint transforms points of the child to the parent. "
-                              "Use it alone, or copy it into a robot's "
-                              "description.",
-                              offsetsComment(rig)}));
-  text = "<?xml version=\"1.0\"?>\n" + text + "<robot name=\"rig\">\n" +
-         fmt::format("<link name=\"{}\"/>\n", joints.front().parent);
+  const auto name = [](const std::string& text) { return stringIn(Language::Xml, text); };
+  std::string text = "<?xml version=\"1.0\"?>\n" +
+                     headerComment(rig,
+                                   {"The origin of a joint transforms points of the child to the parent. Use "
+                                    "it alone, or copy it into a robot's description.",
+                                    offsetsComment(rig)},
+                                   Language::Xml) +
+                     fmt::format("<robot name=\"rig\">\n<link name={}/>\n", name(joints.front().parent));
   for (const Joint& joint : joints) {
     const Eigen::Vector3d rpy = rollPitchYaw(joint.parent_from_child.rotation.toRotationMatrix());
     const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
     text += fmt::format(
-        "<link name=\"{0}\"/>\n<joint name=\"{1}_to_{0}\" type=\"fixed\">\n  <parent link=\"{1}\"/>\n  "
-        "<child "
-        "link=\"{0}\"/>\n  <origin xyz=\"{2} {3} {4}\" rpy=\"{5} {6} {7}\"/>\n</joint>\n",
-        joint.child, joint.parent, real(p.x()), real(p.y()), real(p.z()), real(rpy.x()), real(rpy.y()),
-        real(rpy.z()));
+        "<link name={0}/>\n<joint name={1} type=\"fixed\">\n  <parent link={2}/>\n  <child link={0}/>\n"
+        "  <origin xyz=\"{3} {4} {5}\" rpy=\"{6} {7} {8}\"/>\n</joint>\n",
+        name(joint.child), name(joint.parent + "_to_" + joint.child), name(joint.parent), real(p.x()),
+        real(p.y()), real(p.z()), real(rpy.x()), real(rpy.y()), real(rpy.z()));
   }
   return text + "</robot>\n";
 }

@@ -1,4 +1,3 @@
-#include "core/base/yaml_node.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
@@ -20,8 +19,8 @@ std::string svoCameraText(const RigCamera& camera, const std::string& label, std
       "- camera:\n    label: {}\n    id: {}\n    line-delay-nanoseconds: {}\n    image_height: {}\n"
       "    image_width: {}\n    type: pinhole\n    intrinsics:\n{}    distortion:\n      type: {}\n"
       "      parameters:\n{}  T_B_C:\n{}",
-      yamlText(label), number, std::lround(1e3 * camera.line_delay_us), own.resolution_px.height_px,
-      own.resolution_px.width_px, dataMatrix(intrinsics, 6),
+      stringIn(Language::Yaml, label), number, std::lround(1e3 * camera.line_delay_us),
+      own.resolution_px.height_px, own.resolution_px.width_px, dataMatrix(intrinsics, 6),
       own.model == CameraModel::PinholeRadtan ? "radial-tangential" : "equidistant",
       dataMatrix(Eigen::Map<const Eigen::VectorXd>(d.data(), 4), 8),
       dataMatrix(matrixOf(camera.reference_from_camera), 4));

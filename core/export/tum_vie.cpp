@@ -41,7 +41,8 @@ ExportedFiles exportTumVie(const NamedResult& result) {
     if (*camera) (*camera)->intrinsics = cameraFor(**camera, kTumVieModels, exported.notes);
   rig.cameras = inTheirOrder(placed, exported.notes);
   std::string names;
-  for (const RigCamera& camera : rig.cameras) names += (names.empty() ? "" : ", ") + jsonText(camera.name);
+  for (const RigCamera& camera : rig.cameras)
+    names += (names.empty() ? "" : ", ") + stringIn(Language::Json, camera.name);
   exported.files.push_back(
       {"camera-calibrationA.json", basaltCalibration(rig, kTumVieProgram, exported.notes,
                                                      fmt::format(",\n    \"camera_names\": [{}]", names))});

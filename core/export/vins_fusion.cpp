@@ -1,4 +1,3 @@
-#include "core/base/yaml_node.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
@@ -68,9 +67,9 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
            "camera to the IMU; t_imu = t_cam + td.",
            "Noise is that of a sample, as the program requires: densities times the square root of the rate.",
            "The keys after td are the program's, with the values of its EuRoC configuration."}) +
-      fmt::format("imu: 1\nnum_of_cam: {}\nimu_topic: {}\n", count, yamlText(imu.stream));
+      fmt::format("imu: 1\nnum_of_cam: {}\nimu_topic: {}\n", count, stringIn(Language::Yaml, imu.stream));
   for (std::size_t i = 0; i < count; ++i)
-    text += fmt::format("image{}_topic: {}\n", i, yamlText(rig.cameras[i].stream));
+    text += fmt::format("image{}_topic: {}\n", i, stringIn(Language::Yaml, rig.cameras[i].stream));
   for (std::size_t i = 0; i < count; ++i)
     text += fmt::format("cam{}_calib: \"{}.yaml\"\n", i, rig.cameras[i].file_name);
   const Resolution& size = rig.cameras[0].intrinsics.resolution_px;

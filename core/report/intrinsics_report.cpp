@@ -96,7 +96,7 @@ std::string coveragePicture(const ImageMap& image) {
 std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
   const IntrinsicsResult& r = named.result;
   std::string text = fmt::format("evical_intrinsics: 1\nstatus: {}\nreason: {}\ncamera: {}\nintrinsics:\n",
-                                 statusName(r.status), yamlText(r.reason), yamlText(named.camera));
+                                 statusName(r.status), yamlLine(r.reason), yamlText(named.camera));
   text +=
       intrinsicsYaml(r.intrinsics, 2) + "intrinsics_std:\n" + intrinsicsStdYaml(r.intrinsics, sigmasOf(r), 2);
   text += correlationYaml(r);
@@ -116,10 +116,10 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
   text += fmt::format("passes: {}\nmoved_px: {:.6g}\n", r.passes, r.moved_px);
   for (const auto& [key, texts] : {std::pair("advice", &r.advice), std::pair("notes", &named.notes)}) {
     text += fmt::format("{}:{}\n", key, texts->empty() ? " []" : "");
-    for (const std::string& each : *texts) text += fmt::format("  - {}\n", yamlText(each));
+    for (const std::string& each : *texts) text += fmt::format("  - {}\n", yamlLine(each));
   }
   return text + fmt::format("timing_s: {{total: {:.3f}}}\nprogram: {{version: {}}}\n", r.elapsed_s,
-                            yamlText(named.version));
+                            yamlLine(named.version));
 }
 
 std::string intrinsicsTable(const NamedIntrinsics& named) {

@@ -62,7 +62,7 @@ void get(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
 void get(const YamlNode& map, const char* key, std::vector<std::string>& values) {
   const auto node = map.find(key);
   if (!node) return;
-  for (const YamlNode& item : node->items()) values.push_back(item.text());
+  for (const YamlNode& item : node->items()) values.push_back(item.anyText());
 }
 
 void get(const YamlNode& map, const char* key, Eigen::Quaterniond& value) {

@@ -184,7 +184,7 @@ std::string uncertaintyYaml(const NamedResult& named) {
                   roundedYaml(kDegPerRad * uncertainty.gravity_direction_std_rad),
                   yamlText(uncertainty.weakest), list(uncertainty.observability, roundedYaml));
   if (!uncertainty.directions.empty()) text += "  directions:\n";
-  for (const std::string& words : uncertainty.directions) text += fmt::format("    - {}\n", yamlText(words));
+  for (const std::string& words : uncertainty.directions) text += fmt::format("    - {}\n", yamlLine(words));
   if (uncertainty.gravity_norm_std_m_s2 > 0.0)
     text += fmt::format("gravity_norm_std_m_s2: {}\n", roundedYaml(uncertainty.gravity_norm_std_m_s2));
   if (!uncertainty.given.empty()) {
@@ -207,7 +207,7 @@ std::string splitHalfCheckYaml(const SplitHalfCheck& validation) {
   std::string text =
       fmt::format("split_half_check:\n  block_s: {}\n  windows: [{}, {}]\n", roundedYaml(validation.block_s),
                   validation.windows[0], validation.windows[1]);
-  if (!validation.failure.empty()) return text + fmt::format("  failure: {}\n", yamlText(validation.failure));
+  if (!validation.failure.empty()) return text + fmt::format("  failure: {}\n", yamlLine(validation.failure));
   text += fmt::format("  rms_sigmas: {}\n  differences:\n", roundedYaml(validation.rms_sigmas));
   for (const QuantityDifference& each : validation.quantities)
     text += fmt::format("    - {{name: {}, unit: {}, difference: {}, std: {}}}\n", yamlText(each.name),
@@ -230,7 +230,7 @@ std::string warningsYaml(const char* key, const std::vector<QualityWarning>& cau
   for (const QualityWarning& cause : causes) {
     text += fmt::format("  - name: {}\n", yamlText(cause.name));
     if (cause.explains > 0.0) text += fmt::format("    explains: {}\n", roundedYaml(cause.explains));
-    text += fmt::format("    text: {}\n", yamlText(cause.text));
+    text += fmt::format("    text: {}\n", yamlLine(cause.text));
     if (cause.repair)
       text +=
           fmt::format("    set: {{{}: {}}}\n", yamlText(cause.repair->key), yamlText(cause.repair->value));
@@ -241,14 +241,14 @@ std::string warningsYaml(const char* key, const std::vector<QualityWarning>& cau
 std::string runYaml(const NamedResult& named) {
   std::string text = rejectedYaml(named);
   text += named.result->notes.empty() ? "notes: []\n" : "notes:\n";
-  for (const std::string& note : named.result->notes) text += fmt::format("  - {}\n", yamlText(note));
+  for (const std::string& note : named.result->notes) text += fmt::format("  - {}\n", yamlLine(note));
   std::string timing;
   forEachTiming(named.result->timing, [&](const char* key, double duration_s) {
     timing += fmt::format("{}{}: {:.3f}", timing.empty() ? "" : ", ", key, duration_s);
   });
   text += fmt::format("timing_s: {{{}}}\n", timing);
   text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result->memory_peak_mb,
-                      yamlText(named.version));
+                      yamlLine(named.version));
   text += named.options.empty() ? "  options: {}\n" : "  options:\n";
   for (const OptionRow& row : named.options) text += fmt::format("    {}: {}\n", row.name, row.value);
   return text;
@@ -276,7 +276,7 @@ const char* statusName(CalibrationStatus status) {
 std::string resultYaml(const NamedResult& named) {
   const CalibrationState& state = named.result->state;
   std::string text = fmt::format("evical_result: 1\nstatus: {}\nreason: {}\nreference: {}\n",
-                                 statusName(named.result->status), yamlText(named.result->reason),
+                                 statusName(named.result->status), yamlLine(named.result->reason),
                                  yamlText(named.reference));
   if (const std::optional<Repair>& repair = named.result->repair)
     text += fmt::format("repair: {{set: {}, to: {}}}\n", yamlText(repair->key), yamlText(repair->value));

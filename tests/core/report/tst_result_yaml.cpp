@@ -233,6 +233,16 @@ class TestResultYaml : public QObject {
     QVERIFY(!read.result->start_ns);
   }
 
+  // Reasons and notes may name paths, which may have any character.
+  void reasonWithLineBreaks_readsBack() {
+    NamedResult failed;
+    test::ownResult(failed).reason = "/data/a\nb\x1b.bag: is gone";
+    test::ownResult(failed).notes = {"a\rb"};
+    const NamedResult read = readBack(resultYaml(failed));
+    QCOMPARE(read.result->reason, std::string("/data/a\\x0ab\\x1b.bag: is gone"));
+    QCOMPARE(read.result->notes.at(0), std::string("a\\x0db"));
+  }
+
   void result_thatIsNone_isRefused_data() {
     QTest::addColumn<QString>("text");
     QTest::addColumn<QString>("said");
@@ -248,6 +258,18 @@ class TestResultYaml : public QObject {
                             << "3 are needed";
     QTest::newRow("later version") << "evical_result: 2\n"
                                    << "this program reads files of version 1";
+    QTest::newRow("reason") << "evical_result: 1\nreason: \"a\\rb\"\n"
+                            << "reason (line 2): the text has a control character: 'a\\x0db'";
+    QTest::newRow("version") << "evical_result: 1\nprogram: {version: \"\\x1b[2J\"}\n"
+                             << "'\\x1b[2J'";
+    QTest::newRow("reference") << "evical_result: 1\nreference: \"\\u2028\"\n"
+                               << "'\\u2028'";
+    QTest::newRow("name") << "evical_result: 1\ncameras: {\"\\v\": {}}\n"
+                          << "a key has a control character: '\\x0b'";
+    QTest::newRow("stream")
+        << "evical_result: 1\ncameras: {a: {stream: \"b\\u0085\", reference_from_camera: {rotation_xyzw: "
+           "[0, 0, 0, 1], translation_m: [0, 0, 0]}}}\n"
+        << "cameras.a.stream";
     for (const char* const column :
          {"quantity: width", "quantity: gravity, component: x", "camera: left, quantity: rotation"})
       QTest::newRow(column)
