@@ -9,6 +9,7 @@
 #include "core/recording/numpy/numpy_reader.h"
 #include "core/recording/pictures/picture_lists.h"
 #include "core/recording/pictures/picture_reader.h"
+#include "core/recording/plain_names_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
@@ -175,7 +176,7 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
 
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path, const ColumnNames& names) {
   try {
-    return std::make_unique<UnwrappedReader>(openPath(path, names));
+    return std::make_unique<UnwrappedReader>(withPlainNames(openPath(path, names)));
   } catch (const std::filesystem::filesystem_error& error) {
     throw badInput(path.string(), "cannot be accessed: " + error.code().message(),
                    "Check the path and its permissions");

@@ -1,6 +1,7 @@
 #include "core/recording/numpy/numpy_files.h"
 
 #include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/recording/numpy/zip_archive.h"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ Array arrayOf(const std::filesystem::path& file) {
   ByteRange range;
   range.path = file;
   range.bytes = range.packed_bytes = std::filesystem::file_size(file);
-  return arrayAt(range, withoutEnd(file.filename().string()));
+  return arrayAt(range, visible(withoutEnd(file.filename().string())));
 }
 
 void addMember(const ZipMember& member, FoundFiles& found) {

@@ -1,5 +1,6 @@
 #include "core/recording/pictures/picture_lists.h"
 
+#include "core/base/plain_text.h"
 #include "core/base/time.h"
 #include "core/recording/pictures/picture_names.h"
 #include "core/recording/pictures/picture_times.h"
@@ -38,7 +39,7 @@ PictureList newList(std::string name, const char* layout, fs::path folder) {
 
 std::string folderName(const fs::path& folder) {
   const fs::path plain = folder.filename().empty() ? folder.parent_path() : folder;
-  const std::string name = plain.filename().string();
+  const std::string name = visible(plain.filename().string());
   return name.empty() || name == "." || name == ".." ? "pictures" : name;
 }
 
@@ -50,7 +51,7 @@ void addEurocCamera(const fs::path& folder, PictureFolder& found) {
 }
 
 void addImuTable(const std::string& name, const fs::path& file, PictureFolder& found) {
-  if (isFile(file) && isTextTable(file)) found.imus.push_back({name, file});
+  if (isFile(file) && isTextTable(file)) found.imus.push_back({visible(name), file});
 }
 
 PictureFolder findEuroc(const fs::path& folder) {
@@ -166,7 +167,7 @@ PictureFolder findByNames(const fs::path& folder) {
     return found;
   }
   for (const std::string& name : folderNames(folder))
-    if (auto list = listByNames(folder / name, name)) found.lists.push_back(std::move(*list));
+    if (auto list = listByNames(folder / name, visible(name))) found.lists.push_back(std::move(*list));
   for (int i = 0; i < 10 && !found.lists.empty(); ++i) {
     const std::string name = fmt::format("imu{}", i);
     addImuTable(name, folder / (name + ".csv"), found);

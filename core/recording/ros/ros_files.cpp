@@ -44,7 +44,7 @@ std::vector<fs::path> filesOfMetadata(const fs::path& folder) {
   std::vector<fs::path> files;
   const YamlNode info = YamlNode::load(folder / "metadata.yaml")["rosbag2_bagfile_information"];
   for (const YamlNode& item : info["relative_file_paths"].items())
-    files.push_back(folder / fs::path(item.text()).filename());
+    files.push_back(folder / fs::path(item.anyText()).filename());
   return files;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "core/base/plain_text.h"
 #include "core/base/time.h"
 #include "core/recording/column_names.h"
 
@@ -84,7 +85,7 @@ std::vector<std::filesystem::path> textFiles(const std::filesystem::path& folder
 std::vector<std::filesystem::path> imuTables(const std::filesystem::path& folder, const ColumnNames& names) {
   std::vector<std::filesystem::path> files = textFiles(folder);
   std::erase_if(files, [&](const std::filesystem::path& file) {
-    const std::string name = file.filename().string();
+    const std::string name = visible(file.filename().string());
     const bool known =
         std::any_of(std::begin(kFiles), std::end(kFiles), [&](const char* each) { return name == each; });
     return known || (!names.contains(name) && columnsIn(file).type != StreamType::Imu);
@@ -114,7 +115,7 @@ TextTableReader::TextTableReader(const std::filesystem::path& path, const Column
     return found == names.end() ? std::string() : found->second;
   };
   if (!std::filesystem::is_directory(path)) {
-    addTable(path, namesOf(path.filename().string()));
+    addTable(path, namesOf(visible(path.filename().string())));
     return;
   }
   for (const char* name : kFiles)
@@ -122,14 +123,14 @@ TextTableReader::TextTableReader(const std::filesystem::path& path, const Column
   const auto isImu = [](const StreamInfo& stream) { return stream.type == StreamType::Imu; };
   if (std::any_of(streams_.begin(), streams_.end(), isImu)) return;
   for (const std::filesystem::path& file : imuTables(path, names))
-    addTable(file, namesOf(file.filename().string()));
+    addTable(file, namesOf(visible(file.filename().string())));
   addUnreadSensors(path, names);
 }
 
 // Reports tables that a sensor's name leads to expect, but that cannot be read.
 void TextTableReader::addUnreadSensors(const std::filesystem::path& folder, const ColumnNames& names) {
   for (const std::filesystem::path& file : textFiles(folder)) {
-    const std::string name = file.filename().string();
+    const std::string name = visible(file.filename().string());
     const TextColumns columns = columnsIn(file);
     if (names.contains(name) || columns.problem.empty() || !sensorNamed(file.stem().string())) continue;
     faults_.push_back(
@@ -154,7 +155,7 @@ void TextTableReader::addTable(const std::filesystem::path& path, const std::str
 // A stream of a file. One of several IMUs has its own name.
 void TextTableReader::addSource(const std::filesystem::path& path, TextColumns columns) {
   StreamInfo stream;
-  stream.name = path.filename().string() + (columns.part.empty() ? "" : ":" + columns.part);
+  stream.name = visible(path.filename().string()) + (columns.part.empty() ? "" : ":" + columns.part);
   stream.type = columns.type;
   stream.message = rowOf(columns);
   if (!columns.scales.empty()) stream.message += "; " + columns.scales;

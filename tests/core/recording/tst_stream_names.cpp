@@ -1,5 +1,7 @@
 // Stream names that writers announce are those that readers report: the new file need not be opened to know
 // them.
+#include "core/base/error.h"
+#include "core/base/plain_text.h"
 #include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
 
@@ -20,6 +22,9 @@ class TestStreamNames : public QObject {
   void streamNames_areThoseThatReadersGive_data();
   void streamNames_areThoseThatReadersGive();
   void conversion_tellsNewNames_alsoOfAnEmptyRecording();
+  void namesWithControlCharacters_areListedVisibly_andNotRead_data();
+  void namesWithControlCharacters_areListedVisibly_andNotRead();
+  void fileWithALineBreakInItsName_isRead();
 
  private:
   ScratchFolder scratch_;
@@ -110,6 +115,50 @@ void TestStreamNames::conversion_tellsNewNames_alsoOfAnEmptyRecording() {
     const bool told = log.said.find("samples.csv is called imu") != std::string::npos;
     QVERIFY2(told == renamed, (request.output.string() + ": " + log.said).c_str());
   }
+}
+
+void TestStreamNames::namesWithControlCharacters_areListedVisibly_andNotRead_data() {
+  QTest::addColumn<QByteArray>("name");
+  QTest::addColumn<QByteArray>("shown");
+  QTest::newRow("ESC") << QByteArray("/dvs\x1b[2J") << QByteArray("/dvs\\x1b[2J");
+  QTest::newRow("CR") << QByteArray("/a\rb") << QByteArray("/a\\x0db");
+  QTest::newRow("NEL") << QByteArray("/a\xc2\x85") << QByteArray("/a\\u0085");
+  QTest::newRow("line separator") << QByteArray("/a\xe2\x80\xa8") << QByteArray("/a\\u2028");
+}
+
+void TestStreamNames::namesWithControlCharacters_areListedVisibly_andNotRead() {
+  QFETCH(QByteArray, name);
+  QFETCH(QByteArray, shown);
+  const std::vector<StreamInfo> streams{stream(name.toStdString()), stream("/plain"), stream("/imu")};
+  for (const char* const file : {"names.bag", "names.mcap", "names.aedat4"}) {
+    const auto path = scratch_ / (std::string(QTest::currentDataTag()) + file);
+    const std::string format = path.extension().string().substr(1);
+    writeSome(*createRecording(path, format, streams), streams);
+    const std::unique_ptr<RecordingReader> reader = openRecording(path);
+    const Contents contents = readAll(*reader);
+    std::size_t hostile = 0;
+    for (std::size_t i = 0; i < contents.streams.size(); ++i) {
+      const StreamInfo& each = contents.streams[i];
+      QVERIFY(!hasControl(each.name) && !hasControl(each.source));
+      if (each.name.find(shown.toStdString().substr(1)) == std::string::npos) continue;
+      ++hostile;
+      QVERIFY(each.type == StreamType::Other && !contents.events.contains(i));
+    }
+    QCOMPARE(hostile, std::size_t{1});
+    QCOMPARE(contents.eventCount(), std::size_t{20});
+    QCOMPARE(contents.sampleCount(), std::size_t{5});
+    QVERIFY(contents.hasFault(FaultKind::Unreadable));
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, findStream(*reader, shown.toStdString(), StreamType::Events));
+  }
+}
+
+// The user's own files may have any name.
+void TestStreamNames::fileWithALineBreakInItsName_isRead() {
+  const auto path =
+      scratch_.write("a\nb.csv", "t_s,ax,ay,az,gx,gy,gz\n0,0,0,9.8,0,0,0\n0.01,0,0,9.8,0,0,0\n");
+  const Contents contents = readAll(path);
+  QCOMPARE(contents.streams.at(0).name, std::string("a\\x0ab.csv"));
+  QCOMPARE(contents.sampleCount(), std::size_t{2});
 }
 
 }  // namespace
