@@ -131,7 +131,8 @@ void checkBoard(const YamlNode& said, const Board& board) {
 void checkSession(const YamlNode& detections, const Session& session, const RunContext& context) {
   checkTimeRange(detections, session);
   logOptions(detections["options"], session, context);
-  const std::string recording = detections["recording"].text(), own = session.recording.filename().string();
+  const std::string recording = detections["recording"].anyText(),
+                    own = session.recording.filename().string();
   if (recording != own)
     context.progress.log(LogLevel::Warning,
                          fmt::format("The detections are of a recording named {}; the session's is named {}",

@@ -70,9 +70,9 @@ IntrinsicsMatrix covarianceFrom(const YamlNode& node) {
 std::string foundIntrinsicsYaml(const IntrinsicsResult& found, int indent) {
   const std::string blanks(static_cast<std::size_t>(indent), ' ');
   std::string text = fmt::format("{0}status: {1}\n{0}reason: {2}\n{0}advice:{3}\n", blanks,
-                                 kStatuses.at(static_cast<std::size_t>(found.status)), yamlText(found.reason),
+                                 kStatuses.at(static_cast<std::size_t>(found.status)), yamlLine(found.reason),
                                  found.advice.empty() ? " []" : "");
-  for (const std::string& advice : found.advice) text += fmt::format("{}  - {}\n", blanks, yamlText(advice));
+  for (const std::string& advice : found.advice) text += fmt::format("{}  - {}\n", blanks, yamlLine(advice));
   for (const NumberKey& row : kNumbers)
     text += fmt::format("{}{}: {}\n", blanks, row.key, exactYaml(found.*row.number));
   for (const CountKey& row : kCounts) text += fmt::format("{}{}: {}\n", blanks, row.key, found.*row.count);

@@ -132,7 +132,7 @@ std::vector<RecordingFault> faultsFrom(const YamlNode& list) {
   std::vector<RecordingFault> faults;
   for (const YamlNode& node : list.items())
     faults.push_back({node["stream"].text(), static_cast<FaultKind>(node["kind"].choice(kFaultKinds)),
-                      node["at_s"].real(), node["text"].text()});
+                      node["at_s"].real(), node["text"].anyText()});
   return faults;
 }
 

@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
+#include "core/base/plain_text.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/session_boards.h"
 #include "core/pipeline/session/session_priors.h"
@@ -57,6 +58,9 @@ void checkDifferent(const Session& session, const std::string& place) {
   std::set<std::tuple<std::filesystem::path, std::string, std::string>> streams;
   const auto check = [&](const std::string& kind, const auto& sensor) {
     const std::string key = fmt::format("{}: {}.{}", place, kind, sensor.name);
+    requirePlain(sensor.name, key, "the name");
+    requirePlain(sensor.stream, key + ".stream", "the name");
+    requirePlain(separateAccelerometer(sensor), key + ".accelerometer", "the name");
     if (!names.insert(sensor.name).second)
       throw badInput(key, "this name is already used", "Give every sensor a different name");
     const std::filesystem::path& gyroscope = sensor.recording.empty() ? session.recording : sensor.recording;
@@ -132,9 +136,26 @@ void checkPriors(const Session& session, const std::string& place) {
 }
 
 std::string recordingText(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  const auto recording = std::filesystem::weakly_canonical(file);
-  const auto relative = recording.lexically_relative(std::filesystem::weakly_canonical(folder));
-  return relative.empty() || *relative.begin() == ".." ? recording.string() : relative.string();
+  const auto within = [](const std::filesystem::path& path, const std::filesystem::path& base) {
+    const std::filesystem::path relative = path.lexically_relative(base);
+    return relative.empty() || *relative.begin() == ".." ? std::filesystem::path() : relative;
+  };
+  const auto absolute = [](const std::filesystem::path& path) {
+    const std::filesystem::path whole = std::filesystem::absolute(path.empty() ? "." : path);
+    return whole.filename().empty() ? whole.parent_path() : whole;  // without a slash at the end
+  };
+  const std::filesystem::path own = absolute(file), base = absolute(folder);
+  const auto as_given = within(own.lexically_normal(), base.lexically_normal());
+  const bool plain = std::find(own.begin(), own.end(), "..") == own.end() &&
+                     std::find(base.begin(), base.end(), "..") == base.end();
+  if (plain && !as_given.empty()) return as_given.string();
+  // A link to the recording stays one: only links to folders are resolved.
+  const std::filesystem::path recording =
+      own.filename() == ".." || own.filename() == "."
+          ? std::filesystem::weakly_canonical(own)
+          : std::filesystem::weakly_canonical(own.parent_path()) / own.filename();
+  const auto relative = within(recording, std::filesystem::weakly_canonical(base));
+  return relative.empty() ? recording.string() : relative.string();
 }
 
 std::string recordingsText(const Session& session, const std::filesystem::path& folder) {
@@ -218,7 +239,7 @@ std::string commented(const std::string& lines) {
   std::string text;
   for (std::size_t begin = 0; begin < lines.size();) {
     const std::size_t end = lines.find('\n', begin);
-    text += "# " + lines.substr(begin, end - begin) + "\n";
+    text += "# " + visible(lines.substr(begin, end - begin)) + "\n";
     begin = end == std::string::npos ? lines.size() : end + 1;
   }
   return text;
@@ -228,7 +249,7 @@ std::string remarksYaml(const SessionRemarks& remarks, const std::string& sensor
   std::string text;
   const auto found = remarks.sensors.find(sensor);
   if (found == remarks.sensors.end()) return text;
-  for (const std::string& remark : found->second) text += fmt::format("    # {}\n", remark);
+  for (const std::string& remark : found->second) text += fmt::format("    # {}\n", visible(remark));
   return text;
 }
 
@@ -251,7 +272,8 @@ Session withoutRejectedWindows(Session session) {
 std::string accelerometerTable(const std::filesystem::path& gyroscope,
                                const std::filesystem::path& accelerometer) {
   const std::filesystem::path name = accelerometer.filename();
-  return (name == gyroscope.filename() ? accelerometer.parent_path().filename() / name : name).string();
+  return visible(
+      (name == gyroscope.filename() ? accelerometer.parent_path().filename() / name : name).string());
 }
 
 std::string SessionImu::joinedStream() const {

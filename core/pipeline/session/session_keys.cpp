@@ -116,8 +116,14 @@ std::string nameFrom(const YamlNode& node) {
   return text;
 }
 
+std::filesystem::path pathFrom(const YamlNode& node) {
+  std::string text = node.anyText();
+  if (text.empty()) throw node.error("is empty", "Name a file");
+  return text;
+}
+
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / nameFrom(node);
+  const std::filesystem::path path = folder / pathFrom(node);
   if (!isThere(path))
     throw node.error(fmt::format("'{}' does not exist", path.string()),
                      "Paths are relative to the session file");

@@ -23,6 +23,7 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file);
 
 // Non-empty text. This and the next two throw CalibrationError (BadInput) at the node.
 std::string nameFrom(const YamlNode& node);
+std::filesystem::path pathFrom(const YamlNode& node);  // may have control characters
 
 // Path in a session; the file must exist.
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder);

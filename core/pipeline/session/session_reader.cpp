@@ -1,5 +1,7 @@
+#include "core/base/file_places.h"
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
+#include "core/base/plain_text.h"
 #include "core/export/export_target.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
@@ -25,7 +27,7 @@ struct SessionFolder {
 };
 
 std::filesystem::path recordingBeside(const YamlNode& node, const SessionFolder& folder) {
-  return folder.recordings_may_be_gone ? folder.path / nameFrom(node) : besideSession(node, folder.path);
+  return folder.recordings_may_be_gone ? folder.path / pathFrom(node) : besideSession(node, folder.path);
 }
 
 Resolution readResolution(const YamlNode& node) {
@@ -37,7 +39,8 @@ Resolution readResolution(const YamlNode& node) {
 constexpr double kLargestOffset_s = 4.6e9;  // covers all times of recordings (kLatestTime_ns)
 
 std::string columnsFrom(const YamlNode& node) {
-  std::string columns = nameFrom(node);
+  std::string columns = node.anyText();  // a table's header may have tabs
+  if (columns.empty()) throw node.error("is empty", "Name the columns");
   if (columns.find('?') != std::string::npos)
     throw node.error("has a ?", "Replace it by the column's name, or by - if the column is not used");
   return columns;
@@ -104,8 +107,8 @@ void readStream(const YamlNode& map, SessionImu& imu) {
   if (!gyroscope && !accelerometer && recording && recording->isSequence() && !map.has("stream")) {
     // Tables, whose only streams have the files' names.
     const std::vector<YamlNode> files = recordingsOfSensors(*recording);
-    imu.stream = std::filesystem::path(nameFrom(files[0])).filename().string();
-    imu.accelerometer_stream = accelerometerTable(nameFrom(files[0]), nameFrom(files[1]));
+    imu.stream = visible(pathFrom(files[0]).filename().string());
+    imu.accelerometer_stream = accelerometerTable(pathFrom(files[0]), pathFrom(files[1]));
     return;
   }
   if (!gyroscope && !accelerometer) {
@@ -367,10 +370,24 @@ Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const 
                      [&](Session& session) { readRecordings(root["recording"], folder, session); });
 }
 
+// Folder to which paths in the session are relative. If the session is opened through a link, this is the link's folder if the
+// recording is there, otherwise that of the file itself.
+std::filesystem::path folderOfSession(const std::filesystem::path& file, const YamlNode& root) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(file, error) || !root.isMap()) return file.parent_path();
+  auto node = root.find("recording");
+  if (!node) node = root.find("recordings");
+  if (node && node->isSequence() && !node->items().empty()) node = node->items().front();
+  if (!node || !node->isScalar() || isThere(file.parent_path() / node->anyText())) return file.parent_path();
+  const std::filesystem::path own = std::filesystem::canonical(file, error);
+  return error ? file.parent_path() : own.parent_path();
+}
+
 }  // namespace
 
 Session readSession(const std::filesystem::path& file) {
-  return oneSessionFrom(YamlNode::load(file), {file.parent_path()}, file);
+  const YamlNode root = YamlNode::load(file);
+  return oneSessionFrom(root, {folderOfSession(file, root)}, file);
 }
 
 std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
@@ -380,7 +397,7 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
   if (!several) return {readSession(file)};
   if (root.has("recording"))
     throw several->error("is given in addition to recording", "Keep one of the two: recordings lists all");
-  const SessionFolder folder{file.parent_path()};
+  const SessionFolder folder{folderOfSession(file, root)};
   std::vector<Session> sessions;
   for (const YamlNode& item : several->items())
     sessions.push_back(sessionFrom(
@@ -403,7 +420,8 @@ std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
 }
 
 Session readSessionOfRun(const std::filesystem::path& file) {
-  return oneSessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
+  const YamlNode root = YamlNode::load(file);
+  return oneSessionFrom(root, {folderOfSession(file, root), true}, file);
 }
 
 Session parseSession(const std::string& yaml, const std::filesystem::path& folder) {

@@ -661,6 +661,10 @@ correlation:
         {"export", "'opnvins'", "Did you mean 'openvins'?"});
     row("unknown board key", "radius_m:", "radius:", {"board.radius (line 9)", "'radius_m'"});
     row("key twice", "cols: 4", "rows: 4", {"board.rows (line 7)", "twice"});
+    row("control character in a stream", "stream: /left/events", "stream: \"/left\\r/events\"",
+        {"cameras.left.stream", "'/left\\x0d/events'", "Remove the character"});
+    row("control character in a name", "reference: left_imu", "reference: \"left_imu\\x1b\"",
+        {"reference", "'left_imu\\x1b'"});
     row("missing key", "  rows: 11\n", "", {"board.rows", "missing"});
     row("missing recording", "recording.bag", "other.bag",
         {"recording (line 2)", "other.bag", "does not exist"});
@@ -738,6 +742,75 @@ correlation:
     } catch (const CalibrationError& error) {
       test::verifyRefusal(error, said);
     }
+  }
+
+  // Sessions that a program builds.
+  void controlCharacters_inMembers_areRefused() {
+    for (const char* const name : {"a\nb",
+                                   "a\xc2\x85"
+                                   "b",
+                                   "\x1b[2J"}) {
+      Session camera = sessionWith({}, {}), imu = camera, stream = camera;
+      camera.cameras.front().name = name;
+      imu.imus.front().name = imu.reference = name;
+      stream.cameras.front().stream = name;
+      for (const Session& session : {camera, imu, stream})
+        QVERIFY_THROWS_EXCEPTION(CalibrationError, validate(session, "session"));
+    }
+  }
+
+  // Paths may have any character, comments of strangers none that ends a line.
+  void pathsAndRemarks_withLineBreaks_areWritten() {
+    write("line\nbreak\x1b.bag", "x");
+    Session session = sessionWith({}, {});
+    session.recording = folder() / "line\nbreak\x1b.bag";
+    SessionRemarks remarks;
+    remarks.board = "first\rcameras: {}\nsecond\xe2\x80\xa8third";
+    remarks.sensors["left"] = {"a\rb: c"};
+    const std::string text = sessionYaml(session, folder(), remarks);
+    QVERIFY(text.find('\r') == std::string::npos && text.find('\x1b') == std::string::npos);
+    QVERIFY(text.find("# first\\x0dcameras: {}\n# second\\u2028third\n") != std::string::npos);
+    QCOMPARE(readSession(write("breaks.yaml", text)).recording, session.recording);
+    session.imus.front().columns = "t_ns\tax\tay\taz\tgx\tgy\tgz";
+    QCOMPARE(readSession(write("tabs.yaml", sessionYaml(session, folder()))).imus.front().columns,
+             session.imus.front().columns);
+  }
+
+  void linkToARecording_staysALink() {
+    const auto disk = folder() / "disk", work = folder() / "work";
+    std::filesystem::create_directories(disk / "day1");
+    std::filesystem::create_directories(work);
+    write("disk/day1/recording.bag", "x");
+    std::filesystem::create_symlink(disk / "day1" / "recording.bag", work / "linked.bag");
+    std::filesystem::create_directory_symlink(disk, work / "disk");
+    Session session = sessionWith({}, {});
+    const auto recordingIn = [&](const std::filesystem::path& recording, const std::filesystem::path& of) {
+      session.recording = recording;
+      const YamlNode root = YamlNode::parse(sessionYaml(session, of), "session");
+      return root["recording"].anyText();
+    };
+    QCOMPARE(recordingIn(work / "linked.bag", work), std::string("linked.bag"));
+    QCOMPARE(recordingIn(work / "disk" / "day1" / "recording.bag", work),
+             std::string("disk/day1/recording.bag"));
+    QCOMPARE(recordingIn(work / "disk" / "day1" / "recording.bag", disk), std::string("day1/recording.bag"));
+    QCOMPARE(recordingIn(work / ".." / "work" / "linked.bag", work), std::string("linked.bag"));
+    QCOMPARE(recordingIn(work / "linked.bag", disk), (work / "linked.bag").string());
+    QCOMPARE(recordingIn(disk / "day1" / "", disk), std::string("day1"));
+  }
+
+  // The recording is in the folder of the link, or in that of the file.
+  void sessionThroughALink_findsItsRecording() {
+    const auto archive = folder() / "archive", desk = folder() / "desk";
+    std::filesystem::create_directories(archive);
+    std::filesystem::create_directories(desk);
+    write("archive/recording.bag", "x");
+    write("archive/session.yaml", kGoodSession);
+    std::filesystem::create_symlink(archive / "session.yaml", desk / "session.yaml");
+    QVERIFY(
+        std::filesystem::equivalent(readSession(desk / "session.yaml").recording, archive / "recording.bag"));
+    write("desk/recording.bag", "y");
+    QVERIFY(
+        std::filesystem::equivalent(readSession(desk / "session.yaml").recording, desk / "recording.bag"));
   }
 
   void missingFile_isNamed() {
