@@ -16,7 +16,7 @@ namespace {
 constexpr int kMostThreads = 256, kMostAtOnce = 1024, kMostMemory_mb = 1 << 24;
 
 std::filesystem::path beside(const YamlNode& node, const std::filesystem::path& folder) {
-  const std::string text = node.text();
+  const std::string text = node.anyText();
   if (text.empty()) throw node.error("is empty", "Name a file");
   return (folder / text).lexically_normal();
 }

@@ -73,7 +73,7 @@ std::optional<JobOutcome> readOutcome(const std::filesystem::path& folder, const
     outcome.reason = root["reason"].text();
     outcome.wall_s = root["wall_s"].real();
     outcome.peak_memory_mb = root["peak_memory_mb"].real();
-    for (const YamlNode& item : root["inputs"].items()) outcome.inputs.push_back(item.text());
+    for (const YamlNode& item : root["inputs"].items()) outcome.inputs.push_back(item.anyText());
     return outcome;
   } catch (const CalibrationError&) {
     return std::nullopt;
@@ -83,7 +83,7 @@ std::optional<JobOutcome> readOutcome(const std::filesystem::path& folder, const
 void writeOutcome(const std::filesystem::path& folder, const BatchJob& job, const JobOutcome& outcome) {
   std::string yaml = fmt::format(
       "evical_job: 1\nname: {}\nend: {}\nreason: {}\nwall_s: {:.3f}\npeak_memory_mb: {:.1f}\ninputs:\n",
-      yamlText(job.name), jobEndName(outcome.end), yamlText(outcome.reason), outcome.wall_s,
+      yamlText(job.name), jobEndName(outcome.end), yamlLine(outcome.reason), outcome.wall_s,
       outcome.peak_memory_mb);
   for (const std::string& input : outcome.inputs) yaml += fmt::format("  - {}\n", yamlText(input));
   writeFileWhole(jobFile(folder, job, ".yaml"), yaml);

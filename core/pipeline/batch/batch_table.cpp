@@ -148,11 +148,11 @@ std::string batchYaml(std::span<const BatchRow> rows, const std::string& version
            : fmt::format("{} of {} jobs have no result", countWithoutResult(rows), rows.size());
   std::string yaml = fmt::format(
       "evical_batch: 1\nstatus: {}\nreason: {}\nversion: {}\njobs: {}\nok: {}\ndoubtful: {}\nlist:\n",
-      done ? "ok" : "failed", yamlText(reason), yamlText(version), rows.size(), countOf(rows, "ok"),
+      done ? "ok" : "failed", yamlLine(reason), yamlLine(version), rows.size(), countOf(rows, "ok"),
       countOf(rows, "doubtful"));
   for (const BatchRow& row : rows) {
     yaml += fmt::format("  - name: {}\n    status: {}\n    reason: {}\n    session: {}\n",
-                        yamlText(row.job->name), row.status(), yamlText(row.reason()),
+                        yamlText(row.job->name), row.status(), yamlLine(row.reason()),
                         yamlText(row.job->session.string()));
     if (!row.job->recording.empty())
       yaml += fmt::format("    recording: {}\n", yamlText(row.job->recording.string()));

@@ -61,7 +61,7 @@ std::string summaryYaml(const RunSummary& summary, const std::string& places) {
   return fmt::format(
              "evical_run: 1\nname: {}\nmade_s: {}\nstatus: {}\nreason: {}\nrecording: {}\ntook_s: {:.3f}\n"
              "rejected_windows: {}\n",
-             yamlText(summary.name), summary.made_s, statusName(summary.status), yamlText(summary.reason),
+             yamlLine(summary.name), summary.made_s, statusName(summary.status), yamlLine(summary.reason),
              yamlText(summary.recording), summary.took_s, summary.rejected_windows) +
          optionsYaml(summary.options) + places;
 }
@@ -88,7 +88,7 @@ RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder
   summary.made_s = root["made_s"].nanoseconds();
   summary.status = static_cast<CalibrationStatus>(root["status"].choice({"ok", "doubtful", "failed"}));
   summary.reason = root["reason"].text();
-  summary.recording = root["recording"].text();
+  summary.recording = root["recording"].anyText();
   summary.took_s = root["took_s"].real();
   summary.rejected_windows = root["rejected_windows"].integer(0, kMost);
   const YamlNode options = root["options"];
@@ -107,7 +107,7 @@ void findRecordings(const YamlNode& places, const std::filesystem::path& folder,
   forEachRecording(session, [&](std::filesystem::path& recording) {
     const std::size_t place = next++;
     if (place >= items.size() || isThere(recording)) return;
-    const auto moved = (folder / items[place].text()).lexically_normal();
+    const auto moved = (folder / items[place].anyText()).lexically_normal();
     if (isThere(moved)) recording = moved;
   });
 }
@@ -141,7 +141,7 @@ void readBoard(const YamlNode& detections, Session& session) {
   constexpr int kMost = 1000;
   constexpr double kMost_m = 100.0;
   const YamlNode map = detections["board"];
-  session.recording = session.source.parent_path() / detections["recording"].text();
+  session.recording = session.source.parent_path() / detections["recording"].anyText();
   session.board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
   if (!session.board.hasPattern()) {
     session.board = boardOfPoints(pointsFrom(map["points_m"]));
@@ -358,7 +358,7 @@ void renameRun(const std::filesystem::path& folder, const std::string& name) {
   summary.name = name;
   std::string places = "recordings_from_here:\n";
   for (const YamlNode& place : root["recordings_from_here"].items())
-    places += fmt::format("  - {}\n", yamlText(place.text()));
+    places += fmt::format("  - {}\n", yamlText(place.anyText()));
   writeFileWhole(folder / kRun, summaryYaml(summary, places));
 }
 
