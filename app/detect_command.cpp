@@ -5,6 +5,7 @@
 #include "app/session_arguments.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
 #include "core/frontend/board_tracker.h"
@@ -39,8 +40,9 @@ class ImageWriters final : public CalibrationObserver {
       : arguments_(arguments), session_(session), output_(std::move(output)) {}
 
   FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
-    const std::filesystem::path folder = output_ / "images" / session_.cameras[camera].name;
-    makeOutputFolder(folder);
+    const std::filesystem::path below = std::filesystem::path("images") / foldersOfCameras(session_)[camera];
+    const std::filesystem::path folder = output_ / below;
+    makeFolderWithin(output_, below);
     writers_.push_back(std::make_unique<StageImageWriter>(folder, arguments_.every_nth, tracker.scene(),
                                                           &tracker.history(), *session_.options.front_end));
     return writers_.back().get();
@@ -75,7 +77,7 @@ void detectIn(const Session& session, const std::filesystem::path& output, const
               const std::stop_token& stop) {
   Console console(arguments.quiet);
   console.announceReplacement(output, {"detections.yaml"});
-  makeOutputFolder(output);
+  const NewFolder folder(output);
   ImageWriters images(arguments, session, output);
   const RunContext context{console, stop, arguments.images ? &images : nullptr};
   console.stageStarted(nameOf(CalibrationStage::Detect));

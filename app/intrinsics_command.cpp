@@ -50,12 +50,10 @@ struct Found {
   std::string tables, names;
 };
 
-void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera, bool alone,
-               const IntrinsicsRun& run, const RunContext& context, Found& found) {
+void addCamera(const std::filesystem::path& folder, const SessionCamera& camera, const IntrinsicsRun& run,
+               const RunContext& context, Found& found) {
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   const NamedIntrinsics named = namedIntrinsics(camera, run, kVersion);
-  std::filesystem::path folder = arguments.output;
-  if (!alone) makeOutputFolder(folder /= camera.name);
   for (FileContent& file : intrinsicsFiles(folder, named, run.pass.cameras))
     found.files.push_back(std::move(file));
   found.tables += intrinsicsTable(named);
@@ -67,10 +65,11 @@ int run(const IntrinsicsArguments& arguments) {
   const std::vector<std::size_t> cameras = chosenCameras(session, arguments.camera);
   if (cameras.size() > 1) checkStreams(session);
   Console console(arguments.quiet);
-  for (const std::size_t camera : cameras)
-    console.announceReplacement(
-        std::filesystem::path(arguments.output) / (cameras.size() > 1 ? session.cameras[camera].name : ""),
-        {"intrinsics.yaml"});
+  const auto folderOf = [&](std::size_t camera) {
+    return std::filesystem::path(arguments.output) /
+           (cameras.size() > 1 ? foldersOfCameras(session)[camera] : "");
+  };
+  for (const std::size_t camera : cameras) console.announceReplacement(folderOf(camera), {"intrinsics.yaml"});
   const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
   Found found;
@@ -78,7 +77,8 @@ int run(const IntrinsicsArguments& arguments) {
   for (const std::size_t camera : cameras) {
     try {
       const IntrinsicsRun one = calibrateIntrinsics(session, camera, context);
-      addCamera(arguments, session.cameras[camera], cameras.size() == 1, one, context, found);
+      if (cameras.size() > 1) makeFolderWithin(arguments.output, foldersOfCameras(session)[camera]);
+      addCamera(folderOf(camera), session.cameras[camera], one, context, found);
     } catch (const CalibrationError& error) {
       if (error.kind() == ErrorKind::BadInput) throw;
       if (cameras.size() > 1) console.log(LogLevel::Warning, error.what());

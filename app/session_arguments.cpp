@@ -1,6 +1,7 @@
 #include "app/session_arguments.h"
 #include "app/command_line.h"
 
+#include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/base/shell_word.h"
 #include "core/optimisation/optimisation_options.h"
@@ -45,6 +46,12 @@ std::string tryText(const SessionArguments& arguments, const Repair& repair) {
     if (!setting.starts_with(repair.key + "=")) text += " --set " + shellWord(setting);
   if (!arguments.detections.empty()) text += " --detections " + shellWord(arguments.detections);
   return text + fmt::format(" --set {} -o {}\n", shellWord(repair.text()), shellWord(arguments.output));
+}
+
+std::vector<std::string> foldersOfCameras(const Session& session) {
+  std::vector<std::string> names;
+  for (const SessionCamera& camera : session.cameras) names.push_back(camera.name);
+  return foldersOfNames(names);
 }
 
 }  // namespace evical

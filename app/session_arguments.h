@@ -31,4 +31,7 @@ Session sessionFrom(const SessionArguments& arguments);
 // The same command with the option that repairs its result.
 std::string tryText(const SessionArguments& arguments, const Repair& repair);
 
+// One folder per camera, for files that have the same names.
+std::vector<std::string> foldersOfCameras(const Session& session);
+
 }  // namespace evical

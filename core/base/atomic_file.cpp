@@ -21,9 +21,12 @@
 namespace evical {
 namespace {
 
-// A unique name.
+// Names of a file that is written, and of one that is replaced, followed by six letters.
+constexpr const char *kPart = ".part.", *kFormer = ".former.";
+
+// A unique name for the file that is replaced.
 std::string nameAside(const std::filesystem::path& path) {
-  std::string aside = path.string() + ".part.XXXXXX";
+  std::string aside = path.string() + kFormer + "XXXXXX";
   const int file = ::mkostemp(aside.data(), O_CLOEXEC);
   if (file < 0) throw writeError(path, errno);
   ::close(file);
@@ -136,12 +139,15 @@ void moveFilesWhole(std::span<const FileMove> all) {
 void removeLitterOf(const std::filesystem::path& path) {
   constexpr std::chrono::hours kLeft(1);
   constexpr std::size_t kRandom = 6;
-  const std::string begin = path.filename().string() + ".part.";
+  const std::string begin = path.filename().string() + kPart, former = path.filename().string() + kFormer;
   std::error_code error;
+  const bool replaced = std::filesystem::exists(std::filesystem::symlink_status(path, error));
   for (std::filesystem::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", error);
        !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (!name.starts_with(begin) || name.size() != begin.size() + kRandom) continue;
+    const bool left = name.starts_with(begin) && name.size() == begin.size() + kRandom;
+    const bool old = replaced && name.starts_with(former) && name.size() == former.size() + kRandom;
+    if (!left && !old) continue;
     if (std::filesystem::file_time_type::clock::now() - lastChange(entry->path()) < kLeft) continue;
     std::error_code ignored;
     std::filesystem::remove_all(entry->path(), ignored);
@@ -157,6 +163,24 @@ void makeOutputFolder(const std::filesystem::path& folder) {
   if (error)
     throw badInput(folder.string(), fmt::format("cannot be used as an output folder: {}", error.message()),
                    "Choose a folder with write permission");
+}
+
+std::vector<FileMove> removeLinksWithin(const std::filesystem::path& output,
+                                        const std::filesystem::path& below) {
+  std::vector<FileMove> links;
+  std::filesystem::path place = output;
+  for (const std::filesystem::path& part : below) {
+    place /= part;
+    std::error_code error;
+    const std::filesystem::path named = std::filesystem::read_symlink(place, error);
+    if (!error && std::filesystem::remove(place, error)) links.push_back({named, place});
+  }
+  return links;
+}
+
+void makeFolderWithin(const std::filesystem::path& output, const std::filesystem::path& below) {
+  removeLinksWithin(output, below);
+  makeOutputFolder(output / below);
 }
 
 }  // namespace evical

@@ -14,6 +14,27 @@ std::string fitForFolder(std::string name) {
   return name.empty() || name.find_first_not_of('.') == std::string::npos ? "recording" : name;
 }
 
+namespace {
+
+void number(std::vector<std::string>& names) {
+  std::set<std::string> taken;
+  for (std::string& name : names) {
+    const std::string stem = name;
+    for (int k = 2; !taken.insert(name).second; ++k) name = stem + "_" + std::to_string(k);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> foldersOfNames(std::span<const std::string> names) {
+  std::vector<std::string> folders(names.begin(), names.end());
+  for (std::string& folder : folders)
+    if (folder.empty() || folder == "." || folder == ".." || folder.find('/') != std::string::npos)
+      folder = fitForFolder(folder);
+  number(folders);
+  return folders;
+}
+
 std::vector<std::string> distinctNames(std::span<const std::filesystem::path> paths) {
   std::vector<std::string> by_file, by_folder;
   for (const std::filesystem::path& given : paths) {
@@ -27,11 +48,7 @@ std::vector<std::string> distinctNames(std::span<const std::filesystem::path> pa
     return std::set<std::string>(names.begin(), names.end()).size() == names.size();
   };
   std::vector<std::string> names = differ(by_file) || !differ(by_folder) ? by_file : by_folder;
-  std::set<std::string> taken;
-  for (std::string& name : names) {
-    const std::string stem = name;
-    for (int k = 2; !taken.insert(name).second; ++k) name = stem + "_" + std::to_string(k);
-  }
+  number(names);
   return names;
 }
 

@@ -15,7 +15,7 @@ namespace evical {
 
 FileLock::FileLock(const std::filesystem::path& file) {
   constexpr mode_t kWritableByOwner = 0644;
-  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kWritableByOwner);
+  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kWritableByOwner);
   if (descriptor_ < 0)
     throw calibrationFailed(file.string(), std::string("cannot be created: ") + std::strerror(errno),
                             "Check the folder's permissions and the free disk space");

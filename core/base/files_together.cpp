@@ -66,6 +66,7 @@ FilesTogether::~FilesTogether() {
   std::error_code ignored;
   std::sort(made_.begin(), made_.end());
   for (auto path = made_.rbegin(); path != made_.rend(); ++path) std::filesystem::remove(*path, ignored);
+  for (const FileMove& link : links_) std::filesystem::create_symlink(link.from, link.to, ignored);
 }
 
 void FilesTogether::makeFolder(const std::filesystem::path& folder) {
@@ -80,6 +81,7 @@ void FilesTogether::write(const FileContent& file) {
 
 void FilesTogether::writeInto(const std::filesystem::path& folder, const FileContent& file) {
   const std::filesystem::path path = folder / file.path;
+  for (FileMove& link : removeLinksWithin(folder, file.path.parent_path())) links_.push_back(std::move(link));
   makeFolder(path.parent_path());
   writeAt(path, file);
 }
@@ -106,6 +108,7 @@ void FilesTogether::place() {
   moveFilesWhole(files_);
   files_.clear();
   made_.clear();
+  links_.clear();
 }
 
 }  // namespace evical

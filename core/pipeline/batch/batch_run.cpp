@@ -143,6 +143,8 @@ class BatchRunner {
   ChildProcess started(const BatchJob& job, const FileLock& lock) const {
     std::error_code ignored;
     std::filesystem::remove(jobFile(place_.folder, job, ".yaml"), ignored);
+    removeLinksWithin(place_.folder, job.name);
+    removeLinksWithin(jobFile(place_.folder, job, ".log").parent_path(), job.name + ".log");
     ProcessStart start;
     start.command = {place_.program.string(),
                      "calibrate",
@@ -211,7 +213,7 @@ void makeBatchFolder(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "result.yaml", ignored))
     throw badInput(folder.string(), "contains the result of a calibration", "Choose another folder");
   makeOutputFolder(folder);
-  makeOutputFolder(folder / "jobs");
+  makeFolderWithin(folder, "jobs");
 }
 
 std::vector<JobOutcome> runBatch(const Batch& batch, const BatchPlace& place, BatchWatcher& watcher,

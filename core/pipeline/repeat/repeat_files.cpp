@@ -57,7 +57,7 @@ RepeatRun repeatInto(const std::filesystem::path& folder, const RepeatInput& inp
   const auto keep = [&](std::size_t k, const Session& session,
                         const std::shared_ptr<const CalibrationRun>& one) {
     const std::filesystem::path of_one = folderOf(folder, input, k);
-    makeOutputFolder(of_one);
+    makeFolderWithin(folder, of_one.lexically_relative(folder));
     const std::string all = log();
     writeResultFiles(of_one, session, one, version, all.substr(logged));
     logged = all.size();

@@ -1,5 +1,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/yaml_node.h"
 #include "tests/support/file_content.h"
 #include "tests/support/test_program.h"
 
@@ -189,6 +190,41 @@ class TestAtomicFile : public QObject {
     QVERIFY(std::filesystem::exists(young) && std::filesystem::exists(other));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
       std::filesystem::remove_all(entry.path());
+  }
+
+  // After a kill exactly between the renames.
+  void fileThatWasBeingReplaced_isNamed_andStaysUntilThereIsANewOne() {
+    const auto file = folder() / "result.yaml", former = folder() / "result.yaml.former.Ab0cdE";
+    std::ofstream(former) << "status: ok\n";
+    std::filesystem::last_write_time(former,
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+    try {
+      YamlNode::load(file);
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(
+          std::string(error.what()).find("stopped while it replaced the file. 'result.yaml.former.Ab0cdE'") !=
+              std::string::npos,
+          error.what());
+    }
+    removeLitterOf(file);
+    QVERIFY(std::filesystem::exists(former));
+    std::ofstream(file) << "status: ok\n";
+    removeLitterOf(file);
+    QVERIFY(!std::filesystem::exists(former));
+    std::filesystem::remove(file);
+  }
+
+  void folderWithin_replacesLinks() {
+    const auto elsewhere = folder() / "elsewhere", output = folder() / "output";
+    std::filesystem::create_directories(elsewhere);
+    std::filesystem::create_directory_symlink(elsewhere, output);  // chosen by the user
+    std::filesystem::create_directory_symlink(folder(), elsewhere / "below");
+    makeFolderWithin(output, "below/deeper");
+    QVERIFY(std::filesystem::is_symlink(output) && !std::filesystem::is_symlink(output / "below"));
+    QVERIFY(std::filesystem::is_directory(elsewhere / "below" / "deeper"));
+    QVERIFY(!std::filesystem::exists(folder() / "deeper"));
+    for (const auto& path : {output, elsewhere}) std::filesystem::remove_all(path);
   }
 
   void outputFolder_isMade_butNotBelowAFile() {

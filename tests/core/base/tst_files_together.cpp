@@ -43,6 +43,26 @@ class TestFilesTogether : public QObject {
     QVERIFY(!std::filesystem::exists(place));
   }
 
+  // A result folder of a stranger.
+  void linksToFolders_areReplaced_butRestoredIfNothingIsPlaced() {
+    const auto place = folder() / "strange", elsewhere = folder() / "elsewhere";
+    std::filesystem::create_directories(place);
+    std::filesystem::create_directories(elsewhere);
+    writeFileWhole(elsewhere / "a.csv", "theirs");
+    std::filesystem::create_directory_symlink(elsewhere, place / "plots");
+    {
+      FilesTogether files;
+      files.writeInto(place, {"plots/a.csv", "1"});
+    }
+    QVERIFY(std::filesystem::is_symlink(place / "plots"));
+    FilesTogether files;
+    files.writeInto(place, {"plots/a.csv", "2"});
+    files.place();
+    QVERIFY(!std::filesystem::is_symlink(place / "plots"));
+    QCOMPARE(evical::test::fileContent(place / "plots" / "a.csv"), QByteArray("2"));
+    QCOMPARE(evical::test::fileContent(elsewhere / "a.csv"), QByteArray("theirs"));
+  }
+
   void folders_thatWereThere_stayWithWhatIsInThem() {
     const auto place = folder() / "old";
     std::filesystem::create_directories(place);
