@@ -20,7 +20,7 @@ BatchLines::~BatchLines() {
 void BatchLines::clearLines() {
   std::string text;
   for (; shown_ > 0; --shown_) text += "\033[A\033[2K";
-  if (!text.empty()) printError(text);
+  if (!text.empty()) clearTerminal(text);
 }
 
 void BatchLines::started(const BatchJob& job) {

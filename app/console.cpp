@@ -2,6 +2,7 @@
 
 #include "app/output.h"
 #include "core/base/file_places.h"
+#include "core/base/plain_text.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +30,7 @@ Console::~Console() {
 }
 
 void Console::clearLine() {
-  if (line_shown_) printError("\r\033[K");
+  if (line_shown_) clearTerminal("\r\033[K");
   line_shown_ = false;
 }
 
@@ -51,14 +52,16 @@ void Console::stageProgress(double fraction) {
   const double elapsed_s = of_stage_.elapsed_s();
   std::string left;
   if (fraction > 0.02) left = fmt::format(", {:.0f} s left", elapsed_s * (1.0 - fraction) / fraction);
-  printError(fmt::format("\r\033[K{}: {:3.0f} %{}", stage_, 100.0 * fraction, left));
+  clearTerminal("\r\033[K");
+  printError(fmt::format("{}: {:3.0f} %{}", stage_, 100.0 * fraction, left));
   std::fflush(stderr);
   line_shown_ = true;
 }
 
 void Console::log(LogLevel level, std::string_view text) {
   const std::lock_guard lock(mutex_);
-  log_text_ += fmt::format("{:9.3f} s  {:<7}  {}\n", of_all_.elapsed_s(), levelName(level), text);
+  log_text_ +=
+      fmt::format("{:9.3f} s  {:<7}  {}\n", of_all_.elapsed_s(), levelName(level), visible(text, "\n"));
   if (quiet_ || level == LogLevel::Debug) return;
   clearLine();
   printError(fmt::format("{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text));

@@ -1,5 +1,7 @@
 #include "app/output.h"
 
+#include "core/base/plain_text.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -16,15 +18,22 @@ int& lostBecause() {
   return error;
 }
 
+constexpr std::string_view kPrinted = "\n\t";
+
 }  // namespace
 
-void printText(std::string_view text) {
+void printText(std::string_view raw) {
+  const std::string text = visible(raw, kPrinted);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() && lostBecause() == 0)
     lostBecause() = errno;
 }
 
 void printError(std::string_view text) {
-  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+  clearTerminal(visible(text, kPrinted));
+}
+
+void clearTerminal(std::string_view sequence) {
+  static_cast<void>(std::fwrite(sequence.data(), 1, sequence.size(), stderr));
 }
 
 void holdStandardStreams() {

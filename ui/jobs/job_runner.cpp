@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
+#include "core/base/plain_text.h"
 #include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/recording/separate_reader.h"
@@ -84,10 +85,12 @@ struct JobRunner::Reports final : ProgressSink {
   }
   void log(LogLevel level, std::string_view text) override {
     const std::lock_guard lock(mutex);
-    lines.push_back({level, stopwatch.elapsed_s(), textOf(text)});
+    lines.push_back({level, stopwatch.elapsed_s(), shown(text)});
     log_text +=
-        QString::asprintf("%9.3f s  %-7s  ", stopwatch.elapsed_s(), levelName(level)) + textOf(text) + "\n";
+        QString::asprintf("%9.3f s  %-7s  ", stopwatch.elapsed_s(), levelName(level)) + shown(text) + "\n";
   }
+
+  static QString shown(std::string_view text) { return textOf(visible(text, "\n")); }
 
   // Stages that were not announced do not count.
   void setFraction(double of_stage) {
