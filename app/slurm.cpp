@@ -4,6 +4,7 @@
 #include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
+#include "core/base/plain_text.h"
 #include "core/base/shell_word.h"
 #include "core/base/yaml_node.h"
 
@@ -27,14 +28,27 @@ std::filesystem::path submittedOf(const std::filesystem::path& folder) {
   return folder / "jobs" / "slurm.yaml";
 }
 
-// Escapes a file name for a line of #SBATCH, where a per cent sign begins a pattern such as `name`.
-std::string sbatchPath(const std::filesystem::path& folder, const std::string& name) {
-  std::string text = "\"";
-  for (const char c : folder.string()) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c == '%' ? "%%" : std::string(1, c);
+// Who reads a text of the script: sbatch the lines of #SBATCH, the shell the others.
+enum class ScriptReader { Sbatch, Shell };
+
+// A text of the script with its quotes. Control characters are refused: sbatch's lines end at a line break within quotes, too, and
+// the shell would run the rest.
+std::string inScript(ScriptReader reader, const std::string& text) {
+  requirePlain(text, "--slurm", "a path or a name");
+  if (reader == ScriptReader::Shell) return shellWord(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
   }
-  return text + "/" + name + "\"";
+  return quoted + "\"";
+}
+
+// For sbatch, where a per cent sign in a file's name begins a pattern such as `name`.
+std::string withoutPatterns(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '%' ? "%%" : std::string(1, c);
+  return text;
 }
 
 std::string scriptText(const Batch& batch, const SlurmRequest& request,
@@ -43,13 +57,16 @@ std::string scriptText(const Batch& batch, const SlurmRequest& request,
   text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --cpus-per-task={}\n", names.size() - 1, batch.threads);
   if (batch.memory_limit_mb > 0) text += fmt::format("#SBATCH --mem={}M\n", batch.memory_limit_mb);
   // Tasks of a lost node are queued again; their output is appended to the same file.
-  text += fmt::format("#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --output={}\n",
-                      sbatchPath(request.folder / "jobs", "slurm-%a.txt"));
+  text += fmt::format(
+      "#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --output={}\n",
+      inScript(ScriptReader::Sbatch, withoutPatterns((request.folder / "jobs").string()) + "/slurm-%a.txt"));
   text += "jobs=(";
-  for (const std::string& name : names) text += (text.back() == '(' ? "" : " ") + name;
+  for (const std::string& name : names)
+    text += (text.back() == '(' ? "" : " ") + inScript(ScriptReader::Shell, name);
   return text + fmt::format(")\nexec {} batch {} -o {} --job \"${{jobs[$SLURM_ARRAY_TASK_ID]}}\"\n",
-                            shellWord(request.program.string()), shellWord(batch.file.string()),
-                            shellWord(request.folder.string()));
+                            inScript(ScriptReader::Shell, request.program.string()),
+                            inScript(ScriptReader::Shell, batch.file.string()),
+                            inScript(ScriptReader::Shell, request.folder.string()));
 }
 
 std::string contentOf(const std::filesystem::path& file) {
