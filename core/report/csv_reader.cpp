@@ -1,5 +1,7 @@
 #include "core/report/csv_reader.h"
 
+#include "core/report/csv_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,6 +68,7 @@ bool CsvReader::split() {
     else
       words_.back() += c;
   }
+  for (std::string& word : words_) word = fromCsv(word);
   return !quoted;
 }
 

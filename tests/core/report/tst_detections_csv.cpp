@@ -1,5 +1,6 @@
 // Detections as tables: unchanged after writing and reading; damaged tables are refused with the line.
 #include "core/base/error.h"
+#include "core/report/csv_text.h"
 #include "core/report/detections_csv.h"
 #include "tests/support/test_program.h"
 
@@ -88,6 +89,39 @@ class TestDetectionsCsv : public QObject {
                            [](const auto& x, const auto& y) { return same(x, y); }));
       }
     }
+  }
+
+  // Spreadsheets would calculate them.
+  void cells_areNoFormulas_data() {
+    QTest::addColumn<QString>("cell");
+    for (const char* const text : {"=1+1", "+cmd|' /C calc'!A0", "-1+1", "@SUM(A1)", "'=1",
+                                   "\xef\xbc\x9d"
+                                   "1+1",
+                                   "=\"a\",b", "-", "=a;b"})
+      QTest::newRow(text) << "'" + QString(text);
+    for (const char* const text : {"-1.5", "+", "left", "a=b", "1e-5", "-2e3"})
+      QTest::newRow(text) << (QString(text) == "+" ? "'+" : text);
+    QTest::newRow("a\x1b[2J") << "a\\x1b[2J";
+    QTest::newRow("a\r\n=1") << "a  =1";
+  }
+  void cells_areNoFormulas() {
+    QFETCH(QString, cell);
+    const std::string text = QTest::currentDataTag();
+    const QString word = QString::fromStdString(csvWord(text)),
+                  quoted = QString::fromStdString(quotedCsv(text));
+    const auto plain = [](QString csv) {
+      return csv.startsWith('"') ? csv.mid(1, csv.size() - 2).replace("\"\"", "\"") : csv;
+    };
+    QCOMPARE(plain(word), cell);
+    QCOMPARE(plain(quoted), cell);
+    QCOMPARE(QString::fromStdString(fromCsv(cell.toStdString())), cell.startsWith('\'') ? cell.mid(1) : cell);
+  }
+
+  void nameThatBeginsAFormula_readsBack() {
+    std::vector<BoardObservations> written = sampleForDetectionsCsv();
+    written.front().camera = "=cmd|'/C calc'!A0";
+    write(detectionsCsv(written), windowsCsv(written));
+    QCOMPARE(readDetections(folder(), 2).front().camera, written.front().camera);
   }
 
   void damagedTables_areRefused_data() {
