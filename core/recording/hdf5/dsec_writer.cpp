@@ -19,12 +19,18 @@ namespace {
 
 constexpr hsize_t kEventChunk = 65'536, kImuChunk = 1'024;
 
-// A dataset that grows at its end, chunk by chunk.
+// A dataset that grows at its end, chunk by chunk. Why it cannot be written is put into `problem`: the library forgets it when
+// the next handle is closed.
 template <class Number>
 class GrowingDataset {
  public:
-  GrowingDataset(hid_t file, const char* path, hid_t type, hsize_t chunk_rows, hsize_t columns = 1)
-      : type_(type), chunk_rows_(chunk_rows), columns_(columns), rank_(columns == 1 ? 1 : 2) {
+  GrowingDataset(hid_t file, std::string& problem, const char* path, hid_t type, hsize_t chunk_rows,
+                 hsize_t columns = 1)
+      : type_(type),
+        chunk_rows_(chunk_rows),
+        columns_(columns),
+        rank_(columns == 1 ? 1 : 2),
+        problem_(problem) {
     const std::array<hsize_t, 2> none{0, columns}, most{H5S_UNLIMITED, columns}, chunk{chunk_rows, columns};
     const hdf5::Handle space(H5Screate_simple(rank_, none.data(), most.data()), H5Sclose);
     const hdf5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -46,12 +52,16 @@ class GrowingDataset {
     const hsize_t rows = buffer_.size() / columns_;
     if (rows == 0) return true;
     const std::array<hsize_t, 2> start{rows_, 0}, count{rows, columns_}, extent{rows_ + rows, columns_};
-    if (H5Dset_extent(dataset_, extent.data()) < 0) return false;
+    if (H5Dset_extent(dataset_, extent.data()) < 0) {
+      problem_ = hdf5::lastProblem();
+      return false;
+    }
     const hdf5::Handle file_space(H5Dget_space(dataset_), H5Sclose);
     const hdf5::Handle memory_space(H5Screate_simple(rank_, count.data(), nullptr), H5Sclose);
     H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
     const bool written =
         H5Dwrite(dataset_, type_, memory_space, file_space, H5P_DEFAULT, buffer_.data()) >= 0;
+    if (!written) problem_ = hdf5::lastProblem();
     rows_ += rows;
     buffer_.clear();
     return written;
@@ -62,6 +72,7 @@ class GrowingDataset {
   hid_t type_;
   hsize_t chunk_rows_, columns_, rows_ = 0;
   int rank_;
+  std::string& problem_;
   std::vector<Number> buffer_;
 };
 
@@ -78,7 +89,7 @@ class DsecWriter : public RecordingWriter {
     require(file_.valid());
     for (const StreamInfo& stream : streams) {
       if (stream.type == StreamType::Events) addEvents(stream.resolution_px);
-      if (stream.type == StreamType::Imu) imu_.emplace(file_);
+      if (stream.type == StreamType::Imu) imu_.emplace(file_, problem_);
     }
   }
 
@@ -143,22 +154,22 @@ class DsecWriter : public RecordingWriter {
 
  private:
   struct Events {
-    explicit Events(hid_t file)
-        : x(file, "events/x", H5T_NATIVE_UINT16, kEventChunk),
-          y(file, "events/y", H5T_NATIVE_UINT16, kEventChunk),
-          p(file, "events/p", H5T_NATIVE_UINT8, kEventChunk),
-          t(file, "events/t", H5T_NATIVE_UINT32, kEventChunk),
-          milliseconds(file, "ms_to_idx", H5T_NATIVE_UINT64, kImuChunk) {}
+    Events(hid_t file, std::string& problem)
+        : x(file, problem, "events/x", H5T_NATIVE_UINT16, kEventChunk),
+          y(file, problem, "events/y", H5T_NATIVE_UINT16, kEventChunk),
+          p(file, problem, "events/p", H5T_NATIVE_UINT8, kEventChunk),
+          t(file, problem, "events/t", H5T_NATIVE_UINT32, kEventChunk),
+          milliseconds(file, problem, "ms_to_idx", H5T_NATIVE_UINT64, kImuChunk) {}
     GrowingDataset<std::uint16_t> x, y;
     GrowingDataset<std::uint8_t> p;
     GrowingDataset<std::uint32_t> t;
     GrowingDataset<std::uint64_t> milliseconds;
   };
   struct Imu {
-    explicit Imu(hid_t file)
-        : ts(file, "imu/ts", H5T_NATIVE_INT64, kImuChunk),
-          omega(file, "imu/omega", H5T_NATIVE_DOUBLE, kImuChunk, 3),
-          accel(file, "imu/accel", H5T_NATIVE_DOUBLE, kImuChunk, 3) {}
+    Imu(hid_t file, std::string& problem)
+        : ts(file, problem, "imu/ts", H5T_NATIVE_INT64, kImuChunk),
+          omega(file, problem, "imu/omega", H5T_NATIVE_DOUBLE, kImuChunk, 3),
+          accel(file, problem, "imu/accel", H5T_NATIVE_DOUBLE, kImuChunk, 3) {}
     GrowingDataset<std::int64_t> ts;
     GrowingDataset<double> omega, accel;
   };
@@ -174,7 +185,7 @@ class DsecWriter : public RecordingWriter {
   }
 
   void addEvents(const Resolution& size_px) {
-    events_.emplace(file_);
+    events_.emplace(file_, problem_);
     require(events_->x.valid() && events_->milliseconds.valid());
     if (!size_px.known()) return;
     const hdf5::Handle group(H5Gopen2(file_, "events", H5P_DEFAULT), H5Gclose);
@@ -204,11 +215,13 @@ class DsecWriter : public RecordingWriter {
 
   void require(bool good) const {
     if (good) return;
-    throw calibrationFailed(path_, fmt::format("the file cannot be written: {}", hdf5::lastProblem()),
-                            "Check the folder, its permissions and the disk space");
+    throw calibrationFailed(
+        path_,
+        fmt::format("the file cannot be written: {}", problem_.empty() ? hdf5::lastProblem() : problem_),
+        "Check the folder, its permissions and the disk space");
   }
 
-  std::string path_;
+  std::string path_, problem_;
   PartFile part_;  // renames the file when it is complete; HDF5 writes the content
   hdf5::Handle file_;
   std::vector<StreamType> types_;

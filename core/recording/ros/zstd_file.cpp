@@ -25,7 +25,15 @@ struct ClosingFile {
 using File = std::unique_ptr<std::FILE, ClosingFile>;
 
 File temporaryFile(std::filesystem::path& path) {
-  std::string name = (std::filesystem::temp_directory_path() / "evical_XXXXXX").string() + kUnpackedEnding;
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error)
+    throw badInput(
+        folder.empty() ? "TMPDIR" : folder.string(),
+        fmt::format("the temporary folder, into which a packed recording is unpacked, cannot be used: {}",
+                    error.message()),
+        "Set TMPDIR to an existing folder");
+  std::string name = (folder / "evical_XXXXXX").string() + kUnpackedEnding;
   const int descriptor = mkstemps(name.data(), static_cast<int>(std::string_view(kUnpackedEnding).size()));
   path = name;
   return File(descriptor >= 0 ? fdopen(descriptor, "wb") : nullptr);
