@@ -2,6 +2,7 @@
 #include "ui/forms/option_editor.h"
 
 #include "ui/forms/option_slider.h"
+#include "ui/theme/plain_labels.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>
@@ -85,12 +86,14 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
       problem_(smallText({}, "problem", this)),
       reset_(new QToolButton(this)) {
   QWidget* const input = makeInput();
+  for (QLabel* const label : {name_, help_, idle_}) label->setTextFormat(Qt::RichText);
   name_->setWordWrap(true);
   name_->setBuddy(input);
-  const QString tip =
-      QString("<b>%1</b><br>%2<br>%3")
-          .arg(text(row.name), text(row.help), tr("Default: %1").arg(text(row.default_value)));
+  const QString tip = QString("<b>%1</b><br>%2<br>%3")
+                          .arg(text(row.name).toHtmlEscaped(), text(row.help).toHtmlEscaped(),
+                               tr("Default: %1").arg(text(row.default_value)).toHtmlEscaped());
   setToolTip(tip);
+  useRichToolTip(*this);
   input->setAccessibleName(shownName(row));
   input->setAccessibleDescription(text(row.help));
   reset_->setIcon(icon("reset"));

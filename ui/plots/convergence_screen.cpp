@@ -7,6 +7,7 @@
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/stage_labels.h"
+#include "ui/theme/plain_labels.h"
 
 #include <QComboBox>
 #include <QGridLayout>
@@ -83,7 +84,7 @@ QWidget* ConvergenceScreen::makeContent() {
   stages_ = new QLabel;
   stages_->setObjectName("stages");
   stages_->setWordWrap(true);
-  stages_->setTextFormat(Qt::PlainText);
+  useRichToolTip(*stages_);
   grid->addWidget(stages_, 1, 0, 1, 3);
   const QString iteration = tr("iteration");
   const PlotAxes axes[kPanels] = {
@@ -180,7 +181,7 @@ void ConvergenceScreen::showStages() {
   QString help;
   for (const StageWords& stage : stageWords(iterations_)) {
     names << stage.name;
-    help += QStringLiteral("<p>%1</p>").arg(stage.help);  // wraps, unlike plain text
+    help += QStringLiteral("<p>%1</p>").arg(stage.help.toHtmlEscaped());  // wraps, unlike plain text
   }
   stages_->setText(names.join(QStringLiteral("     ")));
   stages_->setToolTip(help + QStringLiteral("<p>%1</p>").arg(stagesHelp()));

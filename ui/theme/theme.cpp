@@ -2,6 +2,7 @@
 #include "ui/theme/theme.h"
 
 #include "ui/theme/outlined_style.h"
+#include "ui/theme/plain_labels.h"
 #include "ui/theme/style_sheet.h"
 #include "ui/theme/system_appearance.h"
 
@@ -82,6 +83,7 @@ const Theme& theme() {
 
 void applyTheme(QApplication& application, Appearance appearance) {
   SystemAppearance& system = SystemAppearance::instance();
+  showTextAsPlain(application);
   application.setStyle(new OutlinedStyle);
   application.setFont(applicationFont());
   QObject::disconnect(&system, nullptr, &application, nullptr);

@@ -37,6 +37,7 @@ QWidget* makeSummary(const QString& version, QWidget* parent) {
           "<p>With Qt %1, Ceres, OpenCV, Eigen, VTK and QCustomPlot.</p>")
           .arg(qVersion()),
       page);
+  text->setTextFormat(Qt::RichText);
   text->setWordWrap(true);
   text->setOpenExternalLinks(true);
   auto* const column = new QVBoxLayout(page);

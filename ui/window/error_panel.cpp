@@ -17,7 +17,6 @@ namespace {
 QLabel* errorLabel(QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setWordWrap(true);
-  label->setTextFormat(Qt::PlainText);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
 }

@@ -19,7 +19,6 @@ namespace {
 QLabel* noticeLabel(QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setWordWrap(true);
-  label->setTextFormat(Qt::PlainText);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   return label;
 }

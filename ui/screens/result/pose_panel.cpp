@@ -32,7 +32,6 @@ QLabel* words(const char* role, QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setProperty("role", role);
   label->setWordWrap(true);
-  label->setTextFormat(Qt::PlainText);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
   return label;
 }
