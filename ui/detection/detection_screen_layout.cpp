@@ -5,6 +5,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
+#include "ui/forms/decimal_box.h"
 #include "ui/theme/steady_label.h"
 #include "ui/theme/theme.h"
 
@@ -115,7 +116,7 @@ QWidget* DetectionScreen::makeToolBar() {
   mode_box_->setToolTip(
       tr("Time surface: newest event of each pixel, fading with age.\nAccumulated events: all of "
          "the window.\nNormal flow: edges, coloured by their direction of motion"));
-  fade_box_ = new QDoubleSpinBox;
+  fade_box_ = new DecimalBox;
   fade_box_->setRange(1.0, 200.0);
   fade_box_->setDecimals(0);
   fade_box_->setValue(15.0);
@@ -247,7 +248,7 @@ QWidget* DetectionScreen::makeTransport() {
   speed_box_->setAccessibleName(tr("Playback speed"));
   speed_box_->setToolTip(tr("Playback speed, relative to the recording"));
   row->addWidget(speed_box_);
-  time_box_ = new QDoubleSpinBox;
+  time_box_ = new DecimalBox;
   time_box_->setDecimals(4);
   time_box_->setRange(0.0, 0.0);
   time_box_->setSingleStep(0.001);

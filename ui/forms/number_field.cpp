@@ -5,7 +5,10 @@
 
 #include <QAction>
 #include <QLocale>
+#include <QRegularExpression>
 #include <QToolTip>
+
+#include <cmath>
 
 namespace evical::ui {
 namespace {
@@ -16,6 +19,18 @@ QString numberText(double value) {
 }
 
 }  // namespace
+
+TypedNumber typedNumber(const QString& text) {
+  static const QRegularExpression thousands(R"(^[+-]?[1-9]\d{0,2}(,\d{3})+$)");
+  const QString typed = text.trimmed();
+  if (thousands.match(typed).hasMatch())
+    return {{},
+            QObject::tr("%1 is ambiguous: write a decimal point, and no comma between thousands").arg(typed)};
+  bool is_number = false;
+  const double value = QLocale::c().toDouble(QString(typed).replace(',', '.'), &is_number);
+  if (!is_number || !std::isfinite(value)) return {{}, QObject::tr("%1 is not a number").arg(typed)};
+  return {value};
+}
 
 NumberField::NumberField(double minimum, double maximum, QWidget* parent)
     : QLineEdit(parent),
@@ -45,9 +60,9 @@ void NumberField::focusOutEvent(QFocusEvent* event) {
 
 void NumberField::take() {
   if (!isModified()) return;
-  bool is_number = false;
-  const double typed = QLocale::c().toDouble(text().trimmed().replace(',', '.'), &is_number);
-  if (!is_number) return refuse(tr("%1 is not a number").arg(text()));
+  const auto [value, problem] = typedNumber(text());
+  if (!value) return refuse(problem);
+  const double typed = *value;
   if (typed < minimum_ || typed > maximum_) {
     return refuse(tr("%1 is not between %2 and %3").arg(text(), numberText(minimum_), numberText(maximum_)));
   }

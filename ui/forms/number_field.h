@@ -5,7 +5,17 @@
 
 #include <QLineEdit>
 
+#include <optional>
+
 namespace evical::ui {
+
+// A typed number, finite, with a decimal point or comma; otherwise why it is none.
+struct TypedNumber {
+  std::optional<double> value;
+  QString problem = {};
+};
+// "1,300" is refused: the comma may be a decimal one, or that of thousands.
+TypedNumber typedNumber(const QString& text);
 
 class NumberField : public QLineEdit {
   Q_OBJECT

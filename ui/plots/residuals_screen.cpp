@@ -3,6 +3,7 @@
 
 #include "core/numerics/robust.h"
 #include "core/report/residual_statistics.h"
+#include "ui/forms/decimal_box.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
@@ -117,7 +118,7 @@ QWidget* ResidualsScreen::makeBar() {
   camera_->setToolTip(tr("Camera whose residuals are shown"));
   camera_label_ = new QLabel(tr("&Camera"));
   camera_label_->setBuddy(camera_);
-  threshold_ = new QDoubleSpinBox;
+  threshold_ = new DecimalBox;
   threshold_->setDecimals(3);
   threshold_->setRange(0.0, 1000.0);
   threshold_->setSingleStep(0.005);

@@ -15,6 +15,14 @@ inline QString fromCore(const std::string& utf8) {
   return QString::fromStdString(utf8);
 }
 
+// "12 022 916", with narrow spaces: a point or a comma between thousands would be read as a decimal one.
+inline QString countText(quint64 count) {
+  constexpr qsizetype kGroup = 3;
+  QString text = QString::number(count);
+  for (qsizetype place = text.size() - kGroup; place > 0; place -= kGroup) text.insert(place, QChar(0x202f));
+  return text;
+}
+
 // "12.345 +- 0.012", to the sigma's second digit; the value alone without a sigma.
 inline QString withSigma(double value, double sigma) {
   return fromCore(evical::withSigma(value, sigma, " \u00b1 "));

@@ -9,7 +9,6 @@
 #include <QEvent>
 #include <QHBoxLayout>
 #include <QHeaderView>
-#include <QLocale>
 #include <QRegularExpression>
 
 #include <algorithm>
@@ -152,7 +151,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   item(row, kStream)->setData(kRecordingRole, fromCore(own_recording.string()));
   if (!own_recording.empty()) item(row, kStream)->setToolTip(fromCore(own_recording.string()));
   setItem(row, kContent, readOnlyItem(contentText(stream)));
-  setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : QLocale().toString(stream.count)));
+  setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : countText(stream.count)));
   setItem(row, kRate, readOnlyItem(rateText(stream)));
   setItem(row, kRange, readOnlyItem(rangeText(stream)));
   addFaults(row, stream, faults);

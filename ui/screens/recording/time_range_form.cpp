@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording/time_range_form.h"
 
+#include "ui/forms/number_field.h"
 #include "ui/theme/theme.h"
 
 #include <QHBoxLayout>
@@ -9,8 +10,6 @@
 #include <QLocale>
 #include <QStyle>
 #include <QToolButton>
-
-#include <limits>
 
 namespace evical::ui {
 namespace {
@@ -22,16 +21,17 @@ QString numberText(double value) {
 
 // Typed text: a time, nothing, or invalid.
 struct Typed {
-  bool is_empty = false, is_time = false;
+  bool is_empty = false;
   double time_s = 0.0;
+  QString problem = {};
 };
 
 Typed typedIn(const QLineEdit& field) {
-  const QString text = field.text().trimmed().replace(',', '.');
-  if (text.isEmpty()) return {true, false, 0.0};
-  bool is_number = false;
-  const double time_s = QLocale::c().toDouble(text, &is_number);
-  return {false, is_number && time_s >= 0.0 && time_s < std::numeric_limits<double>::infinity(), time_s};
+  if (field.text().trimmed().isEmpty()) return {true};
+  const auto [time_s, problem] = typedNumber(field.text());
+  const QString advice = QObject::tr("Enter seconds since the recording's start.");
+  if (!time_s) return {false, 0.0, problem + ". " + advice};
+  return {false, *time_s, *time_s < 0.0 ? advice : QString()};
 }
 
 QLineEdit* timeField(const QString& help, QWidget* parent) {
@@ -94,7 +94,7 @@ void TimeRangeForm::setDuration(std::optional<double> duration_s) {
 void TimeRangeForm::take() {
   const Typed begin = typedIn(*begin_), end = typedIn(*end_);
   for (const Typed& typed : {begin, end})
-    if (!typed.is_empty && !typed.is_time) return say(tr("Enter seconds since the recording's start."));
+    if (!typed.problem.isEmpty()) return say(typed.problem);
   const bool to_the_end = end.is_empty;
   if (begin.time_s == 0.0 && to_the_end) {
     if (range_s_) emit edited({});
