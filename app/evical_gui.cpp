@@ -48,6 +48,18 @@ struct Arguments {
   Appearance appearance = Appearance::System;
 };
 
+// Qt aborts if it cannot open the display.
+void sayWhyThereIsNoWindow(QtMsgType type, const QMessageLogContext&, const QString& text) {
+  if (type != QtFatalMsg) {
+    QTextStream(stderr) << text << '\n';
+    return;
+  }
+  complain("The window cannot be opened: " + text.simplified() +
+           " Check DISPLAY, WAYLAND_DISPLAY and QT_QPA_PLATFORM, connect with `ssh -X`, or run `evical "
+           "calibrate SESSION`, which needs no window.");
+  std::_Exit(kBadUse);
+}
+
 // Manual page from the parser's options.
 std::string manualOf(const QCommandLineParser& parser, const QList<QCommandLineOption>& options) {
   const std::string file = "[SESSION|RECORDING|RESULT]";
@@ -125,7 +137,9 @@ int main(int argc, char** argv) {
   evical::keepFreedMemory();
   const bool without_display = doWithoutDisplay(argc, argv);
   std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: the exit codes of jobs are needed
+  const QtMessageHandler usual = qInstallMessageHandler(sayWhyThereIsNoWindow);
   QApplication application(argc, argv);
+  qInstallMessageHandler(usual);
   std::setlocale(LC_NUMERIC, "C");  // files have decimal points in any locale
   QApplication::setApplicationName("evical");
   QApplication::setOrganizationName("evical");

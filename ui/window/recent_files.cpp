@@ -33,7 +33,7 @@ void store(const QList<RecentFile>& files) {
 QList<RecentFile> recentFiles() {
   QSettings settings;
   QList<RecentFile> files;
-  const int count = settings.beginReadArray("recent");
+  const int count = std::min(settings.beginReadArray("recent"), static_cast<int>(kMostRecent));
   for (int i = 0; i < count; ++i) {
     settings.setArrayIndex(i);
     RecentFile file{settings.value("path").toString(), settings.value("opened").toDateTime(), {}};

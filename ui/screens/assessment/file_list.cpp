@@ -10,6 +10,7 @@
 #include <QMimeData>
 #include <QPainter>
 #include <QPushButton>
+#include <QSet>
 #include <QShortcut>
 
 namespace evical::ui {
@@ -88,8 +89,11 @@ QStringList FileList::files() const {
 }
 
 void FileList::add(const QStringList& files) {
+  const QStringList listed = this->files();
+  QSet<QString> known(listed.begin(), listed.end());
   for (const QString& file : files) {
-    if (file.isEmpty() || this->files().contains(file)) continue;
+    if (file.isEmpty() || known.contains(file)) continue;
+    known.insert(file);
     const bool session = file.endsWith(".yaml") || file.endsWith(".yml");
     auto* const item =
         new QListWidgetItem(icon(session ? "open" : "recording"), QDir::toNativeSeparators(file), list_);
