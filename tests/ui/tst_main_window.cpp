@@ -39,6 +39,8 @@
 #include <QToolButton>
 #include <QTreeWidget>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -199,6 +201,19 @@ class TestMainWindow : public QObject {
     QVERIFY(recent->topLevelItem(0)->toolTip(0).contains(session));
     WindowFixture later;
     QCOMPARE(later.child<QTreeWidget>("recent")->topLevelItem(0)->text(2), recent->topLevelItem(0)->text(2));
+  }
+
+  // Settings may be changed by hand.
+  void recentFiles_ofAnImpossibleNumber_doNotStopTheWindow() {
+    {
+      QSettings settings;
+      settings.setValue("recent/size", 2147483647);
+      settings.setValue("recent/1/path", scratch_.path());
+    }
+    QElapsedTimer opening;
+    opening.start();
+    const WindowFixture test;
+    QVERIFY2(opening.elapsed() < 8000 * kSlowdown, "the window did not open");
   }
 
   void demo_isSimulatedOnTheSpot_andCanBeCancelled() {
@@ -362,6 +377,43 @@ class TestMainWindow : public QObject {
     QCoreApplication::sendEvent(&test.window, &drop);
     QTRY_VERIFY(test.document().hasSession());
     QVERIFY(drop.isAccepted());
+  }
+
+  // Nothing that cannot be a recording stops the window, or is opened.
+  void droppedThings_thatAreNoFiles_areRefused_data() {
+    QTest::addColumn<QStringList>("urls");
+    QTest::addColumn<bool>("accepted");
+    QTest::newRow("nothing") << QStringList() << false;
+    QTest::newRow("a page") << QStringList("https://example.org/recording.bag") << false;
+    QTest::newRow("two files") << QStringList{"file:///dev/null", "file:///dev/zero"} << false;
+    QTest::newRow("a pipe") << QStringList("file://" + scratch_.filePath("pipe.yaml")) << true;
+    QTest::newRow("a pipe as a recording") << QStringList("file://" + scratch_.filePath("pipe")) << true;
+    QTest::newRow("a device") << QStringList("file:///dev/zero") << true;
+    QTest::newRow("a folder") << QStringList("file:///proc/self/fd") << true;
+    QTest::newRow("markup") << QStringList("file:///<img src=\"/dev/zero\">") << true;
+    QTest::newRow("another computer") << QStringList("file://computer/share/recording.bag") << true;
+  }
+  void droppedThings_thatAreNoFiles_areRefused() {
+    QFETCH(const QStringList, urls);
+    QFETCH(const bool, accepted);
+    for (const char* const pipe : {"pipe", "pipe.yaml"}) ::mkfifo(qPrintable(scratch_.filePath(pipe)), 0600);
+    WindowFixture test;
+    QMimeData data;
+    data.setText(QString(1'000'000, 'x'));
+    QList<QUrl> dropped;
+    for (const QString& url : urls) dropped << QUrl(url);
+    data.setUrls(dropped);
+    QDragEnterEvent enter(QPoint(200, 200), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    enter.ignore();
+    QCoreApplication::sendEvent(&test.window, &enter);
+    QCOMPARE(enter.isAccepted(), accepted);
+    QDropEvent drop(QPointF(200, 200), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&test.window, &drop);
+    QElapsedTimer answered;
+    answered.start();
+    spin(1000);
+    QVERIFY2(answered.elapsed() < 5000 * kSlowdown, "the window did not answer");
+    QVERIFY(!test.document().hasSession());
   }
 
   // Pages keep their place when a run starts: a second click must not reach the next page.

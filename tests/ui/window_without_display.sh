@@ -22,6 +22,7 @@ expect() {
 expect 2 "no display"
 expect 2 "no display" session.yaml
 QT_QPA_PLATFORM="" expect 2 "no display"
+DISPLAY=:9999 QT_QPA_PLATFORM=xcb expect 2 "cannot be opened"
 expect 0 "evical 0" --version
 expect 0 "--screenshot" --help
 expect 2 "no screen dashboard" --screenshot dashboard -o "$scratch/x.png" session.yaml
