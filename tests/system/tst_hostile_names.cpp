@@ -6,6 +6,7 @@
 
 #include <QDir>
 #include <QFileInfo>
+#include <QProcess>
 #include <QTemporaryDir>
 
 using namespace evical::test;
@@ -91,8 +92,7 @@ class TestHostileNames : public QObject {
     // A link in the output leads elsewhere, too.
     QDir().mkpath(elsewhere);
     QVERIFY(QFile::link(elsewhere, test.path("out/images/.._.._elsewhere_" + camera)));
-    const Outcome outcome =
-        runProgram({"detect", test.session(), "-o", test.path("out"), "--images", "--every", "1000"});
+    const Outcome outcome = runProgram({"detect", test.session(), "-o", test.path("out"), "--images"});
     VERIFY_OUTCOME(outcome, 0);
     QVERIFY(filesIn(elsewhere).isEmpty());
     QCOMPARE(filesIn(test.path("out/images")), QStringList(".._.._elsewhere_" + camera));
@@ -132,7 +132,6 @@ class TestHostileNames : public QObject {
     was_set ? qputenv("TMPDIR", usual) : qunsetenv("TMPDIR");
     VERIFY_OUTCOME(missing, 2);
     VERIFY_SAYS(missing, "temporary folder.*Set TMPDIR");
-    QVERIFY(filesIn(QDir::tempPath()).filter(QRegularExpression("^evical_.*unpacked")).isEmpty());
   }
 
   void export_replacesLinksToFolders_andRefusesControlCharacters() {

@@ -19,6 +19,8 @@
 
 #include <sys/stat.h>
 
+#include <cmath>
+
 using namespace evical;
 using namespace evical::ui;
 using namespace evical::ui::test;
@@ -99,10 +101,10 @@ class TestPlainLabels : public QObject {
   }
 
   void richText_opensNoFile() {
-    QImage(30, 20, QImage::Format_RGB32).save(scratch_.filePath("picture.png"));
+    QImage(300, 200, QImage::Format_RGB32).save(scratch_.filePath("picture.png"));
     QTextDocument document;
     document.setHtml(QString("<img src='%1'>").arg(scratch_.filePath("picture.png")));
-    QVERIFY(document.size().height() < 30);
+    QVERIFY(document.size().height() < 100);
     for (const QString& name :
          {scratch_.filePath("picture.png"), "file://" + scratch_.filePath("picture.png")}) {
       const auto image = document.resource(QTextDocument::ImageResource, QUrl(name)).value<QImage>();
@@ -162,7 +164,6 @@ class TestPlainLabels : public QObject {
     QTest::newRow("inf") << none;
     QTest::newRow("1e999") << none;
     QTest::newRow("0x10") << none;
-    QTest::newRow("") << none;
   }
   void numbers_areReadInOneWay() {
     QFETCH(const double, value);

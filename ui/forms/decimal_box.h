@@ -17,7 +17,7 @@ class DecimalBox final : public QDoubleSpinBox {
   // A typed comma becomes a point at once. A pasted "1,300" is refused.
   QValidator::State validate(QString& text, int& position) const override {
     QString number = text;
-    if (number.contains(',') && !typedNumber(number.remove(suffix())).value) return QValidator::Invalid;
+    if (hasAmbiguousComma(number.remove(suffix()))) return QValidator::Invalid;
     text.replace(',', '.');
     return QDoubleSpinBox::validate(text, position);
   }

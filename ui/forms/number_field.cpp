@@ -20,10 +20,14 @@ QString numberText(double value) {
 
 }  // namespace
 
+bool hasAmbiguousComma(const QString& text) {
+  static const QRegularExpression thousands(R"(^\s*[+-]?[1-9]\d{0,2}(,\d{3})+\s*$)");
+  return thousands.match(text).hasMatch();
+}
+
 TypedNumber typedNumber(const QString& text) {
-  static const QRegularExpression thousands(R"(^[+-]?[1-9]\d{0,2}(,\d{3})+$)");
   const QString typed = text.trimmed();
-  if (thousands.match(typed).hasMatch())
+  if (hasAmbiguousComma(typed))
     return {{},
             QObject::tr("%1 is ambiguous: write a decimal point, and no comma between thousands").arg(typed)};
   bool is_number = false;

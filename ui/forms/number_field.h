@@ -14,8 +14,10 @@ struct TypedNumber {
   std::optional<double> value;
   QString problem = {};
 };
-// "1,300" is refused: the comma may be a decimal one, or that of thousands.
 TypedNumber typedNumber(const QString& text);
+
+// "1,300": the comma may be a decimal one, or that of thousands. Not a number.
+bool hasAmbiguousComma(const QString& text);
 
 class NumberField : public QLineEdit {
   Q_OBJECT

@@ -145,6 +145,7 @@ class DsecWriter : public RecordingWriter {
       writeOffset();
     }
     if (imu_) require(imu_->ts.flush() && imu_->omega.flush() && imu_->accel.flush());
+    require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0);  // closing a dataset would not report an error
     events_.reset();
     imu_.reset();
     require(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0);
