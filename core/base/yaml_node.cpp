@@ -6,6 +6,7 @@
 #include "core/base/plain_text.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -14,12 +15,19 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <unordered_map>
+#include <utility>
 
 namespace evical {
 
-struct YamlNode::Node {
+struct YamlNode::Entry {
   YAML::Node yaml;
   int line = 0;  // from 1; 0 if unknown
+};
+
+struct YamlNode::Node : Entry {
+  // Made when the first key is looked up, since yaml-cpp searches from the first one on.
+  mutable std::optional<std::unordered_map<std::string, Entry>> entries = {};
 };
 
 YamlNode::YamlNode(std::shared_ptr<const Node> node, std::string file, std::string key)
@@ -74,6 +82,25 @@ bool hasTab(const std::string& text, int line) {
   return false;
 }
 
+// yaml-cpp needs half a kilobyte and some microseconds for each value. Each one has a sign before or after it.
+void requireFewValues(const std::string& text, const std::string& file) {
+  constexpr std::ptrdiff_t kMost = 200'000;  // a correlation of 400 numbers has fewer
+  const auto values =
+      std::count_if(text.begin(), text.end(), [](char c) { return c == ',' || c == '\n' || c == '['; });
+  if (values > kMost)
+    throw badInput(file, fmt::format("has more than {} values, too many for a YAML file", kMost),
+                   "Check that it is the right file");
+}
+
+// Tags of YAML itself, and those that programs add to them ("!!opencv-matrix"). Others ask the reader for an action, such as
+// to include another file.
+void requirePlain(const YAML::Node& node, const std::string& place) {
+  const std::string& tag = node.Tag();
+  if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;
+  throw badInput(place, fmt::format("has the tag {}, which is not read", tag),
+                 "Write the value itself; other files are not included");
+}
+
 }  // namespace
 
 YamlNode YamlNode::load(const std::filesystem::path& file) {
@@ -86,8 +113,12 @@ YamlNode YamlNode::load(const std::filesystem::path& file) {
 }
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
+  requireFewValues(text, file);
   try {
-    return {std::make_shared<const Node>(Node{YAML::Load(text), 1}), file, ""};
+    return {std::make_shared<const Node>(Node{{YAML::Load(text), 1}}), file, ""};
+  } catch (const YAML::DeepRecursion& problem) {
+    throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1), "is nested too deeply",
+                   "Check that it is the right file");
   } catch (const YAML::Exception& problem) {
     if (hasTab(text, problem.mark.line))
       throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1),
@@ -112,6 +143,10 @@ bool YamlNode::isNull() const {
   return node_->yaml.IsNull();
 }
 
+bool YamlNode::isQuoted() const {
+  return isScalar() && node_->yaml.Tag() == "!";
+}
+
 std::string YamlNode::place() const {
   if (key_.empty()) return file_;
   return node_->line > 0 ? fmt::format("{}: {} (line {})", file_, key_, node_->line)
@@ -122,22 +157,39 @@ CalibrationError YamlNode::error(std::string problem, std::string advice) const 
   return badInput(place(), std::move(problem), std::move(advice));
 }
 
-YamlNode YamlNode::child(const std::string& name, const Node& node) const {
+YamlNode YamlNode::child(const std::string& name, const Entry& entry) const {
   const bool index = name.starts_with('[');
-  return {std::make_shared<const Node>(node), file_, key_.empty() || index ? key_ + name : key_ + "." + name};
+  YamlNode found(std::make_shared<const Node>(Node{entry}), file_,
+                 key_.empty() || index ? key_ + name : key_ + "." + name);
+  requirePlain(found.node_->yaml, found.place());
+  return found;
+}
+
+const YamlNode::Entry* YamlNode::entry(const std::string& name) const {
+  if (!isMap()) throw error("must be a map of keys and values", "Write it as 'key: value' lines");
+  if (!node_->entries) {
+    std::unordered_map<std::string, Entry> entries;
+    for (const auto& each : node_->yaml) {
+      if (!each.first.IsScalar()) continue;
+      const Entry here{each.second, each.first.Mark().line + 1};
+      const auto [first, is_new] = entries.try_emplace(each.first.Scalar(), here);
+      if (!is_new)
+        throw child(first->first, here)
+            .error(fmt::format("occurs twice, first in line {}", first->second.line), "Remove one of them");
+    }
+    node_->entries = std::move(entries);
+  }
+  const auto found = node_->entries->find(name);
+  return found == node_->entries->end() ? nullptr : &found->second;
 }
 
 std::vector<std::string> YamlNode::keys() const {
-  if (!isMap()) throw error("must be a map of keys and values", "Write it as 'key: value' lines");
+  entry("");
   std::vector<std::string> names;
-  for (const auto& entry : node_->yaml) {
-    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (name.empty()) throw error("has a key that is not a plain word");
-    requirePlain(name, place(), "a key");
-    if (std::find(names.begin(), names.end(), name) != names.end())
-      throw child(name, {entry.second, entry.first.Mark().line + 1})
-          .error("occurs twice", "Remove one of them");
-    names.push_back(name);
+  for (const auto& each : node_->yaml) {
+    names.push_back(each.first.IsScalar() ? each.first.Scalar() : "");
+    if (names.back().empty()) throw error("has a key that is not a plain word");
+    requirePlain(names.back(), place(), "a key");
   }
   return names;
 }
@@ -153,27 +205,24 @@ void YamlNode::allowOnly(const std::vector<std::string>& known) const {
 }
 
 std::optional<YamlNode> YamlNode::find(const std::string& name) const {
-  if (!isMap()) throw error("must be a map of keys and values", "Write it as 'key: value' lines");
-  for (const auto& entry : node_->yaml)
-    if (entry.first.IsScalar() && entry.first.Scalar() == name)
-      return child(name, {entry.second, entry.first.Mark().line + 1});
-  return std::nullopt;
+  const Entry* const found = entry(name);
+  return found == nullptr ? std::nullopt : std::optional(child(name, *found));
 }
 
 bool YamlNode::has(const std::string& name) const {
-  return find(name).has_value();
+  return entry(name) != nullptr;
 }
 
 YamlNode YamlNode::operator[](const std::string& name) const {
   if (const auto found = find(name)) return *found;
-  throw child(name, {YAML::Node(), 0}).error("is missing", fmt::format("Add '{}'", name));
+  throw child(name, Entry{}).error("is missing", fmt::format("Add '{}'", name));
 }
 
 std::vector<YamlNode> YamlNode::items() const {
   if (!isSequence()) throw error("must be a list", "Write it as [a, b]");
   std::vector<YamlNode> all;
   for (const auto& entry : node_->yaml)
-    all.push_back(child(fmt::format("[{}]", all.size()), {entry, entry.Mark().line + 1}));
+    all.push_back(child(fmt::format("[{}]", all.size()), Entry{entry, entry.Mark().line + 1}));
   return all;
 }
 

@@ -26,9 +26,9 @@ class YamlNode {
   bool isSequence() const;
   bool isScalar() const;
   bool isNull() const;
+  bool isQuoted() const;  // a value in quotes, which is a text even if it looks like a number
 
-  // Maps
-  // Throws if this is not a map, or if a key occurs twice or has a control character.
+  // Maps. All throw if this is not a map, or if a key occurs twice; keys() also if one has a control character.
   std::vector<std::string> keys() const;
   void allowOnly(std::initializer_list<const char*> known) const;
   void allowOnly(const std::vector<std::string>& known) const;
@@ -56,9 +56,11 @@ class YamlNode {
   CalibrationError error(std::string problem, std::string advice = {}) const;
 
  private:
-  struct Node;  // wraps YAML::Node
+  struct Entry;  // a value and its line; wraps YAML::Node
+  struct Node;   // an entry with those of a map by their keys
   YamlNode(std::shared_ptr<const Node> node, std::string file, std::string key);
-  YamlNode child(const std::string& name, const Node& node) const;
+  YamlNode child(const std::string& name, const Entry& entry) const;
+  const Entry* entry(const std::string& name) const;  // null if it is missing
 
   std::shared_ptr<const Node> node_;
   std::string file_, key_;

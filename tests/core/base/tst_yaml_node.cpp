@@ -1,7 +1,7 @@
 #include "core/base/yaml_node.h"
 
 #include "core/base/plain_text.h"
-
+#include "tests/support/file_cost.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -10,6 +10,7 @@
 #include <functional>
 
 using namespace evical;
+using namespace evical::test;
 
 namespace {
 
@@ -145,7 +146,13 @@ class TestYamlNode : public QObject {
         "file.yaml: rwos (line 2)", "unknown key. Did you mean 'rows'?");
     add(
         "key twice", "a: 1\nb: 2\na: 3\n", [](const YamlNode& n) { n.keys(); }, "file.yaml: a (line 3)",
-        "occurs twice");
+        "occurs twice, first in line 1");
+    add(
+        "another key where one occurs twice", "a: 1\nb: 2\na: 3\n", [](const YamlNode& n) { n["b"]; },
+        "file.yaml: a (line 3)", "occurs twice");
+    add(
+        "include", "a: !include other.yaml\n", [](const YamlNode& n) { n["a"]; }, "file.yaml: a (line 1)",
+        "has the tag !include, which is not read");
     add(
         "key that is a list", "[1, 2]: 3\n", [](const YamlNode& n) { n.keys(); }, "file.yaml",
         "a key that is not a plain word");
@@ -220,6 +227,38 @@ class TestYamlNode : public QObject {
           QString(error.what()).contains(QRegularExpression("file.yaml \\(line [23]\\): is not valid YAML")),
           error.what());
     }
+  }
+
+  void tagsOfYaml_areRead() {
+    const YamlNode root = yaml("%YAML:1.0\n---\nk: !!opencv-matrix {rows: 3}\nn: !!float 1\nt: \"1\"\n");
+    QCOMPARE(root["k"]["rows"].integer(0, 9), 3);
+    QCOMPARE(root["n"].real(), 1.0);
+    QVERIFY(root["t"].isQuoted() && !root["n"].isQuoted());
+  }
+
+  void bombs_costLittle_data() {
+    QTest::addColumn<QString>("unit");
+    QTest::addColumn<int>("count");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("keys") << "k%1: 0\n" << 400'000 << "more than 200000 values";
+    QTest::newRow("keys, fewer") << "k%1: 0\n" << 100'000 << "^read$";
+    QTest::newRow("cameras") << "cam%1: {}\n" << 100'000 << "^read$";
+    QTest::newRow("numbers") << "%1," << 1'000'000 << "more than 200000 values";
+    QTest::newRow("depth") << "[" << 100'000 << "nested too deeply";
+  }
+  void bombs_costLittle() {
+    QFETCH(QString, unit);
+    QFETCH(int, count);
+    QFETCH(QString, says);
+    QString text = unit.startsWith("%1") ? "D: [" : "";
+    for (int i = 0; i < count; ++i)
+      text += unit.contains("%1") ? QString(unit).replace("%1", QString::number(i)) : unit;
+    const FileCost cost = costOf([&] {
+      const YamlNode root = yaml(text.toStdString());
+      for (const std::string& key : root.keys()) root.has(key);
+      return std::string("read");
+    });
+    VERIFY_COST(cost, says);
   }
 
   void files_areReadOrRefused() {
