@@ -8,15 +8,80 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <map>
 
 namespace evical {
+namespace {
+
+// Characters of a document; counts its lines while it is read.
+struct CountedText {
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  const char* at;
+  int* line;
+
+  reference operator*() const { return *at; }
+  CountedText& operator++() {
+    *line += *at == '\n' ? 1 : 0;
+    ++at;
+    return *this;
+  }
+  bool operator==(const CountedText& other) const { return at == other.at; }
+};
+
+// The library keeps the last of two values of one key, and has no limits of memory and time.
+class JsonChecks {
+ public:
+  JsonChecks(std::string file, const int& line) : file_(std::move(file)), line_(line) {}
+
+  template <class Json>
+  bool operator()(int depth, nlohmann::detail::parse_event_t event, const Json& parsed) {
+    using Event = nlohmann::detail::parse_event_t;
+    constexpr int kDeepest = 100;
+    constexpr std::size_t kMostValues = 1'000'000, kMostKeys = 1000;
+    if (depth > kDeepest) refuse("is nested too deeply");
+    if (++values_ > kMostValues) refuse("has too many values");
+    if (event == Event::object_start) keys_.emplace_back();
+    if (event == Event::object_end) keys_.pop_back();
+    if (event != Event::key) return true;
+    const auto [first, is_new] = keys_.back().emplace(parsed.template get<std::string>(), line_);
+    if (!is_new)
+      refuse(fmt::format("{} occurs twice, first in line {}", first->first, first->second),
+             "Remove one of them");
+    if (keys_.back().size() > kMostKeys) refuse("has too many keys in one object");
+    return true;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& problem,
+                           const char* advice = "Check that it is the right file") const {
+    throw badInput(fmt::format("{} (line {})", file_, line_), problem, advice);
+  }
+
+  std::string file_;
+  const int& line_;
+  std::vector<std::map<std::string, int>> keys_;  // of the objects that are open, with their lines
+  std::size_t values_ = 0;
+};
+
+}  // namespace
 
 JsonNode::JsonNode(std::shared_ptr<const Json> document, const Json* value, std::string file, std::string key)
     : document_(std::move(document)), value_(value), file_(std::move(file)), key_(std::move(key)) {}
 
 JsonNode JsonNode::load(const std::filesystem::path& file) {
   try {
-    const auto document = std::make_shared<const Json>(Json::parse(textOf(file)));
+    const std::string text = textOf(file);
+    int line = 1;
+    const CountedText begin{text.data(), &line}, end{text.data() + text.size(), &line};
+    const auto document =
+        std::make_shared<const Json>(Json::parse(begin, end, JsonChecks(file.string(), line)));
     return {document, document.get(), file.string(), ""};
   } catch (const nlohmann::json::exception& error) {
     throw badInput(file.string(), "is not JSON: " + std::string(error.what()));

@@ -1,11 +1,14 @@
-// OpenCV's FileStorage, with the file and key in its error messages. It distinguishes whole and real numbers:
-// "20" is an int, "20.0" a real one.
+// Files of OpenCV's FileStorage (YAML, JSON, XML), with the file and key in error messages. OpenCV's own parsers overwrite the
+// stack on some files, so only the structures of calibrations are read here. As in OpenCV, "20" is an int and "20.0" a real
+// number; a key that occurs twice, which OpenCV accepts, is refused.
 #pragma once
 
+#include "core/geometry/resolution.h"
+
 #include <Eigen/Core>
-#include <opencv2/core/persistence.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,41 +17,48 @@ namespace evical {
 // A value in a file. All methods throw CalibrationError (BadInput) if the key is missing or of another type.
 class OpencvNode {
  public:
-  OpencvNode(cv::FileNode node, std::string file, std::string key);
-
   bool has(const std::string& key) const;
   OpencvNode operator[](const std::string& key) const;
 
   double number() const;  // an int or a real one
   int integer() const;    // an int only
   std::string text() const;
-  bool isText() const { return node_.isString(); }
-  std::size_t size() const { return node_.size(); }                // of a list
+  bool isText() const;
+  std::size_t size() const;                                        // of a list
   std::vector<double> numbers(std::size_t count) const;            // of a list
   Eigen::MatrixXd rows(std::size_t rows, std::size_t cols) const;  // of a list of lists
-  // An !!opencv-matrix; `kind`: CV_32F or CV_64F, or -1 if the program accepts both.
-  Eigen::MatrixXd matrix(int rows, int cols, int kind) const;
+  // An !!opencv-matrix; `types`: those of its elements that the program accepts, "f" for float and "d" for double.
+  Eigen::MatrixXd matrix(int rows, int cols, const std::string& types = "d") const;
   std::vector<double> matrixNumbers() const;  // row by row, for any shape
+  Resolution resolution() const;              // of a list: width and height
+  int side_px() const;                        // a width or height
   std::vector<std::string> keys() const;      // of a map; otherwise empty
 
   std::string place() const;  // "vins.yaml: acc_n"
   [[noreturn]] void fail(const std::string& problem) const;
 
  private:
-  cv::FileNode node_;
+  friend class OpencvFile;
+  struct Value;  // with those below it
+  struct Reading;
+  OpencvNode(std::shared_ptr<const Value> value, std::string file, std::string key);
+  std::shared_ptr<const Value> child(const Value& value) const;
+  std::vector<double> elements() const;
+
+  std::shared_ptr<const Value> value_;
   std::string file_, key_;
 };
 
 class OpencvFile {
  public:
   explicit OpencvFile(const std::filesystem::path& file);
-  OpencvNode root() const;
+  OpencvNode root() const { return {root_, file_, ""}; }
   OpencvNode operator[](const std::string& key) const { return root()[key]; }
   bool has(const std::string& key) const { return root().has(key); }
 
  private:
   std::string file_;
-  cv::FileStorage storage_;
+  std::shared_ptr<const OpencvNode::Value> root_;
 };
 
 }  // namespace evical

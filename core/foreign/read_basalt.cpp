@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -25,6 +26,13 @@ RigidTransform basaltPoseOf(const JsonNode& node, double unit) {
                             {number("px"), number("py"), number("pz")}};
   if (std::abs(pose.rotation.norm() - 1.0) > unit) node.fail("does not have a unit quaternion");
   return pose;
+}
+
+int sideOf(const JsonNode& node) {
+  constexpr std::int64_t kLargest_px = 100'000;
+  const std::int64_t side_px = node.integer();
+  if (side_px < 1 || side_px > kLargest_px) node.fail("must be a whole number of pixels above 0");
+  return static_cast<int>(side_px);
 }
 
 CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) {
@@ -50,8 +58,7 @@ CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) 
           "is not 0: rational lens models are not supported (at most three radial coefficients)");
   const std::vector<JsonNode> size = resolution.items();
   if (size.size() != 2) resolution.fail("must have two numbers");
-  return lensFrom(model, k, distortion,
-                  {static_cast<int>(size[0].integer()), static_cast<int>(size[1].integer())});
+  return lensFrom(model, k, distortion, {sideOf(size[0]), sideOf(size[1])});
 }
 
 double oneOfThree(const JsonNode& node) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <iterator>
 #include <sstream>
 
 namespace evical {
@@ -27,6 +28,11 @@ struct CameraLines {
     for (double value = 0.0; values.size() < count && words >> value;) values.push_back(value);
     if (values.size() != count) throw badInput(place(line), fmt::format("must have {} numbers", count));
     return values;
+  }
+
+  std::ptrdiff_t words(std::size_t line) const {
+    std::istringstream all(lines[line]);
+    return std::distance(std::istream_iterator<std::string>(all), {});
   }
 
   Resolution resolution(std::size_t line) const {
@@ -53,6 +59,8 @@ CameraIntrinsics dsoLensOf(CameraLines read) {
     throw badInput(read.place(0), fmt::format("lens model '{}' is not supported", name));
   read.lines[0].erase(0, name_end);
   const std::vector<double> p = read.numbers(0, 8);
+  if (read.words(0) != std::ssize(p))
+    throw badInput(read.place(0), "must have eight numbers, and nothing after them");
   if (p[2] < 1.0 && p[3] < 1.0)
     throw badInput(read.place(0), "has values relative to the image's size",
                    "Multiply them by width and height, and subtract 0.5 px from the principal point");

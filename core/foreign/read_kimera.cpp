@@ -20,15 +20,14 @@ ReadFile readKimeraCamera(const std::filesystem::path& path) {
   if (model != "radtan" && model != "equidistant")
     file["distortion_model"].fail("must be radtan or equidistant");
   if (file["rate_hz"].integer() <= 0) file["rate_hz"].fail("must be above 0");
-  const std::vector<double> size = file["resolution"].numbers(2);
+  const Resolution size = file["resolution"].resolution();
   const OpencvNode distortion = file["distortion_coefficients"];
   const bool third_radial = model == "radtan" && distortion.size() == 5;
   ReadCamera camera;
   camera.name = file["camera_id"].text();
   if (camera.name.empty()) file["camera_id"].fail("cannot be empty");
   camera.lens = lensFrom(model == "radtan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
-                         file["intrinsics"].numbers(4), distortion.numbers(third_radial ? 5 : 4),
-                         {static_cast<int>(size[0]), static_cast<int>(size[1])});
+                         file["intrinsics"].numbers(4), distortion.numbers(third_radial ? 5 : 4), size);
   camera.frame_from_camera = kimeraPoseOf(file);
   return {path, {camera}};
 }

@@ -6,8 +6,6 @@
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
 
-#include <opencv2/core.hpp>
-
 #include <algorithm>
 
 namespace evical {
@@ -15,16 +13,15 @@ namespace {
 
 ReadFile readMetavisionCamera(const std::filesystem::path& path, const std::string& name) {
   const OpencvFile file(path);
-  const std::vector<double> size = file["image_size"].numbers(2);
-  const Eigen::Matrix3d k = file["camera_matrix"].matrix(3, 3, CV_64F);
-  const Eigen::RowVectorXd distortion = file["distortion_coefficients"].matrix(1, 5, CV_64F);
+  const Resolution size = file["image_size"].resolution();
+  const Eigen::Matrix3d k = file["camera_matrix"].matrix(3, 3);
+  const Eigen::RowVectorXd distortion = file["distortion_coefficients"].matrix(1, 5);
   file["overall_rms_reprojection_error"].number();
   file["n_kept_views"].integer();
   ReadCamera camera;
   camera.name = name;
   camera.lens = lensFrom(CameraModel::PinholeRadtan, {k(0, 0), k(1, 1), k(0, 2), k(1, 2)},
-                         {distortion.begin(), distortion.end()},
-                         {static_cast<int>(size[0]), static_cast<int>(size[1])});
+                         {distortion.begin(), distortion.end()}, size);
   return {path, {camera}};
 }
 

@@ -7,11 +7,12 @@
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/read_pair.h"
 #include "core/foreign/readers.h"
+#include "core/format/intrinsics_yaml.h"
 
 #include <Eigen/LU>
-#include <opencv2/core.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -20,22 +21,27 @@
 namespace evical {
 namespace {
 
+std::vector<double> cameraNumbersOf(const OpencvNode& node) {
+  const std::array<double, 4> numbers = cameraMatrixNumbers(node.matrixNumbers(), node.place());
+  return {numbers.begin(), numbers.end()};
+}
+
 // A column of 5 for cv::projectPoints, of 4 for cv::fisheye's and, in addition to xi, for cv::omnidir's.
 CameraIntrinsics opencvLensOf(const OpencvFile& file, const char* k_key, const char* d_key,
                               const char* xi_key, Resolution size) {
-  const Eigen::Matrix3d k = file[k_key].matrix(3, 3, CV_64F);
-  const std::vector<double> intrinsics{k(0, 0), k(1, 1), k(0, 2), k(1, 2)};
+  file[k_key].matrix(3, 3);
+  const std::vector<double> intrinsics = cameraNumbersOf(file[k_key]);
   const bool omni = file.has(xi_key);
   const bool radtan = !omni && file[d_key]["rows"].integer() == 5;
-  const Eigen::VectorXd d = file[d_key].matrix(radtan ? 5 : 4, 1, CV_64F);
+  const Eigen::VectorXd d = file[d_key].matrix(radtan ? 5 : 4, 1);
   if (radtan) return lensFrom(CameraModel::PinholeRadtan, intrinsics, {d.begin(), d.end()}, size);
   if (!omni) return lensFrom(CameraModel::PinholeEquidistant, intrinsics, {d.begin(), d.end()}, size);
   return lensFrom(CameraModel::OmniRadtan, intrinsics,
-                  {file[xi_key].matrix(1, 1, CV_64F)(0, 0), d[0], d[1], d[2], d[3]}, size);
+                  {file[xi_key].matrix(1, 1)(0, 0), d[0], d[1], d[2], d[3]}, size);
 }
 
 RigidTransform poseAt(const OpencvFile& file, const char* key) {
-  return rigidFrom(file[key].matrix(4, 4, CV_64F), file[key].place());
+  return rigidFrom(file[key].matrix(4, 4), file[key].place());
 }
 
 ReadCamera opencvCameraOf(const OpencvFile& file, const std::string& name) {
@@ -56,10 +62,10 @@ ReadImu opencvImuOf(const OpencvFile& file, const std::string& name) {
   imu.name = name;
   imu.reference_from_imu = poseAt(file, "reference_from_imu");
   imu.time_offset_s = file["time_offset_s"].number();
-  imu.accelerometer = file["accelerometer_matrix"].matrix(3, 3, CV_64F);
-  imu.gyroscope = file["gyroscope_matrix"].matrix(3, 3, CV_64F);
-  imu.accelerometer_bias_m_s2 = file["accelerometer_bias"].matrix(3, 1, CV_64F);
-  imu.gyroscope_bias_rad_s = file["gyroscope_bias"].matrix(3, 1, CV_64F);
+  imu.accelerometer = file["accelerometer_matrix"].matrix(3, 3);
+  imu.gyroscope = file["gyroscope_matrix"].matrix(3, 3);
+  imu.accelerometer_bias_m_s2 = file["accelerometer_bias"].matrix(3, 1);
+  imu.gyroscope_bias_rad_s = file["gyroscope_bias"].matrix(3, 1);
   imu.rate_hz = file["rate_hz"].number();
   imu.noise = {file["gyroscope_noise_density"].number(), file["accelerometer_noise_density"].number(),
                file["gyroscope_random_walk"].number(), file["accelerometer_random_walk"].number()};
@@ -68,18 +74,18 @@ ReadImu opencvImuOf(const OpencvFile& file, const std::string& name) {
 
 PairAsRead readOpencvPair(const std::filesystem::path& folder) {
   const OpencvFile in(folder / "intrinsics.yml"), ex(folder / "extrinsics.yml");
-  const Eigen::MatrixXd rotation = ex["R"].matrix(3, 3, CV_64F), translation = ex["T"].matrix(3, 1, CV_64F);
+  const Eigen::MatrixXd rotation = ex["R"].matrix(3, 3), translation = ex["T"].matrix(3, 1);
   const Eigen::MatrixXd pose = (Eigen::MatrixXd(3, 4) << rotation, translation).finished();
   const PairAsRead pair{opencvLensOf(in, "M1", "D1", "xi1", {}), opencvLensOf(in, "M2", "D2", "xi2", {}),
                         rigidFrom(pose, ex["R"].place())};
-  for (const char* const key : {"E", "F"}) ex[key].matrix(3, 3, CV_64F);
-  ex["Q"].matrix(4, 4, CV_64F);
+  for (const char* const key : {"E", "F"}) ex[key].matrix(3, 3);
+  ex["Q"].matrix(4, 4);
   // After rectification, the cameras differ only by the baseline along x.
   constexpr double kSame = 1e-9;
-  const Eigen::Matrix3d r1 = ex["R1"].matrix(3, 3, CV_64F), r2 = ex["R2"].matrix(3, 3, CV_64F);
-  const Eigen::MatrixXd p2 = ex["P2"].matrix(3, 4, CV_64F);
+  const Eigen::Matrix3d r1 = ex["R1"].matrix(3, 3), r2 = ex["R2"].matrix(3, 3);
+  const Eigen::MatrixXd p2 = ex["P2"].matrix(3, 4);
   const Eigen::Vector3d baseline = r2 * pair.right_from_left.translation_m;
-  ex["P1"].matrix(3, 4, CV_64F);
+  ex["P1"].matrix(3, 4);
   if ((r2 * pair.right_from_left.rotation * r1.transpose() - Eigen::Matrix3d::Identity()).norm() > kSame ||
       (baseline - Eigen::Vector3d(p2(0, 3) / p2(0, 0), 0.0, 0.0)).norm() > kSame)
     ex["R"].fail("is inconsistent with R1, R2 and P2");
@@ -100,26 +106,12 @@ constexpr OpencvKeys kOpencvKeys[] = {{"camera_matrix", "distortion_coefficients
                                       {"M1", "D1", "xi1"},
                                       {"M2", "D2", "xi2"}};
 
-void checkSide(double side_px, const OpencvNode& node) {
-  constexpr double kLargest_px = 100'000.0;
-  if (!(side_px >= 1.0 && side_px <= kLargest_px) || side_px != std::floor(side_px))
-    node.fail("must be a whole number of pixels above 0");
-}
-int sideAt(const OpencvNode& node) {
-  checkSide(node.number(), node);
-  return static_cast<int>(node.number());
-}
-
 Resolution opencvSizeOf(const OpencvNode& node) {
   for (const auto& [width, height] : {std::pair{"image_width", "image_height"},
                                       std::pair{"image_Width", "image_Height"}, std::pair{"width", "height"}})
-    if (node.has(width) && node.has(height)) return {sideAt(node[width]), sideAt(node[height])};
-  for (const char* key : {"image_size", "imageSize", "resolution"}) {
-    if (!node.has(key)) continue;
-    const std::vector<double> size = node[key].numbers(2);
-    for (const double side : size) checkSide(side, node[key]);
-    return {static_cast<int>(size[0]), static_cast<int>(size[1])};
-  }
+    if (node.has(width) && node.has(height)) return {node[width].side_px(), node[height].side_px()};
+  for (const char* key : {"image_size", "imageSize", "resolution"})
+    if (node.has(key)) return node[key].resolution();
   return {};
 }
 
@@ -150,11 +142,7 @@ std::optional<bool> saysFisheye(const OpencvNode& node) {
 // Coefficients in any shape: k1 k2 p1 p2, k3, and those of the rational model, which must be 0.
 CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, std::optional<bool> fisheye,
                               Resolution size) {
-  const std::vector<double> k = node[keys.k].matrixNumbers();
-  if (k.size() != 9) node[keys.k].fail("is not a 3 x 3 matrix");
-  constexpr double kNoSkew_px = 1e-3;
-  if (std::abs(k[1]) > kNoSkew_px) node[keys.k].fail("has a skew, which is not supported");
-  const std::vector<double> intrinsics{k[0], k[4], k[2], k[5]};
+  const std::vector<double> intrinsics = cameraNumbersOf(node[keys.k]);
   std::vector<double> d = node[keys.d].matrixNumbers();
   constexpr std::size_t kRadtan = 5, kFisheye = 4;
   if (node.has(keys.xi)) {
@@ -178,13 +166,16 @@ CameraIntrinsics opencvLensAt(const OpencvNode& node, const OpencvKeys& keys, st
 void addOpencvCameras(const OpencvNode& root, const OpencvNode& node, const std::string& name,
                       ReadFile& file) {
   for (const OpencvKeys& keys : kOpencvKeys) {
-    if (!node.has(keys.k) || !node.has(keys.d)) continue;
+    if (!node.has(keys.k)) continue;
+    if (!node.has(keys.d)) node[keys.k].fail(std::string("has no distortion: ") + keys.d + " is missing");
     ReadCamera& camera = file.cameras.emplace_back();
     camera.name = name.empty() && std::isdigit(static_cast<unsigned char>(keys.k[1])) ? keys.k : name;
     const Resolution own_size = opencvSizeOf(node);
     const std::optional<bool> own_flag = saysFisheye(node);
     camera.lens = opencvLensAt(node, keys, own_flag ? own_flag : saysFisheye(root),
                                own_size.known() ? own_size : opencvSizeOf(root));
+    if (root.has("R") && root.has("T"))
+      camera.frame_from_camera = RigidTransform{};  // a note states that it is not imported
   }
 }
 

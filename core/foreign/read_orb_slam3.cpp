@@ -5,8 +5,7 @@
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"
-
-#include <opencv2/core.hpp>
+#include "core/format/intrinsics_yaml.h"
 
 namespace evical {
 namespace {
@@ -42,7 +41,7 @@ CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, const std::string& camer
 
 RigidTransform orbSlam3PoseOf(const OpencvFile& file, const char* key) {
   const OpencvNode node = file[key];
-  return rigidFrom(node.matrix(4, 4, CV_32F), node.place());
+  return rigidFrom(node.matrix(4, 4, "f"), node.place());
 }
 
 void askOrbSlam3ForOwnKeys(const OpencvFile& file) {
@@ -71,8 +70,9 @@ Resolution orbSlam3SizeOf(const OpencvFile& file) {
 
 // `side`: "LEFT" or "RIGHT" of stereo settings before ORB-SLAM3 1.0.
 ReadCamera orbSlam2CameraOf(const OpencvFile& file, const std::string& side) {
-  const std::vector<double> k = file[side + ".K"].matrixNumbers(), d = file[side + ".D"].matrixNumbers();
-  if (k.size() != 9) file[side + ".K"].fail("is not a 3 x 3 matrix");
+  const OpencvNode matrix = file[side + ".K"];
+  const auto k = cameraMatrixNumbers(matrix.matrixNumbers(), matrix.place());
+  const std::vector<double> d = file[side + ".D"].matrixNumbers();
   const bool fisheye = file.has("Camera.type") && file["Camera.type"].text() == "KannalaBrandt8";
   if (!fisheye && d.size() == 4)
     file[side + ".D"].fail("fits two lens models: four numbers without Camera.type");
@@ -80,9 +80,9 @@ ReadCamera orbSlam2CameraOf(const OpencvFile& file, const std::string& side) {
     file[side + ".D"].fail("must have five numbers, or four for a fisheye lens");
   ReadCamera camera;
   camera.name = side;
-  camera.lens = lensFrom(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan,
-                         {k[0], k[4], k[2], k[5]}, d,
-                         {file[side + ".width"].integer(), file[side + ".height"].integer()});
+  camera.lens =
+      lensFrom(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan, {k.begin(), k.end()},
+               d, {file[side + ".width"].integer(), file[side + ".height"].integer()});
   return camera;
 }
 

@@ -105,7 +105,7 @@ ReadBack readVinsFusion(const std::filesystem::path& folder) {
   for (int i = 0; i < count; ++i) {
     ReadCamera camera;
     const OpencvNode pose = file[fmt::format("body_T_cam{}", i)];
-    camera.frame_from_camera = rigidFrom(pose.matrix(4, 4, -1), pose.place());
+    camera.frame_from_camera = rigidFrom(pose.matrix(4, 4, "fd"), pose.place());
     if (i == 0) camera.time_offset_s = file["td"].number();
     file[fmt::format("image{}_topic", i)].text();
     vins.cameras.push_back(camera);

@@ -7,14 +7,20 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <string_view>
+#include <utility>
 
 namespace evical {
 namespace {
 
+constexpr std::pair<std::string_view, char> kEntities[] = {
+    {"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
+
 class XmlParser {
  public:
-  XmlParser(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+  XmlParser(std::string text, std::string file, XmlText kept)
+      : text_(std::move(text)), file_(std::move(file)), kept_(kept) {}
 
   XmlElement document() {
     skipBetween();
@@ -25,9 +31,18 @@ class XmlParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem) const {
-    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    throw badInput(fmt::format("{} (line {})", file_, lines + 1), "is not XML: " + problem);
+  [[noreturn]] void refuse(const std::string& problem) {
+    throw badInput(fmt::format("{} (line {})", file_, line()), problem);
+  }
+  [[noreturn]] void fail(const std::string& problem) { refuse("is not XML: " + problem); }
+
+  // Counts on from the last call.
+  int line() {
+    const auto begin = text_.begin();
+    line_ += static_cast<int>(std::count(begin + static_cast<std::ptrdiff_t>(counted_to_),
+                                         begin + static_cast<std::ptrdiff_t>(at_), '\n'));
+    counted_to_ = at_;
+    return line_;
   }
 
   bool startsWith(std::string_view what) const {
@@ -65,9 +80,29 @@ class XmlParser {
       } else if (take("<?")) {
         until("?>");
       } else {
+        if (startsWith("<!DOCTYPE"))
+          refuse("has a document type, which is not read: it may name other files. Remove it");
         return;
       }
     }
+  }
+
+  // Text up to the next element, with the entities of XML itself.
+  std::string plainText() {
+    const std::size_t end = std::min(text_.find('<', at_), text_.size());
+    std::string plain;
+    while (at_ < end) {
+      if (text_[at_] != '&') {
+        plain += text_[at_++];
+        continue;
+      }
+      const std::string name = until(";");
+      const auto* const known =
+          std::ranges::find_if(kEntities, [&](const auto& entity) { return name.substr(1) == entity.first; });
+      if (known == std::end(kEntities)) refuse(fmt::format("has the entity {};, which is not read", name));
+      plain += known->second;
+    }
+    return plain;
   }
 
   std::string word() {
@@ -76,7 +111,9 @@ class XmlParser {
       return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == ':';
     };
     while (at_ < text_.size() && goes_on(static_cast<unsigned char>(text_[at_]))) ++at_;
+    constexpr std::size_t kLongestName = 200;
     if (at_ == begin) fail("a name is missing");
+    if (at_ - begin > kLongestName) fail("a name is too long");
     return text_.substr(begin, at_ - begin);
   }
 
@@ -93,18 +130,26 @@ class XmlParser {
 
   XmlElement element(const std::string& above, int depth) {
     constexpr int kDeepest = 100;
-    if (depth > kDeepest) fail("is nested too deeply");
+    constexpr int kMostElements = 100'000;
+    if (depth > kDeepest) refuse("is nested too deeply");
+    if (++elements_ > kMostElements) refuse("has too many elements");
     expect("<");
     XmlElement element;
     element.name = word();
-    const std::string path = above.empty() ? element.name : above + "." + element.name;
-    const auto lines = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    element.place = fmt::format("{}: {} (line {})", file_, path, lines + 1);
+    constexpr std::size_t kLongestPath = 300;
+    const bool root = above.empty() || above.size() > kLongestPath;
+    const std::string path = root ? element.name : above + "." + element.name;
+    element.line = line();
+    element.place = fmt::format("{}: {} (line {})", file_, path, element.line);
     attributesOf(element);
     if (take("/>")) return element;
     expect(">");
-    for (skipBetween(); !startsWith("</"); skipBetween())
-      element.children.push_back(this->element(path, depth + 1));
+    for (skipBetween(); !startsWith("</"); skipBetween()) {
+      if (kept_ == XmlText::Kept && at_ < text_.size() && !startsWith("<"))
+        element.text += plainText();
+      else
+        element.children.push_back(this->element(path, depth + 1));
+    }
     expect("</");
     if (word() != element.name) fail(fmt::format("{} does not end", element.name));
     expect(">");
@@ -112,7 +157,9 @@ class XmlParser {
   }
 
   std::string text_, file_;
-  std::size_t at_ = 0;
+  XmlText kept_;
+  std::size_t at_ = 0, counted_to_ = 0;
+  int line_ = 1, elements_ = 0;
 };
 
 }  // namespace
@@ -136,8 +183,8 @@ const std::string& XmlElement::attribute(const std::string& called) const {
   return found->second;
 }
 
-XmlElement readXml(const std::filesystem::path& file) {
-  return XmlParser(textOf(file), file.string()).document();
+XmlElement readXml(const std::filesystem::path& file, XmlText text) {
+  return XmlParser(textOf(file), file.string(), text).document();
 }
 
 }  // namespace evical

@@ -124,25 +124,26 @@ YamlNode numbersOf(const YamlNode& node) {
   return node.isMap() ? node["data"] : node;
 }
 
-// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero here.
+// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero here; or the
+// four of a fisheye lens, which an OAK fills up with zeros.
 void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
-  constexpr std::size_t kRadtan = 5;
   const std::vector<double> all = node.reals();
-  if (camera.model != CameraModel::PinholeRadtan || all.size() <= kRadtan) return setDistortion(node, camera);
-  if (std::any_of(all.begin() + kRadtan, all.end(), [](double each) { return each != 0.0; }))
-    throw node.error("are those of a rational lens model; at most three radial coefficients are supported",
-                     "Calibrate this camera again, or export it with k4, k5 and k6 fixed at zero");
-  std::copy_n(all.begin(), kRadtan, camera.distortion.begin());
+  const auto used = static_cast<std::size_t>(coefficientCount(camera.model));
+  if (all.size() <= used) return setDistortion(node, camera);
+  if (std::any_of(all.begin() + static_cast<std::ptrdiff_t>(used), all.end(),
+                  [](double each) { return each != 0.0; }))
+    throw node.error(
+        camera.model == CameraModel::PinholeRadtan
+            ? "are those of a rational lens model; at most three radial coefficients are supported"
+            : "has more than the four coefficients of a fisheye lens",
+        "Calibrate this camera again, or export it with the further coefficients fixed at zero");
+  std::copy_n(all.begin(), used, camera.distortion.begin());
 }
 
-void setMatrix(const YamlNode& node, CameraIntrinsics& camera) {
-  constexpr double kNoSkew_px = 1e-3;
-  const std::vector<double> k = node.reals(9);
-  if (std::abs(k[1]) > kNoSkew_px)
-    throw node.error(fmt::format("has a skew of {:.4g} px, which is not supported", k[1]),
-                     "Calibrate this camera again without skew");
-  camera.focal_length_px = {k[0], k[4]};
-  camera.principal_point_px = {k[2], k[5]};
+void setMatrix(std::span<const double> matrix, const std::string& place, CameraIntrinsics& camera) {
+  const auto [fx, fy, cx, cy] = cameraMatrixNumbers(matrix, place);
+  camera.focal_length_px = {fx, fy};
+  camera.principal_point_px = {cx, cy};
 }
 
 // ROS names it distortion_model, older files camera_model; files without a name have OpenCV's five coefficients.
@@ -164,7 +165,8 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   const YamlNode distortion = numbersOf(anyOf(map, {"distortion_coefficients", "D", "d"}));
   CameraIntrinsics camera;
   camera.model = rosModel(map, distortion);
-  setMatrix(numbersOf(anyOf(map, {"camera_matrix", "K", "k"})), camera);
+  const YamlNode matrix = numbersOf(anyOf(map, {"camera_matrix", "K", "k"}));
+  setMatrix(matrix.reals(9), matrix.place(), camera);
   setOpenCvDistortion(distortion, camera);
   const char* prefix = parsers ? "image_" : "";
   camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
@@ -172,24 +174,20 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   return camera;
 }
 
-// The first camera of a Luxonis OAK's calibration.
-CameraIntrinsics readOak(const YamlNode& root) {
-  const std::vector<YamlNode> cameras = root["cameraData"].items();
-  if (cameras.empty()) throw root["cameraData"].error("is empty", "Give a calibration with a camera");
-  const std::vector<YamlNode> entry = cameras.front().items();
-  if (entry.size() != 2)
-    throw cameras.front().error("must be a pair of a socket and its camera", "Give an OAK's own file");
-  const YamlNode& map = entry[1];
-  constexpr const char* kPerspective[] = {"0", "1"};
+// A camera of a Luxonis OAK. Source: luxonis/depthai-shared, include/depthai-shared/common/CameraModel.hpp: the types.
+CameraIntrinsics readOak(const YamlNode& map) {
+  constexpr const char* kTypes[] = {"Perspective", "Fisheye", "Equirectangular", "RadialDivision"};
+  const auto type = map.find("cameraType");
+  const int number = type ? type->integer(0, 3) : 0;
+  if (number > 1)
+    throw type->error(fmt::format("is {} ({}), a lens model that is not supported", number, kTypes[number]),
+                      "Calibrate this camera again as Perspective or Fisheye");
   CameraIntrinsics camera;
-  if (const auto model = map.find("cameraType");
-      model && model->text() != kPerspective[0] && model->text() != kPerspective[1])
-    camera.model = CameraModel::PinholeEquidistant;
-  const std::vector<YamlNode> rows = map["intrinsicMatrix"].items();
-  if (rows.size() != 3) throw map["intrinsicMatrix"].error("must have three rows");
-  const std::vector<double> x = rows[0].reals(3), y = rows[1].reals(3);
-  camera.focal_length_px = {x[0], y[1]};
-  camera.principal_point_px = {x[2], y[2]};
+  camera.model = number == 0 ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant;
+  std::vector<double> matrix;
+  for (const YamlNode& row : map["intrinsicMatrix"].items())
+    for (const double each : row.reals(3)) matrix.push_back(each);
+  setMatrix(matrix, map["intrinsicMatrix"].place(), camera);
   setOpenCvDistortion(map["distortionCoeff"], camera);
   camera.resolution_px = {map["width"].integer(1, kMostPixels), map["height"].integer(1, kMostPixels)};
   return camera;
@@ -219,18 +217,33 @@ bool namesStream(const YamlNode& camera, const std::string& stream) {
   return topic && topic->isScalar() && topic->text() == stream;
 }
 
-// A file's cameras by name: a Kalibr camchain's cam0, cam1, ..., or the cameras of a result.
-YamlNode pickCamera(const YamlNode& cameras, const std::string& name, const std::string& stream) {
-  std::vector<std::string> names = camchainCameras(cameras);
-  if (names.empty()) names = cameras.keys();
-  for (const std::string& key : names)
-    if (key == name) return cameras[key];
-  for (const std::string& key : names)
-    if (namesStream(cameras[key], stream)) return cameras[key];
-  if (names.size() == 1) return cameras[names[0]];
-  throw cameras.error(
+// The camera with this name or stream, or the only one.
+YamlNode pickCamera(const YamlNode& file, const std::vector<std::pair<std::string, YamlNode>>& cameras,
+                    const std::string& name, const std::string& stream) {
+  std::vector<std::string> names;
+  for (const auto& [key, camera] : cameras) {
+    if (key == name) return camera;
+    names.push_back(key);
+  }
+  for (const auto& [key, camera] : cameras)
+    if (namesStream(camera, stream)) return camera;
+  if (cameras.size() == 1) return cameras.front().second;
+  throw file.error(
       fmt::format("has several cameras, but none with the name '{}' or rostopic '{}'", name, stream),
       fmt::format("Use one of: {}", joined(names)));
+}
+
+std::vector<std::pair<std::string, YamlNode>> named(const YamlNode& map,
+                                                    const std::vector<std::string>& keys) {
+  std::vector<std::pair<std::string, YamlNode>> values;
+  for (const std::string& key : keys) values.emplace_back(key, map[key]);
+  return values;
+}
+
+// Without a resolution, the recording gives it.
+CameraIntrinsics withAnySize(CameraIntrinsics camera) {
+  if (!camera.resolution_px.known()) camera.resolution_px = {kMostPixels, kMostPixels};
+  return camera;
 }
 
 // Correlation of `count` numbers from the first one on; other intrinsics are uncorrelated. Accepts matrices
@@ -287,7 +300,7 @@ constexpr std::string_view kLensKeys[] = {
     "T_cam_imu", "T_cn_cnm1", "timeshift_cam_imu",
     // keys of Evical, eKalibr and OAK
     "model", "resolution_px", "focal_length_px", "principal_point_px", "distortion", "Intrinsics",
-    "intrinsics_std", "correlation", "cameraData"};
+    "intrinsics_std", "correlation", "cameraData", "cameraType", "intrinsicMatrix", "distortionCoeff"};
 
 // Converts ost.txt to the keys of camera_info: headings, each followed by rows of numbers.
 std::string cameraInfoOf(const std::string& text) {
@@ -318,12 +331,30 @@ std::string cameraInfoOf(const std::string& text) {
 
 std::vector<std::string> camchainCameras(const YamlNode& root) {
   std::vector<std::string> cameras;
-  if (!root.isMap() || root.has("camera_model")) return cameras;
+  if (!root.isMap()) return cameras;
   for (const std::string& key : root.keys()) {
     const bool numbered = key.starts_with("cam") && key.size() > 3 &&
                           key.find_first_not_of("0123456789", 3) == std::string::npos;
     if (numbered && root[key].isMap()) cameras.push_back(key);
   }
+  if (!cameras.empty() && root.has("camera_model"))
+    throw root["camera_model"].error(fmt::format("belongs to no camera, but {} to one", cameras.front()),
+                                     "Add the line 'cam0:' of the first camera, and indent its lines");
+  return cameras;
+}
+
+std::vector<std::pair<std::string, YamlNode>> oakCameras(const YamlNode& root) {
+  std::vector<std::pair<std::string, YamlNode>> cameras;
+  if (!root.isMap() || !root.has("cameraData")) return cameras;
+  for (const YamlNode& pair : root["cameraData"].items()) {
+    const std::vector<YamlNode> parts = pair.items();
+    if (parts.size() != 2)
+      throw pair.error("must be a pair of a socket and its camera", "Give an OAK's own file");
+    if (!parts[1]["intrinsicMatrix"].items().empty())
+      cameras.emplace_back(fmt::format("cam{}", parts[0].integer(0, 1000)), parts[1]);
+  }
+  if (cameras.empty())
+    throw root["cameraData"].error("has no camera with intrinsics", "Give a calibration with a camera");
   return cameras;
 }
 
@@ -336,20 +367,53 @@ bool isLens(const YamlNode& root) {
 
 CameraIntrinsics readIntrinsics(const YamlNode& map) {
   if (!map.isMap()) throw map.error("must be a map of intrinsics", "Give model, focal_length_px, ...");
-  const CameraIntrinsics camera = map.has("polymorphic_name") ? readEkalibr(map)
-                                  : map.has("cameraData")     ? readOak(map)
+  const bool foreign = !map.has("focal_length_px");
+  const CameraIntrinsics camera = map.has("polymorphic_name")  ? readEkalibr(map)
+                                  : map.has("intrinsicMatrix") ? readOak(map)
                                   : map.has("camera_matrix") || map.has("K") || map.has("k")
                                       ? readCameraInfo(map)
                                   : map.has("camera_model") ? readKalibr(map)
                                                             : readOwn(map);
-  if (camera.resolution_px.known()) {
-    validate(camera, map.place());
-  } else {
-    CameraIntrinsics checked = camera;  // except the resolution, which the recording gives
-    checked.resolution_px = {kMostPixels, kMostPixels};
-    validate(checked, map.place());
-  }
+  if (foreign)
+    validateImported(camera, map.place());
+  else
+    validate(withAnySize(camera), map.place());
   return camera;
+}
+
+void validateImported(const CameraIntrinsics& camera, const std::string& place) {
+  validate(withAnySize(camera), place);
+  constexpr double kLeastFocal_px = 5.0, kMostFocal_px = 1e7;  // a telescope has less
+  const Eigen::Vector2d &focal = camera.focal_length_px, &centre = camera.principal_point_px;
+  for (const double each : {focal.x(), focal.y()})
+    if (!(each >= kLeastFocal_px && each <= kMostFocal_px))
+      throw badInput(place, fmt::format("the focal length of {:.3g} px is implausible", each),
+                     "Give it in pixels");
+  const Resolution size = camera.resolution_px;
+  if (centre.x() > 0.0 && centre.y() > 0.0 &&
+      (!size.known() || (centre.x() < size.width_px && centre.y() < size.height_px)))
+    return;
+  throw badInput(
+      place,
+      fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image{}", centre.x(), centre.y(),
+                  size.known() ? fmt::format(" of {} x {}", size.width_px, size.height_px) : ""),
+      "Check that the resolution and the intrinsics belong together");
+}
+
+std::array<double, 4> cameraMatrixNumbers(std::span<const double> k, const std::string& place) {
+  if (k.size() != 9) throw badInput(place, "is not a 3 x 3 matrix", "Give fx 0 cx, 0 fy cy, 0 0 1");
+  constexpr double kNone_px = 1e-3, kRounded = 1e-6;
+  if (std::abs(k[1]) > kNone_px)
+    throw badInput(place, fmt::format("has a skew of {:.4g} px, which is not supported", k[1]),
+                   "Calibrate this camera again without skew");
+  for (const std::size_t zero : {3U, 6U, 7U})
+    if (std::abs(k[zero]) > kRounded)
+      throw badInput(place, fmt::format("has {:.4g} below its diagonal, as if it were transposed", k[zero]),
+                     "Give fx 0 cx, 0 fy cy, 0 0 1, row by row");
+  if (std::abs(k[8] - 1.0) > kRounded)
+    throw badInput(place, fmt::format("has {:.4g} as its last number instead of 1", k[8]),
+                   "Divide the matrix by it, if it is a factor of all numbers");
+  return {k[0], k[4], k[2], k[5]};
 }
 
 CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std::string& camera_name,
@@ -360,11 +424,12 @@ CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std
 YamlNode loadIntrinsics(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 1 << 16;
   std::error_code ignored;
-  const bool small = std::filesystem::is_regular_file(file, ignored) &&
-                     std::filesystem::file_size(file, ignored) < kLargest_bytes;
-  std::ifstream stream(file);
   std::string text;
-  if (small) text.assign(std::istreambuf_iterator<char>(stream), {});
+  if (std::filesystem::is_regular_file(file, ignored) &&  // opening a pipe waits for its other end
+      std::filesystem::file_size(file, ignored) < kLargest_bytes) {
+    std::ifstream stream(file);
+    text.assign(std::istreambuf_iterator<char>(stream), {});
+  }
   const bool ost =
       text.find("[image]") != std::string::npos && text.find("camera matrix") != std::string::npos;
   return ost ? YamlNode::parse(cameraInfoOf(text), file.string()) : YamlNode::load(file);
@@ -397,14 +462,17 @@ KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std
   if (!root.isMap())
     throw root.error("has no camera intrinsics", "Give intrinsics in the format of Evical, Kalibr or ROS");
   if (root.has("evical_result")) {
-    const YamlNode camera = pickCamera(root["cameras"], camera_name, stream);
+    const YamlNode cameras = root["cameras"];
+    const YamlNode camera = pickCamera(cameras, named(cameras, cameras.keys()), camera_name, stream);
     KnownIntrinsics known = withSigmas(camera);
     const std::string name = camera.key().substr(camera.key().rfind('.') + 1);
     if (known.uncertainty)
       known.uncertainty->correlation = correlationInResult(root, name, 4 + distortionCount(known.camera));
     return known;
   }
-  if (!camchainCameras(root).empty()) return {readIntrinsics(pickCamera(root, camera_name, stream)), {}};
+  std::vector<std::pair<std::string, YamlNode>> cameras = named(root, camchainCameras(root));
+  if (cameras.empty()) cameras = oakCameras(root);
+  if (!cameras.empty()) return {readIntrinsics(pickCamera(root, cameras, camera_name, stream)), {}};
   if (root.has("Intrinsics")) return {readIntrinsics(root["Intrinsics"]), {}};
   if (root.has("intrinsics") && root["intrinsics"].isMap()) return withSigmas(root);
   return {readIntrinsics(root), {}};

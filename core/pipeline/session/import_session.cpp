@@ -4,7 +4,6 @@
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
-#include "core/geometry/camera_model.h"
 #include "core/pipeline/session/import_sources.h"
 
 #include <fmt/format.h>
@@ -70,23 +69,6 @@ struct ImportedIntrinsics {
   CameraIntrinsics intrinsics;
 };
 
-// Rejects implausible intrinsics: another unit, or another image size.
-void checkPlausible(const CameraIntrinsics& lens, const std::string& place) {
-  constexpr double kLeastFocal_px = 5.0;
-  const Eigen::Vector2d& centre = lens.principal_point_px;
-  if (lens.focal_length_px.minCoeff() < kLeastFocal_px)
-    throw badInput(
-        place, fmt::format("the focal length of {:.3g} px is implausible", lens.focal_length_px.minCoeff()),
-        "Give it in pixels");
-  const Resolution size = lens.resolution_px;
-  if (size.known() &&
-      !(centre.x() > 0.0 && centre.x() < size.width_px && centre.y() > 0.0 && centre.y() < size.height_px))
-    throw badInput(place,
-                   fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image of {} x {}",
-                               centre.x(), centre.y(), size.width_px, size.height_px),
-                   "Check that the resolution and the intrinsics belong together");
-}
-
 // Takes names from the file, if it has names that can be part of a path.
 void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
   const std::vector<ReadCamera>& found = file.read.cameras;
@@ -95,14 +77,8 @@ void addLenses(const LensFile& file, std::vector<ImportedIntrinsics>& cameras) {
     std::replace(name.begin(), name.end(), '/', '_');
     name.erase(0, std::min(name.find_first_not_of("_."), name.size()));
     if (name.empty()) name = found.size() > 1 ? fmt::format("cam{}", i) : file.read.path.stem().string();
-    CameraIntrinsics lens = *found[i].lens;
-    CameraIntrinsics checked = lens;
-    constexpr int kMost_px = 30000;  // if the file has no resolution, which the recording gives
-    if (!checked.resolution_px.known()) checked.resolution_px = {kMost_px, kMost_px};
-    const std::string place = fmt::format("{}: {}", file.read.path.string(), name);
-    validate(checked, place);
-    checkPlausible(lens, place);
-    cameras.push_back({name, lens});
+    validateImported(*found[i].lens, fmt::format("{}: {}", file.read.path.string(), name));
+    cameras.push_back({name, *found[i].lens});
   }
 }
 
@@ -130,7 +106,10 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
       addLenses(*source.lenses, cameras);
     } else if (source.kind == ImportKind::Intrinsics) {
       const std::string name = source.path.stem().string();
-      cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
+      const auto of_oak = oakCameras(source.root);
+      for (const auto& [socket, camera] : of_oak) cameras.push_back({socket, readIntrinsics(camera)});
+      if (of_oak.empty()) cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
+      if (of_oak.empty()) validateImported(cameras.back().intrinsics, source.path.string());
     } else {
       for (const std::string& key : camchainCameras(source.root))
         cameras.push_back({key, readIntrinsics(source.root[key])});
@@ -143,9 +122,17 @@ std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& so
 void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
   for (const ImportSource& source : sources) {
     if (source.kind == ImportKind::LensFile) noteLeftOut(*source.lenses, notes);
-    if (source.kind == ImportKind::Intrinsics)
+    if (source.kind == ImportKind::Intrinsics) {
       for (const std::string& note : leftOutOf(source.root))
         notes.push_back(fmt::format("{}: {}", source.path.filename().string(), note));
+      const auto of_oak = oakCameras(source.root);
+      for (const auto& [socket, camera] : of_oak)
+        for (const std::string& note : leftOutOf(camera))
+          notes.push_back(fmt::format("{}: {}", socket, note));
+      if (!of_oak.empty() && of_oak.size() < source.root["cameraData"].items().size())
+        notes.push_back(
+            fmt::format("{}: cameras without intrinsics are left out", source.path.filename().string()));
+    }
     if (source.kind != ImportKind::KalibrCamchain) continue;
     const std::vector<std::string> cameras = camchainCameras(source.root);
     for (const std::string& key : source.root.keys()) {

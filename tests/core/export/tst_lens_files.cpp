@@ -3,6 +3,7 @@
 #include "core/foreign/lens_files.h"
 #include "core/format/intrinsics_yaml.h"
 #include "tests/core/export/exported_rig.h"
+#include "tests/support/file_cost.h"
 #include "tests/support/test_program.h"
 
 #include <QFile>
@@ -275,6 +276,121 @@ class TestLensFiles : public QObject {
         lensesIn((data + "/formats/calibration/examples/" + file).toStdString());
     QCOMPARE(static_cast<int>(lenses.size()), cameras);
     if (fx > 0.0) QCOMPARE(lenses[0].focal_length_px.x(), fx);
+  }
+
+  // Files that would be misread, or that harm their reader.
+  void wrongFiles_areRefused_data() {
+    QTest::addColumn<QByteArray>("content");
+    QTest::addColumn<QString>("says");
+    const auto row = [](const char* name, const QByteArray& content, const char* says) {
+      QTest::newRow(name) << content << QString(says);
+    };
+    const auto opencv = [](const char* dt, const char* data, const char* rest = "") {
+      return QByteArray(
+                 "%YAML:1.0\n---\nimage_width: 346\nimage_height: 260\nK1: !!opencv-matrix\n   rows: 3\n   "
+                 "cols: 3\n") +
+             "   dt: " + dt + "\n   data: [ " + data + " ]\n" + rest +
+             "D1: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n";
+    };
+    const char* const kGood = "262.4, 0., 171.8, 0., 262.9, 131.2, 0., 0., 1.";
+    row("long dt", opencv(QByteArray(1000, 'f').constData(), kGood), "dt: is not a type of single numbers");
+    row("pairs", opencv("2d", kGood), "dt: is not a type of single numbers");
+    row("bytes", opencv("u", kGood), "262.4, which does not fit in whole numbers of the type u");
+    row("whole numbers", opencv("i", kGood), "262.4, which does not fit");
+    row("beyond a byte", opencv("u", "262, 0, 171, 0, 262, 131, 0, 0, 1"), "262, which does not fit");
+    row("beyond 32 bits", opencv("d", "4294967558, 0., 171.8, 0., 262.9, 131.2, 0., 0., 1."), "32 bits");
+    row("transposed", opencv("d", "262.4, 0., 0., 0., 262.9, 0., 171.8, 131.2, 1."),
+        "as if it were transposed");
+    row("scaled", opencv("d", "524.8, 0., 343.6, 0., 525.8, 262.4, 0., 0., 2."),
+        "2 as its last number instead of 1");
+    row("skew", opencv("d", "262.4, 1., 171.8, 0., 262.9, 131.2, 0., 0., 1."), "has a skew");
+    row("too few", opencv("d", "262.4, 0., 171.8, 0., 262.9, 131.2, 0., 0."), "has 8 numbers, 9 are needed");
+    row("not finite", opencv("d", "262.4, 0., .Inf, 0., 262.9, 131.2, 0., 0., 1."), "is not a finite number");
+    row("text", opencv("d", "262.4, 0., x, 0., 262.9, 131.2, 0., 0., 1."), "is not a number");
+    row("twice", opencv("d", kGood, "D1: 3\n"), "D1 .line 14.: occurs twice, first in line 10");
+    row("empty key", opencv("d", kGood, ": [ 1. ]\n"), "a key that is not a plain word");
+    row("second camera without distortion",
+        opencv("d", kGood, "K2: [ 262.4, 0, 170, 0, 262.9, 131, 0, 0, 1 ]\n"),
+        "K2: has no distortion: D2 is missing");
+    row("include", opencv("d", kGood, "xi1: !include other.yaml\n"), "tag !include, which is not read");
+    row("deep YAML", opencv("d", kGood, ("a: " + QByteArray(100'000, '[')).constData()), "nested too deeply");
+    const auto xml = [](const QByteArray& head, const QByteArray& inside) {
+      return "<?xml version=\"1.0\"?>\n" + head + "<opencv_storage>\n" + inside + "</opencv_storage>\n";
+    };
+    const QByteArray matrix =
+        "<K type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt><data>\n262.4 0. 171.8 0. 262.9 "
+        "131.2 "
+        "0. 0. 1.</data></K>\n";
+    row("XML, twice", xml("", matrix + matrix), "K .line 5.: occurs twice, first in line 3");
+    row("XML, entity of a file",
+        xml("<!DOCTYPE a [<!ENTITY b SYSTEM \"file:///etc/passwd\">]>\n", "<K>&b;</K>"),
+        "has a document type, which is not read");
+    row("XML, unknown entity", xml("", "<K>&b;</K>"), "has the entity &b;, which is not read");
+    row("XML, deep", xml("", QByteArray("<a>").repeated(100'000)), "is nested too deeply");
+    const QByteArray pose = "{\"px\":0,\"py\":0,\"pz\":0,\"qx\":0,\"qy\":0,\"qz\":0,\"qw\":1}";
+    const auto basalt = [&](const QByteArray& width, const QByteArray& more) {
+      return "{\"value0\": {\"T_imu_cam\": [" + pose + "],\n" + more +
+             "\"intrinsics\": [{\"camera_type\": \"pinhole\", \"intrinsics\": {\"fx\": 260, \"fy\": 260, "
+             "\"cx\": 170, \"cy\": 130}}],\n\"resolution\": [[" +
+             width + ", 260]]}}\n";
+    };
+    row("basalt, twice", basalt("346", "\"intrinsics\": [],\n"),
+        "line 3.: intrinsics occurs twice, first in line 2");
+    row("basalt, width", basalt("2147483648", ""), "must be a whole number of pixels");
+    row("JSON, deep", basalt("346", "\"a\": " + QByteArray(100'000, '[')), "is nested too deeply");
+    row("dv-processing, twice",
+        "{\"cameras\": {\"C0\": {\"focalLength\": [260, 260],\n\"focalLength\": [99, 99],\n"
+        "\"principalPoint\": [170, 130], \"distortionModel\": \"radialTangential\"}}}",
+        "focalLength occurs twice, first in line 1");
+    row("DSO, nine numbers",
+        "RadTan 512.5 513.5 320.25 240.25 -0.1 0.02 0.003 -0.004 7\n640 480\ncrop\n640 480\n",
+        "must have eight numbers");
+    row("eKalibr, twice",
+        "Intrinsics:\n  polymorphic_name: pinhole_brown_t2\n  ptr_wrapper:\n    data:\n      img_width: 346\n"
+        "      img_height: 260\n      focal_length: [99, 99]\n      focal_length: [262, 262]\n",
+        "focal_length .line 8.: occurs twice, first in line 7");
+  }
+  void wrongFiles_areRefused() {
+    QFETCH(QByteArray, content);
+    QFETCH(QString, says);
+    const FileCost cost = costOf([&] { return refusal("file", content).toStdString(); });
+    VERIFY_COST(cost, says);
+  }
+
+  void wholeNumbers_areRead() {
+    const QByteArray file =
+        "%YAML:1.0\n---\nimage_width: 346\nimage_height: 260\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   "
+        "cols: 3\n"
+        "   dt: i\n   data: [ 262, 0, 171, 0, 263, 131, 0, 0, 1 ]\ndistortion_coefficients: !!opencv-matrix\n"
+        "   rows: 1\n   cols: 5\n   dt: f\n   data: [ 1.0000000149011612e-01, 0., 0., 0., 0. ]\n";
+    const std::vector<CameraIntrinsics> lenses = lensesIn(write("whole.yml", file));
+    QCOMPARE(lenses.size(), std::size_t{1});
+    QCOMPARE(lenses[0].focal_length_px.y(), 263.0);
+    QCOMPARE(lenses[0].distortion[0], static_cast<double>(0.1F));
+  }
+
+  void largeFiles_costLittle_data() {
+    QTest::addColumn<QByteArray>("head");
+    QTest::addColumn<QByteArray>("part");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("YAML") << QByteArray("x: !!opencv-matrix\ny: [") << QByteArray("0,")
+                          << "too many for a YAML file";
+    QTest::newRow("JSON keys") << QByteArray("{\"value0\": {\"camera_type\": 1,") << QByteArray("\"%1\":1,")
+                               << "too many keys";
+    QTest::newRow("JSON lists") << QByteArray("{\"value0\": {\"camera_type\": [") << QByteArray("[],")
+                                << "too many values";
+    QTest::newRow("XML") << QByteArray("<opencv_storage>") << QByteArray("<a/>") << "too many elements";
+  }
+  void largeFiles_costLittle() {
+    QFETCH(QByteArray, head);
+    QFETCH(QByteArray, part);
+    QFETCH(QString, says);
+    constexpr int kLargest_bytes = 15'000'000;
+    QByteArray content = head;
+    for (int i = 0; content.size() < kLargest_bytes; ++i)
+      content += QByteArray(part).replace("%1", QByteArray::number(i));
+    const FileCost cost = costOf([&] { return refusal("large", content).toStdString(); });
+    VERIFY_COST(cost, says);
   }
 
   void lensesOfOtherKinds_areNamed() {

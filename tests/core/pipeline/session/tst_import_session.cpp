@@ -3,8 +3,11 @@
 #include "core/initialisation/initialisation_options.h"
 #include "core/pipeline/session/import_session.h"
 #include "core/recording/recording_writer.h"
+#include "tests/support/file_cost.h"
 #include "tests/support/test_program.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
 #include <QTemporaryDir>
 
 #include <fmt/format.h>
@@ -14,6 +17,7 @@
 #include <fstream>
 
 using namespace evical;
+using namespace evical::test;
 
 namespace {
 
@@ -103,6 +107,21 @@ std::filesystem::path writeBag(const std::filesystem::path& path, const std::vec
   return path;
 }
 
+std::string oakCamera(int type, const std::string& focal = "262.4", const std::string& centre = "171.8") {
+  return fmt::format(
+      R"({{"cameraType":{},"distortionCoeff":[0.05,0.01,-0.002,0.0003,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0.0],"extrinsics":{{}},)"
+      R"("height":260,"intrinsicMatrix":[[{},0.0,{}],[0.0,262.9,131.2],[0.0,0.0,1.0]],"width":346}})",
+      type, focal, centre);
+}
+
+// The key of an OAK's file with its cameras.
+std::string oakData(const std::vector<std::string>& cameras) {
+  std::string text;
+  for (std::size_t i = 0; i < cameras.size(); ++i)
+    text += fmt::format("{}[{},{}]", i == 0 ? "" : ",", i, cameras[i]);
+  return "\"cameraData\":[" + text + "]";
+}
+
 bool has(const std::vector<std::string>& notes, const char* text) {
   return std::any_of(notes.begin(), notes.end(),
                      [&](const std::string& note) { return note.find(text) != std::string::npos; });
@@ -161,6 +180,146 @@ class TestImportSession : public QObject {
         importFiles({{write("camchain.yaml", chain)}, "", {}, std::nullopt}, "lens.yaml");
     QCOMPARE(imported.files.size(), std::size_t{1});
     QVERIFY(imported.files[0].content.find("pinhole_equidistant") != std::string::npos);
+  }
+
+  void camchainWithoutTheLineOfCam0_isRefused() {
+    std::string second = kCamchain;
+    second.replace(second.find("cam0"), 4, "cam1");
+    const std::string lines = "camera_model: pinhole\nintrinsics: [260, 261, 171, 132]\n";
+    const ImportRequest request{{write("camchain.yaml", lines + second)}, "", {}, std::nullopt};
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, importFiles(request, "lens.yaml"));
+  }
+
+  // Codes of depthai: Perspective, Fisheye, Equirectangular, RadialDivision.
+  void typesOfAnOak_areTheMakers_data() {
+    QTest::addColumn<int>("type");
+    QTest::addColumn<QString>("model");
+    QTest::newRow("Perspective") << 0 << "pinhole_radtan";
+    QTest::newRow("Fisheye") << 1 << "pinhole_equidistant";
+    QTest::newRow("Equirectangular") << 2 << "is 2 (Equirectangular), a lens model that is not supported";
+    QTest::newRow("RadialDivision") << 3 << "is 3 (RadialDivision), a lens model that is not supported";
+    QTest::newRow("unknown") << 4 << "above the maximum of 3";
+  }
+  void typesOfAnOak_areTheMakers() {
+    QFETCH(int, type);
+    QFETCH(QString, model);
+    const ImportRequest request{
+        {write("oak.json", "{" + oakData({oakCamera(type)}) + "}")}, "", {}, std::nullopt};
+    QString said;
+    try {
+      said = QString::fromStdString(importFiles(request, "lens.yaml").files.at(0).content);
+    } catch (const CalibrationError& error) {
+      said = error.what();
+    }
+    QVERIFY2(said.contains(model), qPrintable(said));
+  }
+
+  void eachCameraOfAnOak_isImported() {
+    const std::string off =
+        "{\"cameraType\":0,\"distortionCoeff\":[],\"intrinsicMatrix\":[],\"width\":0,\"height\":0}";
+    const std::filesystem::path file =
+        write("oak.json", "{\"boardName\":\"B\"," + oakData({oakCamera(0), oakCamera(1), off}) + "}");
+    const ImportedFiles imported = importFiles({{file}, "", {}, std::nullopt}, "lens.yaml");
+    QCOMPARE(imported.files.size(), std::size_t{2});
+    QCOMPARE(imported.files[1].path, std::filesystem::path("lens-cam1.yaml"));
+    QVERIFY(imported.files[1].content.find("pinhole_equidistant") != std::string::npos);
+    QVERIFY(has(imported.notes, "cam1: left out: extrinsics"));
+    QVERIFY(has(imported.notes, "oak.json: left out: boardName"));
+    QVERIFY(has(imported.notes, "cameras without intrinsics are left out"));
+    QVERIFY(readIntrinsicsFile(file, "cam1", "").model == CameraModel::PinholeEquidistant);
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, readIntrinsicsFile(file, "left", ""));
+  }
+
+  // Of each layout that is read as YAML; those of others are rows of tst_lens_files.
+  void implausibleLenses_areRefused_data() {
+    QTest::addColumn<QString>("content");
+    const char* const kRos =
+        "image_width: 346\nimage_height: 260\ndistortion_model: plumb_bob\ncamera_matrix: {rows: 3, cols: 3, "
+        "data: [%1, 0, "
+        "%2, 0, %1, 131, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n";
+    const char* const kKalibr =
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [%1, %1, %2, 131]\n  distortion_model: radtan\n"
+        "  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [346, 260]\n";
+    const char* const kEuroc =
+        "camera_model: pinhole\nintrinsics: [%1, %1, %2, 131]\ndistortion_model: radial-tangential\n"
+        "distortion_coefficients: [0, 0, 0, 0]\nresolution: [346, 260]\n";
+    const char* const kOst =
+        "[image]\nwidth\n346\nheight\n260\n[narrow_stereo]\ncamera matrix\n%1 0 %2\n0 %1 131\n0 0 "
+        "1\ndistortion\n"
+        "0 0 0 0 0\nprojection\n260 0 171 0\n0 260 131 0\n0 0 1 0\n";
+    QString ekalibr = kEkalibrLens;
+    ekalibr.replace("260.5, 261", "%1, %1").replace("171", "%2");
+    const char* const kOwn =
+        "model: pinhole_radtan\nresolution_px: [346, 260]\nfocal_length_px: [%1, %1]\nprincipal_point_px: "
+        "[%2, 131]\n"
+        "distortion: [0, 0, 0, 0, 0]\n";
+    for (const auto& [name, text] :
+         {std::pair{"ROS", QString(kRos)}, std::pair{"Kalibr", QString(kKalibr)},
+          std::pair{"EuRoC", QString(kEuroc)}, std::pair{"ost.txt", QString(kOst)},
+          std::pair{"eKalibr", ekalibr}, std::pair{"Evical", QString(kOwn)},
+          std::pair{"OAK", QString::fromStdString("{" + oakData({oakCamera(0, "%1", "%2")}) + "}")}}) {
+      const auto with = [&](const char* focal, const char* centre) {
+        return QString(text).replace("%1", focal).replace("%2", centre);
+      };
+      importFiles({{write("good.yaml", with("260.5", "171").toStdString())}, "", {}, std::nullopt},
+                  "lens.yaml");
+      for (const auto& [focal, centre] :
+           {std::pair{"1e20", "171"}, std::pair{"1", "171"}, std::pair{"260.5", "-1"}})
+        QTest::newRow(qPrintable(QString("%1, %2, %3").arg(name, focal, centre))) << with(focal, centre);
+    }
+  }
+  void implausibleLenses_areRefused() {
+    QFETCH(QString, content);
+    const ImportRequest request{{write("bad.yaml", content.toStdString())}, "", {}, std::nullopt};
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, importFiles(request, "lens.yaml"));
+  }
+
+  void pipes_areRefusedWithoutWaiting() {
+    const std::filesystem::path pipe = std::filesystem::path(scratch_.path().toStdString()) / "pipe.yaml";
+    std::filesystem::remove(pipe);
+    QCOMPARE(::mkfifo(pipe.c_str(), 0600), 0);
+    const FileCost cost = costOf([&] {
+      ::alarm(5);  // ends a reader that waits
+      return importFiles({{pipe}, "", {}, std::nullopt}, "lens.yaml").notes.front();
+    });
+    VERIFY_COST(cost, "is a device or a pipe");
+    const FileCost of_session = costOf([&] {
+      ::alarm(5);
+      readIntrinsicsFile(pipe, "left", "");
+      return std::string("read");
+    });
+    VERIFY_COST(of_session, "is a device or a pipe");
+  }
+
+  // Files of an attack on imports; each was read wrong, or stopped the program.
+  void collectedFiles_areReadRightOrRefused_data() {
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<QString>("says");
+    for (const auto& [file, says] :
+         {std::pair{"cvdt2.yaml", "dt: is not a type"}, std::pair{"nodata.yaml", "not a plain word"},
+          std::pair{"oak1.json", "pinhole_equidistant"},
+          std::pair{"oaktwo.json", "^lens-cam0.yaml lens-cam1.yaml "}, std::pair{"cvu8.yaml", "does not fit"},
+          std::pair{"cvscaled.yaml", "2 as its last number"},
+          std::pair{"cvdup.xml", "occurs twice, first in line 4"},
+          std::pair{"dupek.yaml", "occurs twice, first in line 11"},
+          std::pair{"dupbas.json", "occurs twice, first in line 7"}})
+      QTest::newRow(file) << QString(file) << QString(says);
+  }
+  void collectedFiles_areReadRightOrRefused() {
+    const QString data = qEnvironmentVariable("EVICAL_DATA");
+    if (data.isEmpty()) QSKIP("EVICAL_DATA is not set");
+    QFETCH(QString, file);
+    QFETCH(QString, says);
+    const FileCost cost = costOf([&] {
+      const std::filesystem::path path = (data + "/reports/imports/" + file).toStdString();
+      std::string said, content;
+      for (const FileContent& each : importFiles({{path}, "", {}, std::nullopt}, "lens.yaml").files) {
+        said += each.path.string() + " ";
+        content += each.content;
+      }
+      return said + content;
+    });
+    VERIFY_COST(cost, says);
   }
 
   // Without a Kalibr run there is no camchain.
