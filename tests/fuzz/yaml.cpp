@@ -1,8 +1,8 @@
-// Readers of text files, all with the same bytes: sessions, intrinsics, other programs' lenses, results,
+// Readers of text files, all with the same bytes: sessions, intrinsics, imports of other programs' files, results,
 // scenarios with their boards.
 #include "core/base/error.h"
-#include "core/foreign/lens_files.h"
 #include "core/format/intrinsics_yaml.h"
+#include "core/pipeline/session/import_session.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     evical::sessionYaml(session, path.parent_path());
   });
   mayFail([&] { evical::readIntrinsicsFile(path, "left", "events"); });
-  mayFail([&] { evical::readLensFile(path); });
+  mayFail([&] { evical::importFiles({{path}, "", {}, {}}, path.parent_path() / "imported.yaml"); });
   mayFail([&] { evical::readResultYaml(path); });
   mayFail([&] {
     const evical::Scenario scenario = evical::readScenario(path);
