@@ -156,6 +156,37 @@ Resolution pictureSize(std::string_view bytes) {
   return can_be ? size_px : Resolution{};
 }
 
+std::vector<std::uint8_t> pngPixels(std::string_view png) {
+  constexpr std::size_t kMagic_bytes = 8, kLength_bytes = 4, kAround_bytes = 12;  // length, type and checksum
+  constexpr std::array<std::string_view, 5> kNeeded = {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"};
+  const Bytes bytes = bytesOf(png);
+  std::vector<std::uint8_t> kept;
+  std::size_t at = kMagic_bytes;
+  const auto keep = [&](std::size_t from, std::size_t count) {
+    const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(from);
+    kept.insert(kept.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  keep(0, kMagic_bytes);
+  while (at < bytes.size()) {
+    if (!has(bytes, at, kAround_bytes)) return {};
+    const std::size_t whole = kAround_bytes + bigEndian(bytes, at, kLength_bytes);
+    if (!has(bytes, at, whole)) return {};
+    const std::string_view type = png.substr(at + kLength_bytes, 4);
+    if (std::find(kNeeded.begin(), kNeeded.end(), type) != kNeeded.end()) keep(at, whole);
+    if (type == "IEND") break;
+    at += whole;
+  }
+  return kept;
+}
+
+std::size_t jpegScans(std::string_view jpeg) {
+  constexpr std::string_view kScan = "\xFF\xDA";
+  std::size_t scans = 0;
+  for (std::size_t at = jpeg.find(kScan); at != std::string_view::npos; at = jpeg.find(kScan, at + 2))
+    ++scans;
+  return scans;
+}
+
 bool isTruncatedJpeg(std::string_view text) {
   if (pictureKind(text) != PictureKind::Jpeg) return false;
   const Bytes bytes = bytesOf(text);

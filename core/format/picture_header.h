@@ -4,8 +4,11 @@
 
 #include "core/geometry/resolution.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace evical {
 
@@ -18,6 +21,12 @@ std::optional<Resolution> claimedPictureSize(std::string_view bytes);
 
 // Plausible size in the header: unknown if it is 0 or more than 65536 per side.
 Resolution pictureSize(std::string_view bytes);
+
+// The parts of a PNG that its pixels need: texts and profiles can claim, or unpack to, gigabytes. Empty if a part is cut off.
+std::vector<std::uint8_t> pngPixels(std::string_view png);
+
+// Times that a JPEG's pixels are refined; each one takes as long as decoding a picture.
+std::size_t jpegScans(std::string_view jpeg);
 
 // A JPEG without its end, which decoders fill with grey.
 bool isTruncatedJpeg(std::string_view bytes);

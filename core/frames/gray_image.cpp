@@ -20,6 +20,9 @@ namespace evical {
 namespace {
 
 constexpr std::int64_t kMostPixels = 200'000'000;  // larger than any sensor
+constexpr std::int64_t kFewPixels = 20'000'000;    // of a picture that may be as even as it likes
+constexpr std::int64_t kMostPixelsOfByte = 100;    // of a larger one
+constexpr std::size_t kMostScans = 100;            // real ones have up to 15
 constexpr double kWhitePart = 0.995;
 
 struct Layout {
@@ -54,8 +57,8 @@ Layout layoutOf(FrameFormat format) {
   }
 }
 
-void refuseAbsurdSize(const Resolution& size, const std::string& place) {
-  if (size.known() && std::int64_t{size.width_px} * size.height_px <= kMostPixels) return;
+void refuseAbsurdSize(const Resolution& size, std::int64_t most_pixels, const std::string& place) {
+  if (size.known() && std::int64_t{size.width_px} * size.height_px <= most_pixels) return;
   throw badInput(
       place,
       fmt::format("claims a size of {} x {} pixels, which is implausible", size.width_px, size.height_px),
@@ -83,7 +86,7 @@ void swapBytes(cv::Mat& sixteen) {
 }
 
 cv::Mat rawPixels(const Frame& frame, const std::string& place) {
-  refuseAbsurdSize(frame.size_px, place);
+  refuseAbsurdSize(frame.size_px, kMostPixels, place);
   const Layout layout = layoutOf(frame.format);
   const auto width = static_cast<std::size_t>(frame.size_px.width_px);
   const auto height = static_cast<std::size_t>(frame.size_px.height_px);
@@ -110,12 +113,20 @@ cv::Mat decoded(const Frame& frame, const std::string& place) {
   if (!claimed_px)
     throw badInput(place, "is not a JPEG, PNG, PGM, TIFF or BMP picture, or is truncated in its header",
                    "Save it as PNG, or remove it");
-  refuseAbsurdSize(*claimed_px, place);
+  refuseAbsurdSize(*claimed_px, std::clamp(kMostPixelsOfByte * std::ssize(bytes), kFewPixels, kMostPixels),
+                   place);
+  const PictureKind kind = pictureKind(bytes);
+  if (kind == PictureKind::Jpeg && jpegScans(bytes) > kMostScans)
+    throw badInput(place, fmt::format("has {} scans, too many for a picture", jpegScans(bytes)),
+                   "Save it again, or remove it");
   cv::Mat picture;
-  if (!isTruncatedJpeg(bytes)) {
+  const std::vector<std::uint8_t> png =
+      kind == PictureKind::Png ? pngPixels(bytes) : std::vector<std::uint8_t>{};
+  const std::vector<std::uint8_t>& pixels = kind == PictureKind::Png ? png : frame.bytes;
+  if (!isTruncatedJpeg(bytes) && !pixels.empty()) {
     try {
-      picture = cv::imdecode(frame.bytes,
-                             cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+      picture =
+          cv::imdecode(pixels, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) {
       picture.release();  // reported below
     }

@@ -22,6 +22,11 @@ std::string fileContent(const std::filesystem::path& path, std::uintmax_t most) 
   return bytes;
 }
 
+// False for a name in a table that leads to another folder: the table can come from anybody.
+bool isBelow(const std::filesystem::path& name) {
+  return name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
+}
+
 // Size of the first existing picture.
 Resolution firstPictureSize(const pictures::PictureList& list) {
   constexpr std::size_t kMostTried = 10;
@@ -29,7 +34,7 @@ Resolution firstPictureSize(const pictures::PictureList& list) {
   for (std::size_t i = 0; i < std::min(list.pictures.size(), kMostTried); ++i) {
     const std::filesystem::path path = list.folder / list.pictures[i].name;
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) continue;
+    if (!isBelow(list.pictures[i].name) || !std::filesystem::is_regular_file(path, ignored)) continue;
     const Resolution size_px = pictureSize(fileContent(path, kHead_bytes));
     if (size_px.known()) return size_px;
   }
@@ -75,6 +80,11 @@ bool PictureReader::read(Packet& packet) {
 }
 
 bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, Frame& frame) {
+  if (!isBelow(picture.name)) {
+    addFault(stream, FaultKind::Unreadable,
+             fmt::format("{} is outside of the folder; it is left out.", picture.name));
+    return false;
+  }
   const std::filesystem::path path = sources_[stream].list.folder / picture.name;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {

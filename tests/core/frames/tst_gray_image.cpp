@@ -2,18 +2,25 @@
 #include "core/base/error.h"
 #include "core/format/picture_header.h"
 #include "core/frames/gray_image.h"
+#include "tests/support/file_cost.h"
 #include "tests/support/test_program.h"
 
+#include <QRegularExpression>
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
 namespace {
 
 using namespace evical;
+using namespace evical::test;
 
 using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::array<std::uint8_t, 2> kScan = {0xFF, 0xDA};
 
 Frame rawFrame(FrameFormat format, Resolution size, Bytes bytes) {
   Frame frame;
@@ -72,6 +79,9 @@ class TestGrayImage : public QObject {
   void cutOff_isRefused_data();
   void cutOff_isRefused();
   void absurdSize_isRefused_data();
+  void bombs_costLittle_data();
+  void bombs_costLittle();
+  void textsOfAPng_areLeftOut();
   void absurdSize_isRefused();
   void otherSizeThanAnnounced_isRefused();
   void rawFrameWithTooFewBytes_isRefused_data();
@@ -244,6 +254,41 @@ void TestGrayImage::rawFrameWithTooFewBytes_isRefused() {
   QFETCH(const int, bytes);
   const Frame frame = rawFrame(format, {10, 10}, Bytes(static_cast<std::size_t>(bytes)));
   QVERIFY(QString::fromStdString(refusalOf(frame)).contains("truncated"));
+}
+
+void TestGrayImage::bombs_costLittle_data() {
+  QTest::addColumn<Frame>("frame");
+  QTest::addColumn<QString>("says");
+  QTest::newRow("PNG, one shade") << encodedFrame(
+                                         encoded(".png", cv::Mat(12000, 12000, CV_8UC1, cv::Scalar(0))))
+                                  << "12000 x 12000 pixels, which is implausible";
+  Bytes text = encoded(".png", ramp(40, 30));
+  const Bytes chunk = {0x7F, 0xFF, 0xFF, 0xFF, 't', 'E', 'X', 't', 'a', 0, 0, 0, 0, 0};
+  text.insert(text.begin() + 33, chunk.begin(), chunk.end());
+  QTest::newRow("PNG, text of 2 GB") << encodedFrame(text) << "damaged or truncated";
+  cv::Mat noise(4000, 4000, CV_8UC1);
+  cv::randu(noise, 0, 255);
+  Bytes jpeg;
+  cv::imencode(".jpg", noise, jpeg, {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_QUALITY, 5});
+  const auto last = std::find_end(jpeg.begin(), jpeg.end(), kScan.begin(), kScan.end());
+  const Bytes scan(last, jpeg.end() - 2);
+  for (int k = 0; k < 200; ++k) jpeg.insert(jpeg.end() - 2, scan.begin(), scan.begin() + 40);
+  QTest::newRow("JPEG, scans") << encodedFrame(jpeg) << "has 2\\d\\d scans, too many for a picture";
+}
+
+void TestGrayImage::bombs_costLittle() {
+  QFETCH(const Frame, frame);
+  QFETCH(const QString, says);
+  const FileCost cost = costOf([&] { return refusalOf(frame); });
+  VERIFY_COST(cost, says);
+}
+
+void TestGrayImage::textsOfAPng_areLeftOut() {
+  Bytes png = encoded(".png", ramp(40, 30));
+  const Bytes chunk = {0, 0, 0, 2, 't', 'E', 'X', 't', 'a', 0, 1, 2, 3, 4};  // of a wrong checksum
+  png.insert(png.begin() + 33, chunk.begin(), chunk.end());
+  const GrayImage image = decodeFrame(encodedFrame(png), "frame 7");
+  QVERIFY(image.pixels == decodeFrame(encodedFrame(encoded(".png", ramp(40, 30))), "frame 7").pixels);
 }
 
 // Any changed byte results in an image of the right size or a refusal, never anything else.
