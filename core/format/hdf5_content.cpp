@@ -158,6 +158,10 @@ std::vector<Number> numbersOf(hid_t dataset, hid_t own, std::size_t size, const 
 
 Hdf5Dataset datasetOf(hid_t dataset, const std::string& path, const std::string& place) {
   const Handle type = held(H5Dget_type(dataset), H5Tclose), space = held(H5Dget_space(dataset), H5Sclose);
+  const Handle creation = held(H5Dget_create_plist(dataset), H5Pclose);
+  if (H5Pget_layout(*creation) == H5D_VIRTUAL || H5Pget_external_count(*creation) > 0)
+    throw badInput(place, "is kept in another file, which is not opened");
+  if (H5Pget_nfilters(*creation) > 0) throw badInput(place, "is packed, which Evical does not do");
   constexpr int kMostDimensions = 8;
   const int dimensions = H5Sget_simple_extent_ndims(*space);
   if (dimensions < 0 || dimensions > kMostDimensions) throw badInput(place, "has no shape");
@@ -204,6 +208,7 @@ class OpenedFile {
 
   std::optional<Hdf5Dataset> dataset(const std::string& path) const {
     const InLibrary library;
+    if (hasLink(path)) throw badInput(file_ + ": " + path, "is a link, which is not followed");
     const hid_t dataset = H5Dopen2(*handle_, path.c_str(), H5P_DEFAULT);
     if (dataset < 0) return std::nullopt;
     const Handle held_dataset = held(dataset, H5Dclose);
@@ -211,6 +216,17 @@ class OpenedFile {
   }
 
  private:
+  // True if a part of the path is a link, which may lead to another file.
+  bool hasLink(const std::string& path) const {
+    for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+      H5L_info_t link{};
+      const std::string part = path.substr(0, end);
+      if (H5Lget_info(*handle_, part.c_str(), &link, H5P_DEFAULT) < 0) return false;
+      if (link.type != H5L_TYPE_HARD) return true;
+      if (end == std::string::npos) return false;
+    }
+  }
+
   std::string file_;
   Handle handle_;
 };

@@ -54,6 +54,7 @@ enum class Silence { Awaited, Limited };
 enum class Heard { All, Closed, Silent, Stopped };
 
 thread_local std::stop_token stop_of_waits;
+bool is_reader_process = false;
 
 // Waits in short pieces, and ignores pieces that took much longer than requested: the program was stopped
 // (Ctrl-Z).
@@ -281,7 +282,12 @@ pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path
 
 }  // namespace
 
+bool isReaderProcess() {
+  return is_reader_process;
+}
+
 void serveReader(int socket, const SeparateReader::Open& open) {
+  is_reader_process = true;
   beQuiet();
   const auto attempt = [&](const auto& work) {
     try {

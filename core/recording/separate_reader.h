@@ -84,4 +84,7 @@ class SeparateReader : public RecordingReader {
 // In the other process: answers requests until the socket is closed, then exits.
 [[noreturn]] void serveReader(int socket, const SeparateReader::Open& open);
 
+// True in the process of serveReader.
+bool isReaderProcess();
+
 }  // namespace evical

@@ -2,11 +2,15 @@
 
 #include "core/base/error.h"
 #include "core/recording/hdf5/hdf5_filters.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <set>
+#include <utility>
 
 namespace evical::hdf5 {
 namespace {
@@ -16,17 +20,23 @@ constexpr std::uint64_t kLeastBlock_rows = 65'536, kLargestBlock_rows = 1 << 20;
 constexpr std::size_t kLeastCache_bytes = std::size_t{1} << 20, kLargestCache_bytes = std::size_t{1} << 28;
 constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 30;
 
-struct Walk {
-  hid_t file;
-  DatasetList found;
-};
+std::uint64_t bytesOfFile(hid_t file) {
+  hsize_t bytes = 0;
+  H5Fget_filesize(file, &bytes);
+  return bytes;
+}
 
-bool describe(hid_t file, const char* path, DatasetInfo& info) {
+enum class Described { Good, Damaged, Elsewhere };
+
+Described describe(hid_t file, const char* path, DatasetInfo& info) {
   const Handle dataset(H5Dopen2(file, path, H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid()) return false;
+  if (!dataset.valid()) return Described::Damaged;
   const Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
   const int rank = space.valid() ? H5Sget_simple_extent_ndims(space) : -1;
-  if (rank < 0 || !type.valid()) return false;
+  if (rank < 0 || !type.valid()) return Described::Damaged;
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  if (H5Pget_layout(creation) == H5D_VIRTUAL || H5Pget_external_count(creation) > 0)
+    return Described::Elsewhere;
   info.path = path;
   info.type_class = H5Tget_class(type);
   std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
@@ -38,37 +48,90 @@ bool describe(hid_t file, const char* path, DatasetInfo& info) {
     if (name) info.members.emplace_back(name);
     H5free_memory(name);
   }
-  return true;
+  return Described::Good;
 }
 
-// Version 2 of H5Ovisit: HDF5 1.12 gave its name to another function.
+// HDF5 1.12 gave the names of these functions to others.
 #if H5_VERSION_GE(1, 12, 0)
+using LinkInfo = H5L_info1_t;
+const auto iterateLinks = H5Literate1;
 using ObjectInfo = H5O_info1_t;
 #else
+using LinkInfo = H5L_info_t;
+const auto iterateLinks = H5Literate;
 using ObjectInfo = H5O_info_t;
 #endif
 
-herr_t visit(hid_t, const char* path, const ObjectInfo* object, void* data) {
-  Walk& walk = *static_cast<Walk*>(data);
-  const bool is_dataset = object->type == H5O_TYPE_DATASET, is_unknown = object->type == H5O_TYPE_UNKNOWN;
-  if (!is_dataset && !is_unknown) return 0;
-  if (walk.found.datasets.size() + walk.found.damaged.size() >= kMostDatasets) return 1;
-  DatasetInfo info;
-  if (is_dataset && describe(walk.file, path, info)) {
-    walk.found.datasets.push_back(std::move(info));
-  } else {
-    walk.found.damaged.emplace_back(path);
+// Visits all objects once. The library's own visits take a time that grows with the square of the depth, and name no links to
+// other files.
+class Walk {
+ public:
+  explicit Walk(hid_t file) : file_(file) {}
+
+  bool run() { return below(file_, ""); }
+  DatasetList found;
+  bool too_deep = false;
+
+ private:
+  static constexpr int kDeepest = 32;
+
+  bool below(hid_t group, const std::string& folder) {
+    if (depth_ == kDeepest) {
+      too_deep = true;
+      return false;
+    }
+    ++depth_;
+    const std::string above = std::exchange(folder_, folder);
+    const bool good = iterateLinks(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, this) >= 0;
+    folder_ = above;
+    --depth_;
+    return good;
   }
-  return 0;
-}
+
+  static herr_t visit(hid_t group, const char* name, const LinkInfo* link, void* walk) {
+    return static_cast<Walk*>(walk)->link(group, name, *link);
+  }
+
+  herr_t link(hid_t group, const char* name, const LinkInfo& link) {
+    const std::string path = folder_ + name;
+    if (link.type == H5L_TYPE_EXTERNAL) found.elsewhere.push_back(path);
+    if (link.type != H5L_TYPE_HARD) return 0;
+    ObjectInfo object;
+    if (H5Oget_info_by_name2(group, name, &object, H5O_INFO_BASIC, H5P_DEFAULT) < 0) {
+      found.damaged.push_back(path);
+      return 0;
+    }
+    if (!visited_.insert(object.addr).second) return 0;
+    if (object.type == H5O_TYPE_GROUP) {
+      const Handle inner(H5Gopen2(group, name, H5P_DEFAULT), H5Gclose);
+      return inner.valid() && below(inner, path + "/") ? 0 : -1;
+    }
+    if (object.type == H5O_TYPE_DATASET || object.type == H5O_TYPE_UNKNOWN) addObject(path, object.type);
+    return found.datasets.size() + found.damaged.size() >= kMostDatasets ? 1 : 0;
+  }
+
+  void addObject(const std::string& path, H5O_type_t type) {
+    DatasetInfo info;
+    const Described how = type == H5O_TYPE_DATASET ? describe(file_, path.c_str(), info) : Described::Damaged;
+    if (how == Described::Good)
+      found.datasets.push_back(std::move(info));
+    else
+      (how == Described::Damaged ? found.damaged : found.elsewhere).push_back(path);
+  }
+
+  hid_t file_;
+  int depth_ = 0;
+  std::string folder_;
+  std::set<haddr_t> visited_;
+};
 
 }  // namespace
 
 DatasetList listDatasets(hid_t file, const std::string& place) {
-  Walk walk{file, {}};
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0) {
-    throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
-  }
+  Walk walk(file);
+  const bool good = walk.run();
+  if (walk.too_deep) throw badInput(place, "the HDF5 file's groups are nested too deeply for a recording");
+  if (!good) throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
   return std::move(walk.found);
 }
 
@@ -87,6 +150,18 @@ void requireFilters(hid_t creation, const std::string& place, const std::string&
   }
 }
 
+void requirePlausibleRows(hid_t file, std::uint64_t rows, std::uint64_t row_bytes, const std::string& place) {
+  std::uint64_t all_bytes = 0;
+  if (__builtin_mul_overflow(rows, row_bytes, &all_bytes))
+    all_bytes = std::numeric_limits<std::uint64_t>::max();
+  UnpackingLimit(place, bytesOfFile(file)).add(all_bytes);
+}
+
+std::uint64_t memoryForChunks(std::uint64_t chunk_bytes) {
+  constexpr std::uint64_t kOwn_bytes = std::uint64_t{1} << 27;
+  return kOwn_bytes + 6 * chunk_bytes;
+}
+
 DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place)
     : path_(info.path), is_table_(info.extent.size() == 2) {
   if (info.extent.empty() || info.extent.size() > 2)
@@ -97,7 +172,7 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
   row_bytes_ = H5Tget_size(memory_type_) * columns_;
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset_.valid()) throw badInput(place, fmt::format("{} cannot be opened: {}", path_, lastProblem()));
-  readChunkLayout(place);
+  readChunkLayout(place, bytesOfFile(file));
   const Handle type(H5Dget_type(dataset_), H5Tclose);
   H5T_cdata_t* conversion = nullptr;
   if (!H5Tfind(type, memory_type_, &conversion)) {
@@ -107,6 +182,7 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
     throw badInput(place, fmt::format("{} states {} rows, but stores none", path_, rows_),
                    "Record again: the recording was not finished");
   }
+  requirePlausibleRows(file, rows_, columns_ * H5Tget_size(type), place + ": " + path_);
   if (storesTooLittle()) {
     throw badInput(
         place,
@@ -128,7 +204,7 @@ bool DatasetRows::storesTooLittle() const {
   return element_bytes == 0 || (columns_ > 0 && rows_ > stored_bytes / element_bytes / columns_);
 }
 
-void DatasetRows::readChunkLayout(const std::string& place) {
+void DatasetRows::readChunkLayout(const std::string& place, std::uint64_t file_bytes) {
   const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
   const Handle type(H5Dget_type(dataset_), H5Tclose);
   requireFilters(creation, place, path_);
@@ -137,7 +213,8 @@ void DatasetRows::readChunkLayout(const std::string& place) {
   std::array<hsize_t, 2> chunk{1, 1};
   const int rank = H5Pget_chunk(creation, 2, chunk.data());
   chunk_bytes_ = H5Tget_size(type) * chunk[0] * (rank == 2 ? chunk[1] : 1);
-  if (chunk[0] == 0 || chunk_bytes_ > kLargestChunk_bytes) {
+  const std::uint64_t largest = std::min(kLargestChunk_bytes, UnpackingLimit::ofPart(file_bytes));
+  if (chunk[0] == 0 || chunk_bytes_ > largest) {
     throw badInput(place, fmt::format("the chunks of {} are too large: {} bytes", path_, chunk_bytes_));
   }
   const std::uint64_t chunks = (kLeastBlock_rows + chunk[0] - 1) / chunk[0];
@@ -165,6 +242,7 @@ void DatasetRows::load(std::uint64_t row) {
   block_begin_ = row;
   block_.resize(static_cast<std::size_t>(count) * row_bytes_);
   const ExpectedChunk expected(chunk_bytes_);
+  const MemoryLimit limit(memoryForChunks(chunk_bytes_));
   is_loaded_ =
       H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) >= 0 &&
       H5Dread(dataset_, memory_type_, memory_space, file_space, H5P_DEFAULT, block_.data()) >= 0;

@@ -25,13 +25,22 @@ struct DatasetInfo {
 struct DatasetList {
   std::vector<DatasetInfo> datasets;
   std::vector<std::string> damaged;  // paths of objects whose kind or description cannot be read
+  std::vector<std::string>
+      elsewhere;  // paths of datasets and links whose content is in other files, which are not opened
 };
 
-// All datasets; throws CalibrationError (BadInput) if the file's tree is damaged.
+// All datasets; throws CalibrationError (BadInput) if the file's tree is damaged or too deep.
 DatasetList listDatasets(hid_t file, const std::string& place);
 
 // Throws CalibrationError (BadInput) if a filter of a dataset's creation properties is not installed.
 void requireFilters(hid_t creation, const std::string& place, const std::string& path);
+
+// Missing and shared chunks make a table of any length out of a small file. Throws CalibrationError (BadInput) if a file
+// cannot have these rows.
+void requirePlausibleRows(hid_t file, std::uint64_t rows, std::uint64_t row_bytes, const std::string& place);
+
+// For a filter's input and output, the cache, and the library's own needs.
+std::uint64_t memoryForChunks(std::uint64_t chunk_bytes);
 
 // Rows of one column (a list) or several (a table of rank 2), converted by HDF5 to `memory_type`.
 class DatasetRows {
@@ -50,7 +59,7 @@ class DatasetRows {
 
  private:
   bool storesTooLittle() const;
-  void readChunkLayout(const std::string& place);
+  void readChunkLayout(const std::string& place, std::uint64_t file_bytes);
   void load(std::uint64_t row);
   std::string placeAndReason(std::uint64_t row) const;
 

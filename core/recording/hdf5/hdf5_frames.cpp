@@ -36,6 +36,7 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset_.valid()) throw badInput(place, fmt::format("{} cannot be opened: {}", path_, lastProblem()));
   checkLayout(place);
+  requirePlausibleRows(file, rows_, extent[1] * extent[2] * channels_, place + ": " + path_);
   // With room for the chunks of one picture, so that none is unpacked twice.
   const std::uint64_t picture_bytes = extent[1] * extent[2] * channels_;
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
@@ -109,6 +110,7 @@ bool FrameTable::load(std::uint64_t row, Frame& frame) {
   const Handle memory_space(H5Screate_simple(rank_, extent.data(), nullptr), H5Sclose);
   frame.bytes.resize(static_cast<std::size_t>(height * width * channels_));
   const ExpectedChunk expected(chunk_bytes_);
+  const MemoryLimit limit(memoryForChunks(std::max<std::uint64_t>(chunk_bytes_, frame.bytes.size())));
   const bool read =
       H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) >= 0 &&
       H5Dread(dataset_, H5T_NATIVE_UINT8, memory_space, file_space, H5P_DEFAULT, frame.bytes.data()) >= 0;

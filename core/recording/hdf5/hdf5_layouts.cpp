@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 namespace evical::hdf5 {
 namespace {
@@ -58,8 +59,9 @@ std::string readText(hid_t object, const char* name) {
     return copy;
   }
   constexpr std::size_t kLongest = 1 << 16;
+  if (H5Tget_size(type) > kLongest) return {};
   std::string text(H5Tget_size(type), '\0');
-  if (text.size() > kLongest || H5Aread(attribute, type, text.data()) < 0) return {};
+  if (H5Aread(attribute, type, text.data()) < 0) return {};
   return text.substr(0, text.find('\0'));
 }
 
@@ -78,7 +80,9 @@ Resolution parseGeometry(const std::string& text) {
 class TableLayoutFinder {
  public:
   TableLayoutFinder(hid_t file, const std::string& place)
-      : file_(file), place_(place), list_(listDatasets(file, place)), datasets_(list_.datasets) {}
+      : file_(file), place_(place), list_(listDatasets(file, place)), datasets_(list_.datasets) {
+    for (const DatasetInfo& dataset : datasets_) by_path_[dataset.path] = &dataset;
+  }
 
   FoundStreams run() {
     for (const DatasetInfo& dataset : datasets_) {
@@ -89,13 +93,16 @@ class TableLayoutFinder {
       if (rank >= 3) addFrames(dataset);
       if (isPartOfAStream(dataset)) incomplete_.insert(dataset.folder());
     }
+    std::vector<std::string>& problems = problems_;
+    for (const std::string& path : list_.elsewhere)
+      problems.push_back(
+          fmt::format("The content of {} is in another file, which is not opened; it is left out.", path));
+    for (const std::string& path : list_.damaged)
+      problems.push_back(fmt::format("{} is damaged; its content is left out.", path));
     const auto isReadable = [](const FoundStream& stream) {
       return stream.events || stream.imu || stream.frames;
     };
     if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
-    std::vector<std::string>& problems = problems_;
-    for (const std::string& path : list_.damaged)
-      problems.push_back(fmt::format("{} is damaged; its content is left out.", path));
     for (const std::string& folder : incomplete_)
       problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
                                      folder.empty() ? "The root" : withoutSlash(folder)));
@@ -105,10 +112,15 @@ class TableLayoutFinder {
  private:
   const DatasetInfo* find(const std::string& folder, std::initializer_list<const char*> names) const {
     for (const char* name : names) {
-      for (const DatasetInfo& dataset : datasets_)
-        if (dataset.path == folder + name) return &dataset;
+      const auto found = by_path_.find(folder + name);
+      if (found != by_path_.end()) return found->second;
     }
     return nullptr;
+  }
+
+  // Only of a listed dataset: a path could lead through a link into another file.
+  std::vector<std::int64_t> numbersAt(const std::string& path, std::size_t most) const {
+    return by_path_.contains(path) ? readNumbers(file_, path, most) : std::vector<std::int64_t>{};
   }
 
   // True for a part of a stream without its other parts: damaged names do not match.
@@ -147,7 +159,7 @@ class TableLayoutFinder {
     // DSEC's offset belongs to its only camera.
     const bool is_dsec = folder == "events/";
     const std::vector<std::int64_t> offset_us =
-        is_dsec ? readNumbers(file_, "t_offset", 1) : std::vector<std::int64_t>{};
+        is_dsec ? numbersAt("t_offset", 1) : std::vector<std::int64_t>{};
     FoundStream& stream = add(withoutSlash(folder), StreamType::Events, "x, y, t, p");
     stream.events = openColumns(file_, {dataset, *y, *t, *p}, offset_us.empty() ? 0 : offset_us[0], place_);
     finishEvents(folder, stream);
@@ -157,7 +169,7 @@ class TableLayoutFinder {
     stream.info.messages = stream.events->rows();
     stream.info.time_unit_ns = stream.events->timeScale().unit_ns;
     Resolution& size_px = stream.info.resolution_px;
-    const std::vector<std::int64_t> sides = readNumbers(file_, folder + "calib/resolution", 2);
+    const std::vector<std::int64_t> sides = numbersAt(folder + "calib/resolution", 2);
     const auto isSide = [](std::int64_t side) { return side >= 1 && side <= kLargestSide_px; };
     if (sides.size() == 2 && isSide(sides[0]) && isSide(sides[1])) {
       size_px = {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
@@ -260,13 +272,15 @@ class TableLayoutFinder {
     std::vector<std::string> names;
     for (const DatasetInfo& dataset : datasets_)
       if (names.size() < kMostNamedTables) names.push_back(dataset.path);
+    const std::string why =
+        problems_.empty() ? "" : ". " + problems_.front().substr(0, problems_.front().size() - 1);
     throw badInput(
         place_,
         names.empty()
-            ? "the HDF5 file has no datasets; was the recording finished?"
+            ? "the HDF5 file has no datasets" + (why.empty() ? "; was the recording finished?" : why)
             : fmt::format("the HDF5 file has no events and no IMU in a known layout; its datasets: {}{}",
                           joined(names), datasets_.size() > kMostNamedTables ? ", ..." : "") +
-                  (problems_.empty() ? "" : ". " + problems_.front().substr(0, problems_.front().size() - 1)),
+                  why,
         "Convert it to one of DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
   }
 
@@ -274,6 +288,7 @@ class TableLayoutFinder {
   std::string place_;
   DatasetList list_;
   const std::vector<DatasetInfo>& datasets_;
+  std::unordered_map<std::string, const DatasetInfo*> by_path_;
   std::vector<FoundStream> found_;
   std::set<std::string> incomplete_;  // folders
   std::vector<std::string> problems_;

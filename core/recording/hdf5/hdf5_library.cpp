@@ -2,10 +2,14 @@
 
 #include "core/base/error.h"
 #include "core/recording/hdf5/hdf5_filters.h"
+#include "core/recording/separate_reader.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <string_view>
 
 namespace evical::hdf5 {
@@ -35,6 +39,26 @@ Quiet::~Quiet() {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
+MemoryLimit::MemoryLimit(std::uint64_t bytes) {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_DATA, &limit);
+  before_ = limit.rlim_cur;
+  if (!isReaderProcess()) return;
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t total = 0, resident = 0, shared = 0, text = 0, library = 0, data = 0;
+  if (!(statm >> total >> resident >> shared >> text >> library >> data)) return;
+  limit.rlim_cur =
+      std::min<rlim_t>(limit.rlim_max, data * static_cast<std::uint64_t>(::getpagesize()) + bytes);
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+MemoryLimit::~MemoryLimit() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_DATA, &limit);
+  limit.rlim_cur = before_;
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
 std::string lastProblem() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keepInnermost, &text);
@@ -44,6 +68,8 @@ std::string lastProblem() {
     text.erase(0, at + kMessage.size());
     text.erase(std::min(text.size(), text.find('\'')));
   }
+  if (text.starts_with("memory allocation failed"))
+    return "it unpacks to more than it states, or memory is short";
   return text.empty() ? "HDF5 gives no reason" : text;
 }
 

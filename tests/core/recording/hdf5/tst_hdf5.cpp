@@ -93,6 +93,8 @@ class TestHdf5 : public QObject {
   void damagedChunk_losesItsRowsOnly_data();
   void damagedChunk_losesItsRowsOnly();
   void damageAnywhere_neverCrashes();
+  void contentOfOtherFiles_isRefused_data();
+  void contentOfOtherFiles_isRefused();
   void foundByTheFuzzer_isRefused_data();
   void foundByTheFuzzer_isRefused();
   void programsEnd_isQuietAfterDamage();
@@ -371,6 +373,47 @@ print(f['events/t'].id.get_chunk_info(1).byte_offset))",
   QCOMPARE(contents.eventCount(), 200'000u - 65'536u);
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
   QVERIFY(contents.faults[0].text.find("at byte " + place.trimmed().toStdString()) != std::string::npos);
+}
+
+// A file from a stranger must not make another one readable: its bytes would become events.
+void TestHdf5::contentOfOtherFiles_isRefused_data() {
+  QTest::addColumn<QString>("script");
+  QTest::addColumn<QString>("name");
+  QTest::newRow("external storage")
+      << "f.create_dataset('events/x', (n,), 'u2', external=[('secret', 0, 2 * n)])"
+      << "events/x";
+  QTest::newRow("virtual dataset")
+      << "v = h5py.VirtualLayout((n,), 'u2'); v[:] = h5py.VirtualSource('other.h5', 's', "
+         "(n,)); f.create_virtual_dataset('events/x', v)"
+      << "events/x";
+  QTest::newRow("external link") << "f['events/x'] = h5py.ExternalLink('other.h5', 's')"
+                                 << "events/x";
+  QTest::newRow("linked offset") << "f['events/x'] = x; f['t_offset'] = h5py.ExternalLink('other.h5', 's')"
+                                 << "t_offset";
+}
+
+void TestHdf5::contentOfOtherFiles_isRefused() {
+  if (!hasH5py()) QSKIP("h5py is not installed");
+  QFETCH(QString, script);
+  QFETCH(QString, name);
+  runPython(std::string(kArrays) + R"(
+open('secret', 'wb').write(bytes([7]) * 2 * n)
+h5py.File('other.h5', 'w')['s'] = np.full(n, 1799, 'u2')
+f = h5py.File('elsewhere.h5', 'w')
+f['events/y'] = y; f['events/p'] = p; f['events/t'] = t
+)" + script.toStdString(),
+            folder_.path());
+  const QString says = "ontent of " + name + " is in another file, which is not opened";
+  try {
+    const Contents contents = readAll(folder_ / "elsewhere.h5");
+    QCOMPARE(name, QString("t_offset"));
+    compareWithArrays(contents.events.at(0));
+    QVERIFY(contents.hasFault(FaultKind::Corrupt));
+    QVERIFY2(QString::fromStdString(contents.faults.at(0).text).contains(says),
+             contents.faults[0].text.c_str());
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains(says), error.what());
+  }
 }
 
 void TestHdf5::foundByTheFuzzer_isRefused_data() {
