@@ -23,7 +23,12 @@ bool parse(const std::string& word, Number& number) {
 }  // namespace
 
 CsvReader::CsvReader(const std::filesystem::path& file, const std::vector<std::string>& columns)
-    : file_(file), stream_(file), columns_(columns) {
+    : file_(file), columns_(columns) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored))  // opening a pipe waits for its other end
+    stream_.open(file);
+  else
+    stream_.setstate(std::ios::failbit);
   if (!stream_) throw badInput(file.string(), "cannot be read", "Give the result folder of an earlier run");
   if (!next()) throw badInput(file.string(), "is empty", "Give the result folder of an earlier run");
   const std::vector<std::string> names = words_;

@@ -290,8 +290,12 @@ std::string runData(const CalibrationRun& run) {
 }
 
 ReadRunData readRunData(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string content;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) {  // opening a pipe waits for its other end
+    std::ifstream stream(file, std::ios::binary);
+    content.assign(std::istreambuf_iterator<char>(stream), {});
+  }
   if (!content.empty()) return parseRunData(content);
   ReadRunData read;
   read.missing.push_back(

@@ -24,6 +24,8 @@ namespace {
 constexpr const char *kRun = "run.yaml", *kData = "run.data", *kLog = "log.txt";
 
 std::string contentOf(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};  // opening a pipe waits for its other end
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
