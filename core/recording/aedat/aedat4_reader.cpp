@@ -33,7 +33,8 @@ const PacketType* findType(std::string_view id) {
 
 }  // namespace
 
-Aedat4Reader::Aedat4Reader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
+Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
+    : path_(path.string()), file_(path), limit_(path_, file_.size()) {
   const aedat::FileHeader header = readFileHeader();
   position_ = data_position_;
   compression_ = static_cast<aedat::Compression>(header.compression);
@@ -78,7 +79,7 @@ std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::in
   std::string_view packed, content;
   std::size_t used = 0;
   const bool whole = file_.size() - at <= kLargestTable_bytes && file_.read(at, file_.size() - at, packed) &&
-                     unpacker_->unpack(packed, content, used);
+                     unpackCounted(packed, content, used);
   const auto entries = whole ? aedat::decodeTable(content) : std::nullopt;
   if (!entries) {
     addFault("", FaultKind::Corrupt,
@@ -164,7 +165,7 @@ std::string Aedat4Reader::typeOfPacket(std::uint64_t position) {
   std::size_t used = 0;
   const bool good = readHeader(position, header) == HeaderState::Good &&
                     file_.read(header.dataPosition(), static_cast<std::uint64_t>(header.size), packed) &&
-                    unpacker_->unpack(packed, content, used);
+                    unpackCounted(packed, content, used);
   return good ? std::string(aedat::packetType(content)) : std::string();
 }
 
@@ -266,7 +267,7 @@ bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content)
   const auto size = static_cast<std::uint64_t>(header.size);
   std::string_view packed;
   const bool read = file_.read(header.dataPosition(), size, packed);
-  if (read && unpacker_->unpack(packed, content, used)) {
+  if (read && unpackCounted(packed, content, used)) {
     if (used == size) return true;
     position_ = header.dataPosition() + used;
     addFault("", FaultKind::Corrupt,
@@ -277,6 +278,12 @@ bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content)
   addFault("", FaultKind::Corrupt,
            fmt::format("The packet at byte {} cannot be unpacked; it is left out.", header.position));
   return false;
+}
+
+bool Aedat4Reader::unpackCounted(std::string_view packed, std::string_view& content, std::size_t& used) {
+  const bool good = unpacker_->unpack(packed, content, used);
+  limit_.add(unpacker_->unpackedBytes());
+  return good;
 }
 
 bool Aedat4Reader::decode(std::size_t stream, std::string_view content, Packet& packet) {

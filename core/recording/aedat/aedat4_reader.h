@@ -9,6 +9,7 @@
 #include "core/recording/event_order.h"
 #include "core/recording/random_access_file.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <cstdint>
 #include <map>
@@ -60,6 +61,7 @@ class Aedat4Reader : public RecordingReader {
   bool nextPacket(PacketHeader& header);
   bool skipDamage(const PacketHeader& header, HeaderState state);
   bool unpack(const PacketHeader& header, std::string_view& content);
+  bool unpackCounted(std::string_view packed, std::string_view& content, std::size_t& used);
   bool decode(std::size_t stream, std::string_view content, Packet& packet);
   bool decodeFrame(std::size_t stream, std::string_view content, std::vector<Frame>& frames);
   void finishEvents(std::size_t stream, Packet& packet);
@@ -69,6 +71,7 @@ class Aedat4Reader : public RecordingReader {
 
   std::string path_;
   RandomAccessFile file_;
+  UnpackingLimit limit_;
   std::uint64_t data_position_ = 0, position_ = 0;
   std::uint64_t table_position_ = 0;  // 0: absent or damaged
   aedat::Compression compression_ = aedat::Compression::None;

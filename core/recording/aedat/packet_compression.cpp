@@ -79,6 +79,7 @@ bool Unpacker::grow(std::size_t packed_bytes) {
 }
 
 bool Unpacker::unpack(std::string_view packed, std::string_view& content, std::size_t& frame_bytes) {
+  produced_ = 0;
   if (compression_ == Compression::None) {
     content = packed;
     frame_bytes = packed.size();
@@ -86,18 +87,18 @@ bool Unpacker::unpack(std::string_view packed, std::string_view& content, std::s
   }
   if (contexts_->lz4) LZ4F_resetDecompressionContext(contexts_->lz4);
   if (contexts_->zstd) ZSTD_DCtx_reset(contexts_->zstd, ZSTD_reset_session_only);
-  std::size_t consumed = 0, produced = 0;
+  std::size_t consumed = 0;
   for (bool finished = false; !finished;) {
-    if (produced == buffer_.size() && !grow(packed.size())) return false;
+    if (produced_ == buffer_.size() && !grow(packed.size())) return false;
     const char* in = packed.data() + consumed;
-    std::size_t in_bytes = packed.size() - consumed, out_bytes = buffer_.size() - produced;
-    if (!step(in, in_bytes, buffer_.data() + produced, out_bytes, finished)) return false;
+    std::size_t in_bytes = packed.size() - consumed, out_bytes = buffer_.size() - produced_;
+    if (!step(in, in_bytes, buffer_.data() + produced_, out_bytes, finished)) return false;
     consumed += in_bytes;
-    produced += out_bytes;
-    const bool stalled = in_bytes == 0 && out_bytes == 0 && produced < buffer_.size();
+    produced_ += out_bytes;
+    const bool stalled = in_bytes == 0 && out_bytes == 0 && produced_ < buffer_.size();
     if (stalled && !finished) return false;
   }
-  content = std::string_view(buffer_).substr(0, produced);
+  content = std::string_view(buffer_).substr(0, produced_);
   frame_bytes = consumed;
   return true;
 }

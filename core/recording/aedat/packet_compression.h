@@ -26,6 +26,7 @@ class Unpacker {
   // false if it is damaged, cut off or unreasonably large. Memory grows with the unpacked data, not
   // with the size that a frame claims.
   bool unpack(std::string_view packed, std::string_view& content, std::size_t& frame_bytes);
+  std::size_t unpackedBytes() const { return produced_; }  // of the last call, also of a damaged packet
 
  private:
   struct Contexts;
@@ -35,6 +36,7 @@ class Unpacker {
   Compression compression_;
   std::unique_ptr<Contexts> contexts_;
   std::string buffer_;
+  std::size_t produced_ = 0;
 };
 
 // Throws std::bad_alloc if there is no memory.

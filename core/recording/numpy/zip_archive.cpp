@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/recording/byte_cursor.h"
 #include "core/recording/random_access_file.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <fmt/format.h>
 
@@ -37,8 +38,12 @@ class ArchiveReader {
   std::vector<ZipMember> run() {
     const Directory directory = findDirectory();
     std::vector<ZipMember> members;
+    UnpackingLimit limit(path_.string(), file_.size());
     std::uint64_t position = directory.position;
-    for (std::uint64_t i = 0; i < directory.entries; ++i) members.push_back(readEntry(position));
+    for (std::uint64_t i = 0; i < directory.entries; ++i) {
+      members.push_back(readEntry(position));
+      limit.add(members.back().range.bytes);  // several members can be at one place
+    }
     return members;
   }
 

@@ -66,7 +66,7 @@ std::vector<std::string> otherParts(const std::filesystem::path& path) {
 }  // namespace
 
 BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
-    : sink_(std::move(sink)), file_(path) {
+    : sink_(std::move(sink)), file_(path), limit_(path.string(), file_.size()) {
   rewind();
   listTopics();
   rewind();
@@ -80,6 +80,7 @@ BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
 
 void BagSource::rewind() {
   position_ = rosbag::kMagic.size();
+  limit_.restart();
   chunk_data_ = 0;
   chunk_ = {};
 }
@@ -177,18 +178,23 @@ bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
   const std::uint64_t size = std::min({std::uint64_t{record.data_size}, largest, available});
   std::string_view bytes;
   Unpacked result = Unpacked::Damaged;
-  if (file_.read(record.data_position, size, bytes)) {
+  const bool plausible = record.header.size <= UnpackingLimit::ofPart(size);
+  if (plausible && file_.read(record.data_position, size, bytes)) {
     const bool is_plain = record.header.compression == "none" && bytes.size() == record.header.size;
     result = is_plain
                  ? Unpacked::Whole
                  : rosbag::decompressChunk(record.header.compression, bytes, record.header.size, unpacked_);
     chunk_ = is_plain ? bytes : std::string_view(unpacked_);
+    limit_.add(is_plain ? 0 : record.header.size);
   }
   chunk_size_ = chunk_.size();
   chunk_is_cut_ = result == Unpacked::Cut;
   if (result == Unpacked::Damaged) {
     sink_(FaultKind::Corrupt,
-          fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
+          plausible ? fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position)
+                    : fmt::format("The chunk at byte {} states {} bytes for {} packed ones, which is "
+                                  "implausible; it is left out.",
+                                  position, record.header.size, size));
   } else if (result == Unpacked::Cut) {
     sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} has {} of {} bytes; these are read.",
                                             position, chunk_size_, record.header.size));

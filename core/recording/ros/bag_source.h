@@ -5,6 +5,7 @@
 #include "core/recording/random_access_file.h"
 #include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/message_source.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -68,6 +69,7 @@ class BagSource : public MessageSource {
 
   FaultSink sink_;
   RandomAccessFile file_;
+  UnpackingLimit limit_;
   std::uint64_t position_ = 0;    // of the next record to read
   std::uint64_t chunk_data_ = 0;  // begin of the last chunk's data
   std::vector<SourceTopic> topics_;

@@ -1,5 +1,7 @@
 #include "core/recording/ros/compression.h"
 
+#include "core/recording/unpacking_limit.h"
+
 #include <bzlib.h>
 #include <lz4frame.h>
 #include <zstd.h>
@@ -12,7 +14,6 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint64_t kLargestMessage_bytes = std::uint64_t{1} << 30;
 constexpr int kZstdLevel = 3;  // the library's default
 
 // Makes room after the existing bytes, within the declared size.
@@ -53,11 +54,11 @@ Unpacked unpackZstdStream(std::string_view data, std::uint64_t largest_bytes, st
     ZSTD_outBuffer room{output.data(), output.size(), used};
     const std::size_t consumed = input.pos;
     const std::size_t hint = ZSTD_decompressStream(context.get(), &room, &input);
-    if (ZSTD_isError(hint) != 0U) return damaged(output);
+    if (ZSTD_isError(hint) != 0U) return Unpacked::Damaged;
     const bool stalled = room.pos == used && input.pos == consumed;
     used = room.pos;
     whole = hint == 0;
-    if (stalled && input.pos < input.size) return damaged(output);  // more content than declared
+    if (stalled && input.pos < input.size) return Unpacked::Damaged;  // more content than declared
     if (stalled) break;
   }
   output.resize(used);
@@ -115,13 +116,13 @@ Unpacked unpackBz2(std::string_view data, std::uint64_t size_bytes, std::string&
 
 Unpacked unpackZstd(std::string_view data, std::uint64_t size_bytes, std::string& output) {
   bool whole = false;
-  if (unpackZstdStream(data, size_bytes, output, whole) == Unpacked::Damaged) return Unpacked::Damaged;
+  if (unpackZstdStream(data, size_bytes, output, whole) == Unpacked::Damaged) return damaged(output);
   return output.size() == size_bytes ? Unpacked::Whole : Unpacked::Cut;
 }
 
 Unpacked unpackZstdFrame(std::string_view data, std::string& output) {
   bool whole = false;
-  if (unpackZstdStream(data, kLargestMessage_bytes, output, whole) == Unpacked::Damaged)
+  if (unpackZstdStream(data, UnpackingLimit::ofPart(data.size()), output, whole) == Unpacked::Damaged)
     return Unpacked::Damaged;
   return whole ? Unpacked::Whole : Unpacked::Cut;
 }

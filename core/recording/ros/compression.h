@@ -20,7 +20,7 @@ Unpacked unpackBz2(std::string_view data, std::uint64_t size_bytes, std::string&
 Unpacked unpackZstd(std::string_view data, std::uint64_t size_bytes, std::string& output);
 Unpacked copyPlain(std::string_view data, std::uint64_t size_bytes, std::string& output);
 
-// Unpacks one zstd frame of any size, but not beyond 1 GiB.
+// Unpacks one zstd frame of any plausible size. If it is damaged, `output` has what took its place so far.
 Unpacked unpackZstdFrame(std::string_view data, std::string& output);
 inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
 

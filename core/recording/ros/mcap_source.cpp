@@ -12,8 +12,6 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint64_t kLargestMcapChunk_bytes = std::uint64_t{1} << 31;  // real ones have some MB
-
 struct McapRecord {
   std::uint8_t op = 0;
   std::string_view content;
@@ -38,7 +36,7 @@ bool isKnown(std::uint8_t op) {
 }  // namespace
 
 McapSource::McapSource(const std::filesystem::path& path, FaultSink sink)
-    : sink_(std::move(sink)), file_(path) {
+    : path_(path.string()), sink_(std::move(sink)), file_(path), limit_(path_, file_.size()) {
   std::string_view magic;
   if (!file_.read(0, mcap::kMagic.size(), magic) || magic != mcap::kMagic)
     throw badInput(path.string(), "the MCAP file is cut off within its first bytes", "Copy it again");
@@ -57,6 +55,11 @@ McapSource::McapSource(const std::filesystem::path& path, FaultSink sink)
 }
 
 void McapSource::rewind() {
+  limit_.restart();
+  goToBegin();
+}
+
+void McapSource::goToBegin() {
   position_ = record_position_ = mcap::kMagic.size();
   chunk_ = {};
   unknown_channels_.clear();
@@ -180,7 +183,7 @@ void McapSource::countPending(PendingChunk& chunk) {
       }
     }
     sink_ = sink;
-    rewind();
+    goToBegin();
   }
   chunk = {};
 }
@@ -205,6 +208,10 @@ void McapSource::addChannel(std::string_view content) {
     entry.topic.type += fmt::format(" ({})", channel.encoding);  // unknown type
     entry.topic.definition.clear();
   }
+  constexpr std::size_t kMostDefinitions_bytes = std::size_t{1} << 26;
+  definitions_bytes_ += entry.topic.definition.size();
+  if (definitions_bytes_ > kMostDefinitions_bytes)
+    throw badInput(path_, "the definitions of its messages are too large", "Copy the file again");
   topic_of_channel_[channel.id] = topics_.size();
   topics_.push_back(std::move(entry));
 }
@@ -307,7 +314,7 @@ bool McapSource::loadChunk(const Record& record) {
   const std::string compression(head.compression);
   const std::uint64_t records_bytes = has_head ? std::min(head.records_bytes, available - head.size) : 0;
   Unpacked result = Unpacked::Damaged;
-  if (has_head && head.uncompressed_bytes <= kLargestMcapChunk_bytes &&
+  if (has_head && head.uncompressed_bytes <= UnpackingLimit::ofPart(records_bytes) &&
       file_.read(record.content + head.size, records_bytes, bytes)) {
     if (compression.empty() && bytes.size() == head.uncompressed_bytes) {
       chunk_ = bytes;  // not copied
@@ -315,22 +322,27 @@ bool McapSource::loadChunk(const Record& record) {
     } else {
       result = mcap::unpackChunk(compression, bytes, head.uncompressed_bytes, unpacked_);
       chunk_ = unpacked_;
+      limit_.add(head.uncompressed_bytes);
     }
   }
   chunk_size_ = chunk_.size();
   chunk_is_cut_ = result == Unpacked::Cut;
-  reportChunk(result, record, head.uncompressed_bytes);
+  reportChunk(result, record, head);
   if (result == Unpacked::Whole) checkSum(head, record);
   return !chunk_.empty();
 }
 
-void McapSource::reportChunk(Unpacked result, const Record& record, std::uint64_t expected_bytes) {
-  if (result == Unpacked::Damaged) {
+void McapSource::reportChunk(Unpacked result, const Record& record, const mcap::ChunkHead& head) {
+  if (result == Unpacked::Damaged && head.uncompressed_bytes > UnpackingLimit::ofPart(record.size)) {
+    sink_(FaultKind::Corrupt, fmt::format("The chunk at byte {} states {} bytes for {} packed ones, which is "
+                                          "implausible; it is left out.",
+                                          record.position, head.uncompressed_bytes, record.size));
+  } else if (result == Unpacked::Damaged) {
     sink_(FaultKind::Corrupt,
           fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", record.position));
   } else if (result == Unpacked::Cut) {
     sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} has {} of {} bytes; these are read.",
-                                            record.position, chunk_size_, expected_bytes));
+                                            record.position, chunk_size_, head.uncompressed_bytes));
   }
 }
 

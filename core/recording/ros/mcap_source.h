@@ -5,6 +5,7 @@
 #include "core/recording/random_access_file.h"
 #include "core/recording/ros/mcap_records.h"
 #include "core/recording/ros/message_source.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -46,6 +47,7 @@ class McapSource : public MessageSource {
     std::map<std::uint16_t, std::uint64_t> messages;
   };
 
+  void goToBegin();
   bool readHead(std::uint64_t position, Record& record);
   bool readContent(const Record& record, std::string_view& content);
   bool listFromSummary();
@@ -62,14 +64,16 @@ class McapSource : public MessageSource {
   bool wanted(std::size_t topic) const { return topic >= wanted_.size() || wanted_[topic]; }
   bool chunkIsWanted(std::uint64_t position) const;
   bool loadChunk(const Record& record);
-  void reportChunk(Unpacked result, const Record& record, std::uint64_t expected_bytes);
+  void reportChunk(Unpacked result, const Record& record, const mcap::ChunkHead& head);
   void checkSum(const mcap::ChunkHead& head, const Record& record);
   std::uint64_t chunkAfter(std::uint64_t position);
   std::uint64_t scanForChunk(std::uint64_t from);
   void skipDamage(const Record& record);
 
+  std::string path_;
   FaultSink sink_;
   RandomAccessFile file_;
+  UnpackingLimit limit_;
   std::vector<SourceTopic> topics_;
   std::vector<bool> wanted_;
   std::unordered_map<std::uint16_t, SchemaText> schemas_;
@@ -83,6 +87,7 @@ class McapSource : public MessageSource {
   bool chunk_is_cut_ = false;                 // and its last record, which was reported
   std::vector<std::string> without_schema_;   // topics
   std::set<std::uint16_t> unknown_channels_;  // of messages
+  std::size_t definitions_bytes_ = 0;         // of all topics
   bool closed_ = false;                       // the file is complete
   bool ended_ = false;
 };

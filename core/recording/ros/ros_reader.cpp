@@ -49,6 +49,12 @@ bool RosReader::openFile(std::size_t index) {
 }
 
 void RosReader::matchTopics() {
+  constexpr std::size_t kMostTopics = 10'000;
+  if (source_->topics().size() > kMostTopics)
+    throw badInput(
+        files_[file_].string(),
+        fmt::format("lists {} topics or connections, more than {}", source_->topics().size(), kMostTopics),
+        "Copy the recording again; if it is right, write its wanted topics into a new one");
   while (streams_of_topics_.size() < source_->topics().size())
     streams_of_topics_.push_back(topics_.add(source_->topics()[streams_of_topics_.size()].topic));
 }

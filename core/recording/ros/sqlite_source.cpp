@@ -36,6 +36,16 @@ bool hasWriteAheadLog(const std::filesystem::path& path) {
   return !error && size > 0;
 }
 
+// With its write-ahead log.
+std::uint64_t bytesOnDisk(const std::filesystem::path& path) {
+  const auto bytesOf = [](const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+    return error ? 0 : bytes;
+  };
+  return bytesOf(path) + bytesOf(path.string() + "-wal");
+}
+
 // Size stated by the file's header; 0 without header.
 std::uint64_t statedBytes(const std::filesystem::path& path) {
   std::array<unsigned char, 32> header{};
@@ -56,6 +66,10 @@ class SqliteSource::Database {
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
     status_ = sqlite3_open_v2(uriOf(path, immutable).c_str(), &handle_, flags, nullptr);
     if (!ok()) return;
+    // No value is longer than the file, unless it is computed.
+    constexpr std::uint64_t kLeast_bytes = 1 << 20, kMost_bytes = 1'000'000'000;
+    sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH,
+                  static_cast<int>(std::clamp(bytesOnDisk(path), kLeast_bytes, kMost_bytes)));
     // Code in a file of unknown origin must not run.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
     // Files that are shorter than stated are only accepted in this mode.
@@ -110,7 +124,7 @@ class SqliteSource::Statement {
 };
 
 SqliteSource::SqliteSource(const std::filesystem::path& path, FaultSink sink)
-    : path_(path), sink_(std::move(sink)) {
+    : path_(path), sink_(std::move(sink)), limit_(path.string(), bytesOnDisk(path)) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   const std::uint64_t stated = statedBytes(path);
@@ -132,7 +146,10 @@ void SqliteSource::open() {
           "out.");
   }
   if (!has_log || !database_->ok()) database_ = std::make_unique<Database>(path_, true, cut_);
-  if (database_->ok() && hasTable("topics") && hasTable("messages")) return;
+  if (database_->ok() && hasTable("topics") && hasTable("messages")) {
+    for (const char* const table : {"topics", "messages", "message_definitions"}) refuseComputed(table);
+    return;
+  }
   if (!database_->ok()) {
     throw badInput(path_.string(),
                    fmt::format("the SQLite file of {} bytes cannot be read: {}",
@@ -146,6 +163,19 @@ bool SqliteSource::hasTable(const char* name) {
   Statement statement(*database_,
                       fmt::format("SELECT 1 FROM sqlite_master WHERE type='table' AND name='{}'", name));
   return statement.step();
+}
+
+// Generated columns and virtual tables run the file's own expressions, for any time and with any result.
+void SqliteSource::refuseComputed(const char* table) {
+  Statement columns(*database_,
+                    fmt::format("SELECT 1 FROM pragma_table_xinfo('{}') WHERE hidden <> 0", table));
+  Statement virtuals(*database_, fmt::format("SELECT 1 FROM sqlite_master WHERE name='{}' AND "
+                                             "sql NOT LIKE 'CREATE TABLE%'",
+                                             table));
+  if (columns.step() || virtuals.step())
+    throw badInput(path_.string(),
+                   fmt::format("its table {} computes its values, which no recorder does", table),
+                   "Record again, or copy the rows into a plain table");
 }
 
 bool SqliteSource::hasTimeIndex() {
@@ -213,6 +243,7 @@ void SqliteSource::countMessages() {
 }
 
 void SqliteSource::rewind() {
+  limit_.restart();
   messages_.reset();
   last_id_ = from_id_ = 0;
   skip_ids_ = 1;
@@ -288,11 +319,14 @@ bool SqliteSource::handOut(SourceMessage& message) {
   std::string_view bytes = messages_->bytes(3);
   if (bytes.starts_with(kZstdMagic)) {
     const Unpacked result = unpackZstdFrame(bytes, unpacked_);
+    limit_.add(unpacked_.size());
     if (result != Unpacked::Whole) {
       sink_(FaultKind::Corrupt, fmt::format("The message {} cannot be unpacked; it is left out.", place()));
       return false;
     }
     bytes = unpacked_;
+  } else {
+    limit_.add(bytes.size());
   }
   message = {topic_of_id_.at(messages_->integer(1)), messages_->integer(2), bytes};
   return true;

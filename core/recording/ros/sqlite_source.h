@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/recording/ros/message_source.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +39,7 @@ class SqliteSource : public MessageSource {
   std::map<std::string, std::string> definitions();
   void countMessages();
   bool hasTable(const char* name);
+  void refuseComputed(const char* table);
   bool hasTimeIndex();
   void query();
   bool step();
@@ -46,6 +48,7 @@ class SqliteSource : public MessageSource {
 
   std::filesystem::path path_;
   FaultSink sink_;
+  UnpackingLimit limit_;
   std::unique_ptr<Database> database_;
   std::unique_ptr<Statement> messages_;
   std::vector<SourceTopic> topics_;

@@ -41,13 +41,11 @@ const char* TopicStreams::State::readableEncodings() const {
 }
 
 std::size_t TopicStreams::add(const Topic& topic) {
-  const auto same = [&](const StreamInfo& stream) {
-    return stream.name == topic.name && stream.message == topic.type;
-  };
-  const auto found = std::find_if(streams_.begin(), streams_.end(), same);
-  const auto index = static_cast<std::size_t>(found - streams_.begin());
-  if (found != streams_.end()) return index;
+  const auto found = known_.find({topic.name, topic.type});
+  if (found != known_.end()) return found->second;
   if (listed_) return kNone;
+  const std::size_t index = streams_.size();
+  known_[{topic.name, topic.type}] = index;
   State state;
   state.content = contentOf(topic.type, topic.md5, topic.definition);
   state.serialization = topic.serialization;

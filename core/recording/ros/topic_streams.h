@@ -8,9 +8,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace evical::ros {
@@ -85,7 +87,8 @@ class TopicStreams {
   void finishEventPackets(std::size_t stream);
 
   std::vector<StreamInfo> streams_;
-  std::vector<State> states_;  // of streams_
+  std::map<std::pair<std::string, std::string>, std::size_t> known_;  // streams by topic and type
+  std::vector<State> states_;                                         // of streams_
   std::vector<RecordingFault> faults_;
   std::vector<Event> rest_;  // of a message with a large step back in time
   std::size_t rest_stream_ = 0;

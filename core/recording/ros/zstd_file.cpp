@@ -1,6 +1,7 @@
 #include "core/recording/ros/zstd_file.h"
 
 #include "core/base/error.h"
+#include "core/recording/unpacking_limit.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -46,7 +47,7 @@ File temporaryFile(std::filesystem::path& path) {
 
 // Returns the number of intact bytes of the input.
 std::uint64_t unpack(std::istream& input, const File& output, const std::filesystem::path& target,
-                     bool& whole) {
+                     UnpackingLimit limit, bool& whole) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
   if (!context) throw std::bad_alloc();
   std::vector<char> packed(ZSTD_DStreamInSize()), plain(ZSTD_DStreamOutSize());
@@ -61,6 +62,7 @@ std::uint64_t unpack(std::istream& input, const File& output, const std::filesys
       const std::size_t hint = ZSTD_decompressStream(context.get(), &out, &in);
       whole = hint == 0;
       if (ZSTD_isError(hint) != 0U) return good + in.pos;
+      limit.add(out.pos);
       if (std::fwrite(plain.data(), 1, out.pos, output.get()) != out.pos) failWriting(target);
       full = out.pos == out.size && !whole;
     }
@@ -77,7 +79,8 @@ UnpackedZstdFile::UnpackedZstdFile(const std::filesystem::path& path, const Faul
   if (!output) failWriting(path_);
   try {
     bool whole = false;
-    const std::uint64_t good = unpack(input, output, path_, whole);
+    const std::uint64_t good =
+        unpack(input, output, path_, {path.string(), std::filesystem::file_size(path)}, whole);
     if (!whole) {
       sink(FaultKind::Truncated,
            fmt::format("The packed file {} is cut off or damaged at byte {}; the part before is read.",

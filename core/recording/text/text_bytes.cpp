@@ -29,6 +29,12 @@ int highByteOf(std::string_view first_bytes) {
   return -1;
 }
 
+std::uint64_t bytesOf(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? 0 : bytes;
+}
+
 }  // namespace
 
 bool isGzip(std::string_view first_bytes) {
@@ -46,10 +52,12 @@ void TextBytes::Closing::operator()(gzFile_s* file) const {
 }
 
 // Files that are not packed are read unchanged. A byte order mark, or zeros, identify UTF-16.
-TextBytes::TextBytes(const std::filesystem::path& path) : file_(gzopen(path.c_str(), "rb")) {
+TextBytes::TextBytes(const std::filesystem::path& path)
+    : file_(gzopen(path.c_str(), "rb")),
+      size_(bytesOf(path)),
+      limit_(UnpackingLimit::ofText(path.string(), size_)) {
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   gzbuffer(file_.get(), kBuffer_bytes);
-  size_ = std::filesystem::file_size(path);
   std::array<char, 64> begin{};
   const std::string_view first(begin.data(), readUnpacked(begin.data(), begin.size()));
   const bool marked = first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF");
@@ -96,6 +104,7 @@ std::size_t TextBytes::readUnpacked(char* bytes, std::size_t count) {
     const int more =
         gzread(file_.get(), bytes + got, static_cast<unsigned>(std::min(count - got, kMostAtOnce)));
     if (more > 0) got += static_cast<std::size_t>(more);
+    if (more > 0) limit_.add(static_cast<std::uint64_t>(more));
     int error = Z_OK;
     gzerror(file_.get(), &error);
     damaged_ = more < 0 || (error != Z_OK && error != Z_STREAM_END);

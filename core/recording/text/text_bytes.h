@@ -2,6 +2,8 @@
 // becomes UTF-8, also without a byte order mark.
 #pragma once
 
+#include "core/recording/unpacking_limit.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -23,7 +25,8 @@ class TextBytes {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit TextBytes(const std::filesystem::path& path);
 
-  // Number of bytes read; 0 at the end, and if a packed file is damaged from here on.
+  // Number of bytes read; 0 at the end, and if a packed file is damaged from here on. Throws CalibrationError (BadInput) if it
+  // unpacks to more than a recording can.
   std::size_t read(char* bytes, std::size_t count);
   bool isDamaged() const { return damaged_; }  // a packed file ended too early
 
@@ -42,6 +45,7 @@ class TextBytes {
   int high_byte_ = -1;  // of UTF-16: place of a unit's high byte; -1: not UTF-16
   std::string utf8_;    // converted, not yet read
   std::uint64_t size_ = 0;
+  UnpackingLimit limit_;
   bool damaged_ = false;
 };
 
