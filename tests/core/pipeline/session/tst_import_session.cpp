@@ -122,6 +122,10 @@ std::string oakData(const std::vector<std::string>& cameras) {
   return "\"cameraData\":[" + text + "]";
 }
 
+QString filled(QString text, const char* focal, const char* centre) {
+  return text.replace("%1", focal).replace("%2", centre);
+}
+
 bool has(const std::vector<std::string>& notes, const char* text) {
   return std::any_of(notes.begin(), notes.end(),
                      [&](const std::string& note) { return note.find(text) != std::string::npos; });
@@ -258,14 +262,12 @@ class TestImportSession : public QObject {
           std::pair{"EuRoC", QString(kEuroc)}, std::pair{"ost.txt", QString(kOst)},
           std::pair{"eKalibr", ekalibr}, std::pair{"Evical", QString(kOwn)},
           std::pair{"OAK", QString::fromStdString("{" + oakData({oakCamera(0, "%1", "%2")}) + "}")}}) {
-      const auto with = [&](const char* focal, const char* centre) {
-        return QString(text).replace("%1", focal).replace("%2", centre);
-      };
-      importFiles({{write("good.yaml", with("260.5", "171").toStdString())}, "", {}, std::nullopt},
+      importFiles({{write("good.yaml", filled(text, "260.5", "171").toStdString())}, "", {}, std::nullopt},
                   "lens.yaml");
       for (const auto& [focal, centre] :
            {std::pair{"1e20", "171"}, std::pair{"1", "171"}, std::pair{"260.5", "-1"}})
-        QTest::newRow(qPrintable(QString("%1, %2, %3").arg(name, focal, centre))) << with(focal, centre);
+        QTest::newRow(qPrintable(QString("%1, %2, %3").arg(name, focal, centre)))
+            << filled(text, focal, centre);
     }
   }
   void implausibleLenses_areRefused() {
