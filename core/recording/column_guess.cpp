@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kFewestEventsPerS = 50.0;  // of a plausible file of events
+constexpr double kFewestEventsPerS = 50.0, kMostEventsPerS = 5e7;  // of a plausible file of events
 constexpr std::size_t kEnoughRows = 100;
 
 }  // namespace
@@ -59,6 +59,11 @@ std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows) {
   const double span_s = 1e-6 * (time.last - time.first);
   const bool too_slow = rows >= kEnoughRows && static_cast<double>(rows) < kFewestEventsPerS * span_s;
   return too_slow ? 1 : 1000;
+}
+
+bool areOwnTimes_ns(const ColumnNumbers& time, std::size_t rows) {
+  const double span_s = 1e-9 * (time.last - time.first);
+  return time.whole && static_cast<double>(rows) <= kMostEventsPerS * span_s;
 }
 
 const char* timeUnitName(std::int64_t unit_ns) {

@@ -163,6 +163,26 @@ EventLayout layoutOf(const std::array<Numbers, 4>& numbers, std::optional<std::i
   return layout;
 }
 
+// Types of the records of Evical's Python module.
+bool hasOwnTypes(const EventLayout& layout) {
+  const auto is = [&](std::size_t i, NumberType::Kind kind, int bytes) {
+    return layout.columns[i].type.kind == kind && layout.columns[i].type.bytes == bytes;
+  };
+  return is(0, NumberType::Kind::Unsigned, 2) && is(1, NumberType::Kind::Unsigned, 2) &&
+         is(2, NumberType::Kind::Signed, 8) && is(3, NumberType::Kind::Truth, 1);
+}
+
+void useOwnUnit(EventLayout& layout) {
+  std::size_t count = 0;
+  const ColumnNumbers times = headOf(std::span(&layout.columns[2], 1), layout.rows, count)[0];
+  if (layout.unit_ns != 1000 || !areOwnTimes_ns(times, count)) return;
+  layout.unit_ns = 1;
+  layout.guess =
+      "The unit of time is not stated; the types of the fields are those of Evical's records, whose times "
+      "are "
+      "in ns. If this is wrong, rename the times to t_us or t_s.";
+}
+
 class ArrayLayoutFinder {
  public:
   explicit ArrayLayoutFinder(const std::vector<Array>& arrays) : arrays_(arrays) {}
@@ -223,7 +243,9 @@ class ArrayLayoutFinder {
     }
     if (!has[0] || !has[1] || !has[2] || !has[3]) return;
     used_.insert(&array);
-    add(layoutOf(numbers, unit_ns), array.name, "fields " + names);
+    EventLayout layout = layoutOf(numbers, unit_ns);
+    if (names == "t, x, y, p" && hasOwnTypes(layout)) useOwnUnit(layout);
+    add(std::move(layout), array.name, "fields " + names);
   }
 
   // Selects, among several arrays for a part, the one with the same length as the others, otherwise the one

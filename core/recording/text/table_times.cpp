@@ -75,6 +75,15 @@ std::optional<std::size_t> dateColumn(std::span<const TableColumn> table) {
   return std::nullopt;
 }
 
+// Events from Evical's Python module, written by pandas: their polarity is True or False.
+bool isOwnTable(std::span<const TableColumn> table, const TextColumns& columns) {
+  if (columns.type != StreamType::Events || columns.polarity >= table.size()) return false;
+  const TableColumn& time = table[columns.time.front().column];
+  return std::ranges::all_of(table[columns.polarity].cells,
+                             [](std::string_view cell) { return cell == "True" || cell == "False"; }) &&
+         areOwnTimes_ns(time.numbers, time.values.size());
+}
+
 void noteImpossibleRate(const TableColumn& time, std::int64_t unit_ns, TextColumns& columns) {
   const std::vector<double>& values = time.values;
   if (values.size() < kFewestForRate) return;
@@ -216,7 +225,9 @@ void chooseTimeUnit(std::span<const TableColumn> table, TextColumns& columns) {
       noteImpossibleRate(table[time.column], time.unit_ns, columns);
     return;
   }
-  time.unit_ns = known ? guessUnit_ns(table[time.column], columns.type) : kSecond_ns;
+  time.unit_ns = !known                       ? kSecond_ns
+                 : isOwnTable(table, columns) ? 1
+                                              : guessUnit_ns(table[time.column], columns.type);
   const bool obvious =
       known && (time.unit_ns == kSecond_ns ? !table[time.column].numbers.whole
                                            : table[time.column].numbers.largest >= kEpoch_ns);
