@@ -31,6 +31,7 @@ constexpr std::array<StabilityFlag, 4> kStabilities = {{
 }};
 
 CheckInput inputFrom(const CheckArguments& arguments) {
+  warnOfForeignRunData(arguments.result);
   CheckInput input = readCheckInput({arguments.result, arguments.recording, arguments.session});
   for (std::size_t k = 0; k < kStabilities.size(); ++k)
     if (!arguments.stabilities[k].empty())

@@ -1,6 +1,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/session_arguments.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/truth_comparison.h"
 
@@ -22,7 +23,7 @@ void addCompareCommand(Command& app, int& exit_code) {
   command.example("evical compare result truth.yaml");
   command.action([arguments, &exit_code] {
     print("{}",
-          comparisonTable(compareWithTruth(readResultYaml(resultFileOf(arguments->result)),
+          comparisonTable(compareWithTruth(resultAt(arguments->result),
                                            readResultYaml(resultFileOf(arguments->truth, "truth.yaml")))));
     exit_code = kDone;
   });

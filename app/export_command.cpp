@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
+#include "app/session_arguments.h"
 #include "core/base/error.h"
 #include "core/export/export_target.h"
 #include "core/export/read_back.h"
@@ -101,7 +102,7 @@ int writeAndCheck(const ExportArguments& arguments, const NamedResult& result, c
 int run(const ExportArguments& arguments) {
   const std::stop_token stop = stopOnSignals();  // files are written completely or not at all
   namedTargets(arguments.targets);
-  const NamedResult result = readResultYaml(resultFileOf(arguments.result));
+  const NamedResult result = resultAt(arguments.result);
   return arguments.checked.empty() ? writeAndCheck(arguments, result, stop)
                                    : checkEarlier(arguments, result, stop);
 }

@@ -1,5 +1,6 @@
 #include "app/assessment_command.h"
 #include "app/commands.h"
+#include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/pipeline/maintain/maintain_files.h"
@@ -37,6 +38,7 @@ std::optional<Unit> unitFrom(const std::string& text, const Words& words) {
 }
 
 MaintainInput inputFrom(const MaintainArguments& arguments) {
+  warnOfForeignRunData(arguments.result);
   CalibrationOptions options;
   for (const std::string& setting : arguments.settings) {
     const auto [name, value] = splitAtEquals("--set", setting);

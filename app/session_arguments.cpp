@@ -1,10 +1,13 @@
 #include "app/session_arguments.h"
 #include "app/command_line.h"
+#include "app/output.h"
 
 #include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/base/shell_word.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
 
 #include <fmt/format.h>
 
@@ -52,6 +55,18 @@ std::vector<std::string> foldersOfCameras(const Session& session) {
   std::vector<std::string> names;
   for (const SessionCamera& camera : session.cameras) names.push_back(camera.name);
   return foldersOfNames(names);
+}
+
+void warnOfForeignRunData(const std::string& path) {
+  const std::filesystem::path file = resultFileOf(path);
+  if (file.filename() != kResultFile) return;
+  if (const std::optional<std::string> why = whyRunDataIsForeign(file))
+    printError(fmt::format("warning: {}: {}\n", file.string(), *why));
+}
+
+NamedResult resultAt(const std::string& path) {
+  warnOfForeignRunData(path);
+  return readResultYaml(resultFileOf(path));
 }
 
 }  // namespace evical

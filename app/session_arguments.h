@@ -1,8 +1,9 @@
-// Arguments that calibrate and detect share: SESSION -o DIR [--set
-// group.option=value ...] [--threads N] [--quiet].
+// Arguments that commands share: SESSION -o DIR [--set group.option=value ...] [--threads N] [--quiet] of calibrate
+// and detect; RESULT.
 #pragma once
 
 #include "core/pipeline/session/session.h"
+#include "core/report/result_yaml.h"
 
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ void applySettings(const std::vector<std::string>& settings, Session& session);
 
 // The session with the settings applied.
 Session sessionFrom(const SessionArguments& arguments);
+
+// Result of a calibration or a truth, by its file or folder. Warns if the folder's run data do not belong to it.
+NamedResult resultAt(const std::string& path);
+void warnOfForeignRunData(const std::string& path);
 
 // The same command with the option that repairs its result.
 std::string tryText(const SessionArguments& arguments, const Repair& repair);

@@ -140,8 +140,9 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
          }});
   const auto now_s =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
-  writeAll(runFiles(folder, session, run, now_s.count()));
-  write({"result.yaml", resultYaml(named)});  // written last: marks a complete result
+  const std::string result_yaml = resultYaml(named);
+  writeAll(runFiles(folder, session, run, result_yaml, now_s.count()));
+  write({kResultFile, result_yaml});  // written last: marks a complete result
   files.place();
   return remarks;
 }

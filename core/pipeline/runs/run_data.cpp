@@ -10,10 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace evical {
@@ -116,6 +117,14 @@ inline constexpr bool kLeftOut<ImuPrior> = true;
 namespace {
 
 constexpr std::string_view kMagic = "evical run data\n";
+constexpr const char* kChecksum = "result_yaml_checksum";  // the first part
+constexpr const char* kForeign =
+    "run.data is not used: it belongs to another run than result.yaml, or result.yaml was changed later. "
+    "Trajectory, convergence and residuals are missing. Calibrate again to get them, or restore result.yaml";
+
+unsigned long sumOf(std::string_view bytes) {
+  return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+}
 
 // A line with name, length and checksum, followed by the bytes of an HDF5 file: parts are checked
 // independently, and the library does not receive damaged bytes.
@@ -124,18 +133,22 @@ struct Part {
   std::size_t size = 0;
   unsigned long sum = 0;
 
+  Part(std::string name_of, std::string_view bytes)
+      : name(std::move(name_of)), size(bytes.size()), sum(sumOf(bytes)) {}
+  // The name is empty if this is not the line of a part.
+  explicit Part(const std::string& line) {
+    std::istringstream words(line);
+    if (!(words >> name >> size >> std::hex >> sum)) name.clear();
+  }
+
   std::string line() const { return fmt::format("{} {} {:08x}\n", name, size, sum); }
 };
-
-unsigned long sumOf(std::string_view bytes) {
-  return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-}
 
 template <class T>
 void addPart(const std::string& name, const T& value, const TextSink& sink) {
   const auto fill = [&](const Hdf5Sink& add) { columns::write(name, value, add); };
   writeHdf5(fill, "run: " + name, [&](std::string_view bytes) {
-    sink(Part{name, bytes.size(), sumOf(bytes)}.line());
+    sink(Part(name, bytes).line());
     sink(bytes);
   });
 }
@@ -146,11 +159,9 @@ std::map<std::string, Hdf5Source> partsOf(std::string_view content) {
   if (!content.starts_with(kMagic)) return parts;
   content.remove_prefix(kMagic.size());
   for (std::size_t end = 0; (end = content.find('\n')) != content.npos;) {
-    Part part;
-    std::istringstream line{std::string(content.substr(0, end))};
-    line >> part.name >> part.size >> std::hex >> part.sum;
+    const Part part(std::string(content.substr(0, end)));
     content.remove_prefix(end + 1);
-    if (!line || part.size > content.size()) break;
+    if (part.name.empty() || part.size > content.size()) break;
     const std::string_view bytes = content.substr(0, part.size);
     content.remove_prefix(part.size);
     if (sumOf(bytes) == part.sum)
@@ -276,31 +287,71 @@ bool readWhole(const Hdf5Source& datasets, std::size_t most, const std::string& 
   return false;
 }
 
-}  // namespace
-
-void writeRunData(const CalibrationRun& run, const TextSink& sink) {
-  sink(kMagic);
+void addParts(const CalibrationRun& run, const TextSink& sink) {
   addPart("result", run.result, sink);
   addPart("intrinsics", run.intrinsics, sink);
   addPart("observations", run.pass, sink);
 }
 
-std::string runData(const CalibrationRun& run) {
-  return wholeText([&](const TextSink& sink) { writeRunData(run, sink); });
+constexpr std::uintmax_t kWhole = std::numeric_limits<std::uintmax_t>::max();
+
+std::string bytesOf(const std::filesystem::path& file, std::uintmax_t most) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return {};  // opening a pipe waits for its other end
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::string bytes(error ? 0 : std::min(size, most), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
-ReadRunData readRunData(const std::filesystem::path& file) {
-  std::string content;
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) {  // opening a pipe waits for its other end
-    std::ifstream stream(file, std::ios::binary);
-    content.assign(std::istreambuf_iterator<char>(stream), {});
+// True for files without a checksum, which older versions wrote. Reads only the first part.
+bool isTiedTo(const std::string& result_yaml, std::string_view content) {
+  if (!content.starts_with(kMagic)) return true;
+  const std::size_t end = std::min(content.find('\n', kMagic.size()), content.size() - 1);
+  const Part part(std::string(content.substr(kMagic.size(), end + 1 - kMagic.size())));
+  if (part.name != kChecksum) return true;
+  std::int64_t sum = -1;
+  try {
+    constexpr std::size_t kMost = 1;
+    columns::read(kChecksum, sum, runDatasets(std::string(content.substr(0, end + 1 + part.size))), kMost);
+  } catch (const CalibrationError&) {
+    return false;
+  }
+  return sum == static_cast<std::int64_t>(sumOf(result_yaml));
+}
+
+}  // namespace
+
+void writeRunData(const CalibrationRun& run, const std::string& result_yaml, const TextSink& sink) {
+  sink(kMagic);
+  addPart(kChecksum, static_cast<std::int64_t>(sumOf(result_yaml)), sink);
+  addParts(run, sink);
+}
+
+std::string runData(const CalibrationRun& run) {
+  return std::string(kMagic) + wholeText([&](const TextSink& sink) { addParts(run, sink); });
+}
+
+ReadRunData readRunData(const std::filesystem::path& file, const std::optional<std::string>& result_yaml) {
+  ReadRunData read;
+  const std::string content = bytesOf(file, kWhole);
+  if (!content.empty() && result_yaml && !isTiedTo(*result_yaml, content)) {
+    read.missing.emplace_back(kForeign);
+    return read;
   }
   if (!content.empty()) return parseRunData(content);
-  ReadRunData read;
   read.missing.push_back(
       fmt::format("trajectory, convergence, signals and residuals: {} is missing", file.filename().string()));
   return read;
+}
+
+std::optional<std::string> whyRunDataIsForeign(const std::filesystem::path& result_file) {
+  constexpr std::size_t kFirstParts = std::size_t{1} << 16;
+  const std::string begin = bytesOf(result_file.parent_path() / "run.data", kFirstParts);
+  if (begin.empty() || isTiedTo(bytesOf(result_file, kWhole), begin)) return std::nullopt;
+  return kForeign;
 }
 
 Hdf5Source runDatasets(const std::string& content) {

@@ -30,18 +30,6 @@ std::string contentOf(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-// Visits the session's recordings, then those of sensors.
-template <class Sessions, class Visit>
-void forEachRecording(Sessions& session, Visit&& visit) {
-  visit(session.recording);
-  for (auto& more : session.more_recordings) visit(more);
-  for (auto& camera : session.cameras)
-    if (!camera.recording.empty()) visit(camera.recording);
-  for (auto& imu : session.imus)
-    for (auto* const file : {&imu.recording, &imu.accelerometer_recording})
-      if (!file->empty()) visit(*file);
-}
-
 // Paths of recordings relative to the folder, which may be moved together with them.
 std::string placesYaml(const std::filesystem::path& folder, const Session& session) {
   std::string text;
@@ -190,7 +178,8 @@ class FolderReader {
   }
 
   void readData() {
-    ReadRunData data = readRunData(folder_ / kData);
+    ReadRunData data =
+        readRunData(folder_ / kData, named_ ? std::optional(contentOf(folder_ / kResultFile)) : std::nullopt);
     if (!data.has_result && !named_) throw CalibrationError(*result_error_);
     if (data.has_result) run_.result = std::move(data.run.result);
     run_.intrinsics = std::move(data.run.intrinsics);
@@ -320,11 +309,12 @@ std::optional<Session> sessionOfOldResult(const std::filesystem::path& path) {
 }
 
 std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Session& session,
-                                  const CalibrationRun& run, std::int64_t made_s) {
+                                  const CalibrationRun& run, const std::string& result_yaml,
+                                  std::int64_t made_s) {
   RunSummary summary = summaryOf(session, run.result);
   summary.made_s = made_s;
   return {{kSessionFile, sessionYaml(session, folder)},
-          {kData, {}, [&run](const TextSink& sink) { writeRunData(run, sink); }},
+          {kData, {}, [&run, result_yaml](const TextSink& sink) { writeRunData(run, result_yaml, sink); }},
           {kRun, summaryYaml(summary, placesYaml(folder, session))}};
 }
 
@@ -332,10 +322,10 @@ void keepRun(const std::filesystem::path& folder, const Session& session,
              const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
              const std::string& log, std::int64_t made_s) {
   makeOutputFolder(folder);
-  std::vector<FileContent> files = runFiles(folder, session, *run, made_s);
+  const std::string result_yaml = resultYaml(namedRun(session, run, version));
+  std::vector<FileContent> files = runFiles(folder, session, *run, result_yaml, made_s);
   files.push_back({kLog, log});
-  files.push_back(
-      {kResultFile, resultYaml(namedRun(session, run, version))});  // written last: marks a complete result
+  files.push_back({kResultFile, result_yaml});  // written last: marks a complete result
   for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }

@@ -59,20 +59,34 @@ struct SavedRun {
       missing;  // for a damaged folder or one of an older version: missing data with reasons
 };
 
-// The three files above. `made_s`: since 1970.
+// The three files above. `result_yaml`: content of the run's result.yaml; `made_s`: since 1970.
 std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Session& session,
-                                  const CalibrationRun& run, std::int64_t made_s);
+                                  const CalibrationRun& run, const std::string& result_yaml,
+                                  std::int64_t made_s);
 
 // Writes the folder of a run without report and exports: result.yaml, log.txt and the three files.
 void keepRun(const std::filesystem::path& folder, const Session& session,
              const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
              const std::string& log, std::int64_t made_s);
 
+// Visits the session's recordings, then those of sensors.
+template <class Sessions, class Visit>
+void forEachRecording(Sessions& session, Visit&& visit) {
+  visit(session.recording);
+  for (auto& more : session.more_recordings) visit(more);
+  for (auto& camera : session.cameras)
+    if (!camera.recording.empty()) visit(camera.recording);
+  for (auto& imu : session.imus)
+    for (auto* const file : {&imu.recording, &imu.accelerometer_recording})
+      if (!file->empty()) visit(*file);
+}
+
 // True for a folder with a result.yaml, for that file, and for a run.yaml.
 bool isSavedRun(const std::filesystem::path& path);
 
 // Throws CalibrationError (BadInput) only if there is nothing to display: both result.yaml and run.data are
-// missing or damaged. Other missing data are listed.
+// missing or damaged. Other missing data are listed. Numbers are those of result.yaml: run.data is not used if the
+// two differ.
 SavedRun readSavedRun(const std::filesystem::path& path);
 
 // Throw CalibrationError (BadInput) if run.yaml is missing or damaged.

@@ -256,6 +256,56 @@ class TestSavedRun : public QObject {
       QVERIFY(static_cast<std::size_t>(r.view) < saved.run->pass.cameras[0].views.size());
   }
 
+  // result.yaml is the truth: run.data is its cache.
+  void resultThatWasEdited_isTheTruth() {
+    const std::filesystem::path folder = copy("edited");
+    QVERIFY(!whyRunDataIsForeign(folder / "result.yaml"));
+    QByteArray yaml = evical::test::fileContent(folder / "result.yaml");
+    const QByteArray key = "\n    time_offset_s: ";  // the camera's comes first
+    const qsizetype at = yaml.indexOf(key) + key.size();
+    yaml.replace(at, yaml.indexOf('\n', at) - at, "0.5");
+    writeForSavedRun(folder / "result.yaml", yaml);
+    const SavedRun saved = readSavedRun(folder);
+    QCOMPARE(saved.run->result.state.cameras[0].time_offset_s, 0.5);
+    QVERIFY(saved.run->result.state.imu_in_world_m.control_points.empty());
+    QVERIFY2(missingIn(saved).contains("result.yaml was changed later"), qPrintable(missingIn(saved)));
+    QVERIFY(missingIn(saved).contains("Trajectory, convergence and residuals are missing"));
+    QVERIFY(whyRunDataIsForeign(folder / "result.yaml").value_or("").find("changed later") !=
+            std::string::npos);
+    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());  // of the tables
+  }
+
+  void runDataOfAnotherRun_isNotMixedIn() {
+    const std::filesystem::path folder = copy("mixed");
+    auto other = std::make_shared<CalibrationRun>(*run_);
+    other->result.state.cameras[0].time_offset_s = 0.25;
+    keepRun(scratch() / "mixed_other", simulated_.session, other, "test", "", 100);
+    QVERIFY(readSavedRun(scratch() / "mixed_other").missing.empty());
+    std::filesystem::copy_file(scratch() / "mixed_other" / "run.data", folder / "run.data",
+                               std::filesystem::copy_options::overwrite_existing);
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY2(missingIn(saved).contains("it belongs to another run"), qPrintable(missingIn(saved)));
+    QCOMPARE(saved.run->result.state.cameras[0].time_offset_s,
+             readResultYaml(folder / "result.yaml").result->state.cameras[0].time_offset_s);
+  }
+
+  // Its checksum is not compared: older versions did not write it.
+  void runDataWithoutAChecksum_isUsed() {
+    const std::filesystem::path folder = copy("unchecked");
+    writeForSavedRun(folder / "run.data", QByteArray::fromStdString(runData(*run_)));
+    QVERIFY(!whyRunDataIsForeign(folder / "result.yaml"));
+    QVERIFY2(readSavedRun(folder).missing.empty(), qPrintable(missingIn(readSavedRun(folder))));
+  }
+
+  void damagedChecksum_isNoAgreement() {
+    const std::filesystem::path folder = copy("damaged_sum");
+    QByteArray data = evical::test::fileContent(folder / "run.data");
+    const qsizetype line = data.indexOf('\n', data.indexOf("result_yaml_checksum"));
+    data[line + 200] = static_cast<char>(data[line + 200] ^ 0x10);
+    writeForSavedRun(folder / "run.data", data);
+    QVERIFY(missingIn(readSavedRun(folder)).contains("run.data is not used"));
+  }
+
   void olderFolder_hasItsNumbersAndDetections() {
     const std::filesystem::path folder = copy("older");
     for (const char* name : {"run.data", "run.yaml", "run_session.yaml"})
