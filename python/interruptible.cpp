@@ -1,10 +1,15 @@
 #include "python/interruptible.h"
 
+#include "python/errors.h"
+#include "python/interpreter.h"
+
+#include <cxxabi.h>
 #include <fmt/format.h>
 
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <utility>
@@ -21,6 +26,7 @@ class Worker {
  public:
   explicit Worker(std::function<void(std::stop_token)> work)
       : thread_([this, call = std::move(work)](const std::stop_token& stop) {
+          const Inside inside;
           try {
             call(stop);
           } catch (...) {
@@ -49,31 +55,31 @@ class Worker {
   std::jthread thread_;  // the last member: it uses the others
 };
 
-// Names in damaged files need not be UTF-8.
-py::str textOf(const std::string& bytes) {
-  return py::reinterpret_steal<py::str>(
-      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace"));
-}
-
 void handOn(const RunLog::News& news, const py::object& progress) {
   if (!news.lines.empty()) {
     const py::object logger = py::module_::import("logging").attr("getLogger")("evical");
-    for (const RunLog::Line& line : news.lines) logger.attr(levelName(line.level))("%s", textOf(line.text));
+    for (const RunLog::Line& line : news.lines)
+      called(logger.attr(levelName(line.level)), py::make_tuple("%s", textOf(line.text)));
   }
-  if (news.moved && !progress.is_none()) progress(news.stage, news.fraction);
+  if (news.moved && !progress.is_none()) called(progress, py::make_tuple(textOf(news.stage), news.fraction));
 }
 
 // Checks for signals and news until the worker ends. Returns what Python raised meanwhile.
 std::exception_ptr attend(Worker& worker, RunLog& log, const py::object& progress) {
+  std::optional<std::stop_callback<std::function<void()>>> stop_with_interpreter;
+  if (!endOfInterpreter().stop_requested())  // else this thread ends it, and works until it is done
+    stop_with_interpreter.emplace(endOfInterpreter(), [&worker] { worker.stop(); });
   try {
     for (bool ended = false; !ended;) {
       {
-        const py::gil_scoped_release others_work;
+        const OthersWork others_work;
         ended = worker.endsWithin(kBetweenLooks);
       }
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       handOn(log.takeNews(), progress);
     }
+  } catch (abi::__forced_unwind&) {
+    stayForever();
   } catch (...) {
     return std::current_exception();
   }
@@ -118,12 +124,13 @@ RunLog::News RunLog::takeNews() {
 void runInterruptibly(const py::object& progress, RunLog& log,
                       const std::function<void(const RunContext&)>& work) {
   checkProgress(progress);
+  { const OthersWork stays_if_interpreter_ends; }
   Worker worker([&](std::stop_token stop) { work(RunContext{log, std::move(stop)}); });
   const std::exception_ptr interruption = attend(worker, log, progress);
   if (interruption) worker.stop();
   std::exception_ptr failure;
   {
-    const py::gil_scoped_release others_work;
+    const OthersWork others_work;
     failure = worker.join();
   }
   if (interruption) std::rethrow_exception(interruption);

@@ -7,6 +7,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"
+#include "python/interpreter.h"
 #include "python/interruptible.h"
 #include "python/open_recording.h"
 
@@ -14,8 +15,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <chrono>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -118,7 +121,7 @@ PixelLayout layoutOf(const Frame& frame) {
 py::array brightnessOf(const FrameOfPacket& frame) {
   GrayImage image;
   {
-    const py::gil_scoped_release others_work;
+    const OthersWork others_work;
     image = decodeFrame(frame.frame(), frame.place);
   }
   return py::array_t<std::uint8_t>({image.size_px.height_px, image.size_px.width_px}, image.pixels.data());
@@ -147,46 +150,71 @@ py::object resolutionOf(const Resolution& size_px) {
   return size_px.known() ? py::object(py::make_tuple(size_px.width_px, size_px.height_px)) : py::none();
 }
 
-py::object nextPacket(const std::shared_ptr<OpenRecording>& recording) {
-  std::shared_ptr<Packet> packet;
-  try {
-    const py::gil_scoped_release others_read;
-    packet = recording->read();
-  } catch (const OpenRecording::Closed&) {
-    throwClosed(recording->path());
+constexpr std::chrono::milliseconds kBetweenSignals(50);
+
+// Repeats `attempt`, which waits for its turn without the interpreter's lock; Ctrl-C ends the wait.
+template <class Attempt>
+auto waitFor(const OpenRecording& recording, const Attempt& attempt) {
+  for (;;) {
+    decltype(attempt(kBetweenSignals)) done{};
+    try {
+      const OthersWork others_read;
+      done = attempt(kBetweenSignals);
+    } catch (const OpenRecording::Closed&) {
+      throwClosed(recording.path());
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (done) return done;
   }
-  // Ctrl-C ends a loop over packets between two of them.
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+py::object nextPacket(OpenRecording& recording) {
+  std::shared_ptr<Packet> packet =
+      *waitFor(recording, [&](std::chrono::milliseconds longest) { return recording.read(longest); });
   if (!packet) return py::none();
-  StreamInfo info = recording->stream(packet->stream);
-  return py::cast(PacketOfStream{std::move(packet), std::move(info), recording->path()});
+  StreamInfo info = recording.stream(packet->stream);
+  return py::cast(PacketOfStream{std::move(packet), std::move(info), recording.path()});
+}
+
+void closeRecording(OpenRecording& recording) {
+  waitFor(recording, [&](std::chrono::milliseconds longest) { return recording.close(longest); });
+}
+
+std::shared_ptr<OpenRecording> notClosed(std::shared_ptr<OpenRecording> recording) {
+  if (recording->isOfOtherProcess()) static_cast<void>(recording->streams());  // throws
+  if (recording->closed()) throwClosed(recording->path());
+  return recording;
 }
 
 std::shared_ptr<OpenRecording> openForPython(const std::filesystem::path& path,
-                                             const std::vector<std::string>& streams) {
-  const py::gil_scoped_release others_work;
-  return std::make_shared<OpenRecording>(path, streams);
+                                             const std::optional<std::vector<py::str>>& streams) {
+  std::optional<std::vector<std::string>> names;
+  if (streams) names.emplace();
+  for (const py::str& stream : streams.value_or(std::vector<py::str>())) names->push_back(bytesOf(stream));
+  const OthersWork others_work;
+  return std::make_shared<OpenRecording>(path, names);
 }
 
 py::object inspect(const std::filesystem::path& path, const py::object& progress) {
   std::string json;
   RunLog log;
   runInterruptibly(progress, log, [&](const RunContext& context) {
-    const std::unique_ptr<RecordingReader> reader = openRecording(path);
+    const std::unique_ptr<RecordingReader> reader = openRecording(pathForReading(path));
     constexpr bool kWithChecksums = true;
     json = inspectionJson(inspectRecording(*reader, {}, context), kWithChecksums);
   });
-  return py::module_::import("json").attr("loads")(json);
+  return py::module_::import("json").attr("loads")(textOf(json));
 }
 
 void bindParts(py::module_& module) {
   py::class_<Stream>(module, "Stream", "One stream of a recording.")
-      .def_property_readonly("name", [](const Stream& s) { return s.info.name; })
+      .def_property_readonly("name", [](const Stream& s) { return identifierOf(s.info.name); })
       .def_property_readonly(
           "type", [](const Stream& s) { return streamTypeName(s.info.type); },
           "events, imu, frames, points, triggers or other.")
       .def_property_readonly(
-          "message", [](const Stream& s) { return s.info.message; }, "The file's name for the type of data.")
+          "message", [](const Stream& s) { return textOf(s.info.message); },
+          "The file's name for the type of data.")
       .def_property_readonly(
           "resolution_px", [](const Stream& s) { return resolutionOf(s.info.resolution_px); },
           "Tuple (width, height) in px; None if the file does not state it.")
@@ -200,15 +228,18 @@ void bindParts(py::module_& module) {
           "angular_rate_to_rad_s", [](const Stream& s) { return radiansPerSecond(s.info.angular_rate_unit); },
           "Factor that converts `angular_rate` of an IMU to rad/s, according to the format.")
       .def("__repr__", [](const Stream& s) {
-        return fmt::format("<evical.Stream '{}': {}>", s.info.name, streamTypeName(s.info.type));
+        return textOf(fmt::format("<evical.Stream '{}': {}>", s.info.name, streamTypeName(s.info.type)));
       });
   py::class_<RecordingFault>(module, "Fault", "A damage or an anomaly of a recording.")
-      .def_readonly("stream", &RecordingFault::stream, "Name of the stream; empty: the whole file.")
+      .def_property_readonly(
+          "stream", [](const RecordingFault& f) { return identifierOf(f.stream); },
+          "Name of the stream; empty: the whole file.")
       .def_property_readonly("kind", [](const RecordingFault& f) { return nameOf(f.kind); })
       .def_readonly("at_s", &RecordingFault::at_s, "Seconds since the stream's first time; 0 if unknown.")
-      .def_readonly("text", &RecordingFault::text, "Description in one sentence.")
+      .def_property_readonly(
+          "text", [](const RecordingFault& f) { return textOf(f.text); }, "Description in one sentence.")
       .def("__repr__", [](const RecordingFault& f) {
-        return fmt::format("<evical.Fault {}: {}>", nameOf(f.kind), f.text);
+        return textOf(fmt::format("<evical.Fault {}: {}>", nameOf(f.kind), f.text));
       });
   py::class_<FrameOfPacket>(module, "Frame", "An image of a frame camera.")
       .def_property_readonly(
@@ -238,7 +269,8 @@ void bindPacket(py::module_& module) {
             return recordsOf(self.cast<const PacketOfStream&>().packet->events, eventType(), self);
           },
           "(N,) records t [ns, int64], x, y [px, uint16; (0, 0) is top left], p [bool, True: brighter], "
-          "sorted by t. A view of the packet's memory.")
+          "sorted by t. A view of the packet's memory. Recording.faults has an entry if packets of a "
+          "stream overlap.")
       .def_property_readonly(
           "imu",
           [](const py::object& self) {
@@ -260,7 +292,7 @@ void bindPacket(py::module_& module) {
                     p.packet->frames.size();
            })
       .def("__repr__", [](const PacketOfStream& p) {
-        return fmt::format("<evical.Packet of '{}', {}>", p.info.name, streamTypeName(p.info.type));
+        return textOf(fmt::format("<evical.Packet of '{}', {}>", p.info.name, streamTypeName(p.info.type)));
       });
 }
 
@@ -273,24 +305,13 @@ void bindRecording(py::module_& module) {
       module, "Recording",
       "An open recording. Iterate over its packets once, then close it, or use `with`. Only one packet is "
       "in memory at a time. Threads may share a recording; each packet goes to one of them.")
-      .def("__enter__",
-           [](const std::shared_ptr<OpenRecording>& r) {
-             if (r->closed()) throwClosed(r->path());
-             return r;
-           })
-      .def(
-          "__exit__", [](OpenRecording& r, const py::args&) { r.close(); },
-          py::call_guard<py::gil_scoped_release>())
-      .def("close", &OpenRecording::close, py::call_guard<py::gil_scoped_release>(),
-           "Closes the file; arrays remain valid. A second call does nothing.")
+      .def("__enter__", notClosed)
+      .def("__exit__", [](OpenRecording& r, const py::args&) { closeRecording(r); })
+      .def("close", closeRecording, "Closes the file; arrays remain valid. A second call does nothing.")
       .def_property_readonly("closed", &OpenRecording::closed)
-      .def("__iter__",
-           [](const std::shared_ptr<OpenRecording>& r) {
-             if (r->closed()) throwClosed(r->path());
-             return r;
-           })
+      .def("__iter__", notClosed)
       .def("__next__",
-           [](const std::shared_ptr<OpenRecording>& r) {
+           [](OpenRecording& r) {
              py::object packet = nextPacket(r);
              if (packet.is_none()) throw py::stop_iteration();
              return packet;
@@ -309,8 +330,10 @@ void bindRecording(py::module_& module) {
       .def_property_readonly("fraction_read", &OpenRecording::fractionRead,
                              "Fraction of the file's bytes that is read, 0..1.")
       .def("__repr__", [](const OpenRecording& r) {
-        return fmt::format("<evical.Recording '{}', {}{}>", r.path(), r.format(),
-                           r.closed() ? ", closed" : "");
+        return textOf(fmt::format("<evical.Recording '{}', {}{}>", r.path(), r.format(),
+                                  r.isOfOtherProcess() ? ", of another process"
+                                  : r.closed()         ? ", closed"
+                                                       : ""));
       });
   module.def("_set_recording_server", setRecordingServer, py::arg("command"));
   module.def("_serve_recording", serveRecording, py::arg("path"));

@@ -35,7 +35,7 @@ def open(path: Path, streams: Union[None, str, Iterable[str]] = None) -> Recordi
 
     Args:
         path: a file or folder.
-        streams: names of streams, or "events", "imu", "frames", "points"; None: all streams of these types.
+        streams: names of streams, or "events", "imu", "frames", "points"; None: all streams of these types; an empty list: none.
 
     Raises:
         InputError: the recording is missing or cannot be read, or has no such stream.
@@ -46,7 +46,7 @@ def open(path: Path, streams: Union[None, str, Iterable[str]] = None) -> Recordi
     """
     if isinstance(streams, str):
         streams = [streams]
-    return _open(os.fspath(path), [] if streams is None else list(streams))
+    return _open(os.fspath(path), None if streams is None else list(streams))
 
 
 def calibrate(session: Union[Session, Path], output: Optional[Path] = None, progress: Optional[Progress] = None) -> Result:

@@ -2,6 +2,7 @@
 
 import gc
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -179,3 +180,104 @@ def test_closing_under_a_reading_thread_ends_it(bag):
     recording.close()
     thread.join()
     assert ended in (["closed"], ["end"])
+
+
+@pytest.mark.parametrize("rows, steps, largest_ms", [([1, 2, 5, 3, 4, 6], "1 time", "0.002"), ([1, 50_000, 2, 60_000, 3], "2 times", "59.997")])
+def test_times_that_run_backwards_are_a_fault(tmp_path, rows, steps, largest_ms):
+    file = tmp_path / "events.txt"
+    file.write_text("t_us,x,y,p\n" + "".join(f"{t},1,2,1\n" for t in rows))
+    with evical.open(file) as recording:
+        packets = [packet.events["t"] for packet in recording]
+        assert sorted(np.concatenate(packets)) == [1000 * t for t in sorted(rows)]
+        assert all((np.diff(times) >= 0).all() for times in packets)
+        [fault] = [fault for fault in recording.faults if fault.kind == "backward_time"]
+    assert f"runs backwards {steps} between packets, by {largest_ms} ms at most" in fault.text
+    assert fault.stream == "events.txt"
+
+
+def test_imu_times_that_run_backwards_are_a_fault(tmp_path):
+    file = tmp_path / "imu.csv"
+    file.write_text("t_us,ax,ay,az,gx,gy,gz\n" + "".join(f"{t},0,0,9.81,0,0,0\n" for t in (1000, 3000, 2000, 4000)))
+    with evical.open(file) as recording:
+        assert len(list(recording)) > 0 and "backward_time" in [fault.kind for fault in recording.faults]
+
+
+def test_sorted_times_are_no_fault(bag):
+    with evical.open(bag) as recording:
+        assert len(list(recording)) > 0 and "backward_time" not in [fault.kind for fault in recording.faults]
+
+
+@pytest.mark.parametrize("name", ["evlib_event.txt", "metavision_ecf.hdf5", "ros1_evt3_with_triggers.bag"])
+def test_no_streams_are_no_packets(source, name):
+    with evical.open(source / "tests" / "data" / "recordings" / name, streams=[]) as recording:
+        assert len(recording.streams) > 0 and list(recording) == []
+
+
+def test_own_records_are_read_again_with_their_times(bag, tmp_path):
+    """NumPy's files state no unit, and pandas' tables neither."""
+    with evical.open(bag, streams="events") as recording:
+        events = np.concatenate([next(recording).events for _ in range(20)])
+    events["t"] -= events["t"][0]  # times since 1970 show their unit
+    packed = np.empty(len(events), dtype=[("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("p", "?")])
+    for name in packed.dtype.names:
+        packed[name] = events[name]
+    np.save(tmp_path / "events.npy", events)
+    np.save(tmp_path / "packed.npy", packed)
+    np.savez(tmp_path / "events.npz", events=events)
+    rows = [f"{event['t']},{event['x']},{event['y']},{event['p']}\n" for event in events]
+    (tmp_path / "table.csv").write_text("t,x,y,p\n" + "".join(rows))
+    (tmp_path / "with_index.csv").write_text(",t,x,y,p\n" + "".join(f"{k},{row}" for k, row in enumerate(rows)))
+    for name in ("events.npy", "packed.npy", "events.npz", "table.csv", "with_index.csv"):
+        with evical.open(tmp_path / name) as recording:
+            again = np.concatenate([packet.events for packet in recording])
+            assert "guess" in [fault.kind for fault in recording.faults]
+        np.testing.assert_array_equal(again, events, name)
+
+
+def test_times_in_us_with_the_same_names_stay_in_us(tmp_path):
+    """Rates that no sensor has in ns."""
+    times_us = 5_000_000 + 10 * np.arange(3000)
+    other = np.zeros(3000, dtype=[("t", "<i8"), ("x", "<u2"), ("y", "<u2"), ("p", "?")])
+    other["t"] = times_us
+    np.save(tmp_path / "other.npy", other)
+    (tmp_path / "other.csv").write_text("t,x,y,p\n" + "".join(f"{t},1,2,True\n" for t in times_us))
+    for name in ("other.npy", "other.csv"):
+        with evical.open(tmp_path / name) as recording:
+            np.testing.assert_array_equal(np.concatenate([packet.events["t"] for packet in recording]), 1000 * times_us)
+
+
+def test_the_current_folder_may_change_while_a_folder_is_read(tmp_path, monkeypatch):
+    (tmp_path / "pictures").mkdir()
+    for number in range(40):
+        (tmp_path / "pictures" / f"{number:03}.pgm").write_bytes(b"P5 4 3 255\n" + bytes(12))
+    monkeypatch.chdir(tmp_path)
+    with evical.open("pictures") as recording:
+        monkeypatch.chdir("/")
+        assert sum(len(packet.frames) for packet in recording) == 40
+
+
+def test_names_that_are_not_utf8_are_names(tmp_path):
+    file = os.path.join(os.fsencode(tmp_path), b"l\xf6g.txt")
+    with open(file, "w") as text:
+        text.write("t_us,x,y,p\n" + "".join(f"{t},1,2,1\n" for t in (3, 1, 2)))
+    with evical.open(os.fsdecode(file)) as recording:
+        [stream] = recording.streams
+        assert os.fsencode(stream.name) == b"l\xf6g.txt" and stream.message
+        repr(stream).encode(), repr(recording).encode()
+        assert len(list(recording)) > 0
+        [repr(fault) + fault.stream + fault.text for fault in recording.faults]
+    with evical.open(os.fsdecode(file), streams=[stream.name]) as recording:
+        assert len(list(recording)) > 0
+    assert evical.inspect(os.fsdecode(file))["streams"]
+    session = evical.Session.guess(os.fsdecode(file))
+    [camera] = session.cameras.values()
+    assert camera.stream == stream.name
+    camera.stream = stream.name
+    for use in (lambda: repr(session), lambda: session.to_yaml(), lambda: str(session.recording)):
+        assert use()
+    for wrong in (lambda: evical.open(os.fsdecode(file + b"2")), lambda: evical.Session.load(os.fsdecode(file)),
+                  lambda: evical.Camera.load(os.fsdecode(file)), lambda: evical.Result.load(os.fsdecode(file)),
+                  lambda: evical.calibrate(os.fsdecode(file)), lambda: evical.open(os.fsdecode(file), streams=["\udcf6"])):
+        with pytest.raises(evical.InputError) as caught:
+            wrong()
+        assert str(caught.value).encode() and caught.value.place.encode()
