@@ -8,6 +8,8 @@
 #include "core/recording/recording_reader.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/errors.h"
+#include "python/interpreter.h"
 #include "python/interruptible.h"
 
 #include <fmt/format.h>
@@ -45,21 +47,31 @@ py::object optionsOf(const Session& session) {
   return readOnly(options);
 }
 
-// A value that is refused leaves the session unchanged.
+// A value that is refused leaves the session unchanged. The session's sensors stay where they are, since Python has
+// references to them.
 void setKey(Session& session, const std::string& key, const py::object& value) {
   const std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
                                                             : py::str(value).cast<std::string>();
-  Session changed = session;
-  setInSession(changed, key, text);
-  validate(changed.options);
-  session = std::move(changed);
+  Session tried = session;
+  setInSession(tried, key, text);
+  validate(tried.options);
+  setInSession(session, key, text);
+}
+
+// Numbers that must be given, unlike those of a form, which people see before they use them.
+Board notGiven() {
+  Board board;
+  board.rows = board.cols = 0;
+  board.spacing_m = board.radius_m = 0.0;
+  return board;
 }
 
 Session guess(const py::args& given, const py::object& progress) {
   if (given.empty())
     throw badInput("recordings", "no path is given", "Give the path of at least one recording");
   std::vector<std::filesystem::path> recordings;
-  for (const py::handle& path : given) recordings.push_back(path.cast<std::filesystem::path>());
+  for (const py::handle& path : given)
+    recordings.push_back(std::filesystem::absolute(path.cast<std::filesystem::path>()));
   SessionDraft draft;
   RunLog log;
   runInterruptibly(progress, log, [&](const RunContext& context) {
@@ -74,6 +86,8 @@ Session guess(const py::args& given, const py::object& progress) {
     draft = draftSession(inspected, ".");
     for (const std::string& note : draft.notes) context.progress.log(LogLevel::Info, note);
   });
+  draft.session.board = notGiven();
+  for (SessionImu& imu : draft.session.imus) imu.noise = {0.0, 0.0, 0.0, 0.0};
   return draft.session;
 }
 
@@ -82,8 +96,19 @@ template <class Sensor>
 py::object sensorByName(std::vector<Sensor>& sensors, const py::object& session) {
   py::dict found;
   for (Sensor& sensor : sensors)
-    found[py::str(sensor.name)] = py::cast(&sensor, py::return_value_policy::reference_internal, session);
+    found[identifierOf(sensor.name)] =
+        py::cast(&sensor, py::return_value_policy::reference_internal, session);
   return readOnly(found);
+}
+
+// A name as an attribute.
+template <class Sensor>
+auto getName(std::string Sensor::*member) {
+  return [member](const Sensor& sensor) { return identifierOf(sensor.*member); };
+}
+template <class Sensor>
+auto setName(std::string Sensor::*member) {
+  return [member](Sensor& sensor, const py::str& name) { sensor.*member = bytesOf(name); };
 }
 
 template <std::size_t Count>
@@ -105,7 +130,7 @@ py::tuple stateOfBoard(const Board& board) {
                         kShades[static_cast<std::size_t>(board.circles)], board.tag_size_m, given_m);
 }
 
-Board boardFromState(const py::tuple& state) {
+Board boardFromMembers(const py::tuple& state) {
   Board board;
   board.type = static_cast<BoardType>(indexOf(kBoardTypeNames, state[0].cast<std::string>(), "board.type"));
   board.rows = state[1].cast<int>();
@@ -119,10 +144,28 @@ Board boardFromState(const py::tuple& state) {
   return board;
 }
 
+Board boardFromState(const py::tuple& state) {
+  return restored(state, 8, "Board", boardFromMembers);
+}
+
+Session sessionFromState(const py::tuple& state) {
+  return restored(state, 2, "Session", [](const py::tuple& s) {
+    Session session = parseSession(bytesOf(s[0].cast<py::str>()), "/");
+    session.source = s[1].cast<std::filesystem::path>();
+    return session;
+  });
+}
+
+// Tuples, since changes of a list would be lost.
+template <class Values>
+py::object tupleOf(const Values& values) {
+  return py::tuple(py::cast(values));
+}
+
 void bindBoard(py::module_& module) {
   py::class_<Board>(module, "Board",
                     "The printed target. Its frame: x along a row, y down the columns, z into the board; m.")
-      .def(py::init<>())
+      .def(py::init(&notGiven), "A board without dimensions: give all that its type has.")
       .def_property(
           "type", [](const Board& b) { return boardTypeName(b.type); },
           [](Board& b, const std::string& type) {
@@ -170,37 +213,45 @@ void setResolution(SessionCamera& camera, const std::optional<std::array<int, 2>
 
 void bindSensors(py::module_& module) {
   py::class_<SessionCamera>(module, "SessionCamera", "A camera of a session.")
-      .def_readonly("name", &SessionCamera::name)
-      .def_readwrite("stream", &SessionCamera::stream, "Topic or stream name in the file.")
-      .def_readwrite(
-          "intrinsics", &SessionCamera::intrinsics,
+      .def_property_readonly("name", getName(&SessionCamera::name))
+      .def_property("stream", getName(&SessionCamera::stream), setName(&SessionCamera::stream),
+                    "Topic or stream name in the file.")
+      .def_property(
+          "intrinsics",
+          [](const SessionCamera& c) -> std::optional<CameraIntrinsics> { return c.intrinsics; },
+          [](SessionCamera& c, const std::optional<CameraIntrinsics>& lens) { c.intrinsics = lens; },
           "A Camera; None: the lens is calibrated first, from the same events. This is a copy: assign a "
           "Camera to change it.")
       .def_property(
           "resolution_px",
-          [](const SessionCamera& c) -> std::optional<std::array<int, 2>> {
-            if (!c.resolution_px.known()) return std::nullopt;
-            return std::array<int, 2>{c.resolution_px.width_px, c.resolution_px.height_px};
+          [](const SessionCamera& c) -> py::object {
+            if (!c.resolution_px.known()) return py::none();
+            return py::make_tuple(c.resolution_px.width_px, c.resolution_px.height_px);
           },
           setResolution,
-          "List [width, height] in px, assigned from a list or tuple; None: the recording states it.")
+          "Tuple (width, height) in px, assigned from a list or tuple; None: the recording states it.")
       .def_readwrite("recording", &SessionCamera::recording, "Separate recording; empty: the session's.")
       .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s,
                      "Known offset that is added to the stream's times.")
-      .def_readwrite("rejected_windows_s", &SessionCamera::rejected_windows_s,
-                     "Calibrations of the rig exclude the event windows and frames at these times since the "
-                     "recording's start. This is a copy: assign a list to change it.");
+      .def_property(
+          "rejected_windows_s", [](const SessionCamera& c) { return tupleOf(c.rejected_windows_s); },
+          [](SessionCamera& c, const std::vector<double>& times_s) { c.rejected_windows_s = times_s; },
+          "Tuple; calibrations of the rig exclude the event windows and frames at these times since the "
+          "recording's start. Assign a list or tuple to change it.");
   py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
-      .def_readonly("name", &SessionImu::name)
-      .def_readwrite("stream", &SessionImu::stream)
-      .def_readwrite("accelerometer_stream", &SessionImu::accelerometer_stream,
-                     "Stream of the accelerometer, if it is separate; `stream` is then the gyroscope's.")
+      .def_property_readonly("name", getName(&SessionImu::name))
+      .def_property("stream", getName(&SessionImu::stream), setName(&SessionImu::stream))
+      .def_property("accelerometer_stream", getName(&SessionImu::accelerometer_stream),
+                    setName(&SessionImu::accelerometer_stream),
+                    "Stream of the accelerometer, if it is separate; `stream` is then the gyroscope's.")
       .def_property(
           "gyroscope_noise_density", [](const SessionImu& i) { return i.noise.gyroscope_density; },
-          [](SessionImu& i, double density) { i.noise.gyroscope_density = density; }, "rad/s/sqrt(Hz).")
+          [](SessionImu& i, double density) { i.noise.gyroscope_density = density; },
+          "rad/s/sqrt(Hz); 0: not given.")
       .def_property(
           "accelerometer_noise_density", [](const SessionImu& i) { return i.noise.accelerometer_density; },
-          [](SessionImu& i, double density) { i.noise.accelerometer_density = density; }, "m/s^2/sqrt(Hz).")
+          [](SessionImu& i, double density) { i.noise.accelerometer_density = density; },
+          "m/s^2/sqrt(Hz); 0: not given.")
       .def_readwrite("recording", &SessionImu::recording, "Separate recording; empty: the session's.")
       .def_readwrite("accelerometer_recording", &SessionImu::accelerometer_recording,
                      "The accelerometer's own file; empty: `recording` has both sensors.")
@@ -224,17 +275,20 @@ void bindSession(py::module_& module) {
   bindBoard(module);
   bindSensors(module);
   py::class_<Session>(module, "Session", "Recording, board, sensors, and their known parameters.")
-      .def_static("load", &readSession, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+      .def_static("load", &readSession, py::arg("path"), py::call_guard<OthersWork>(),
                   "From a session file. Raises InputError that names file, key and line.")
       .def_static(
           "guess", &guess, py::arg("progress") = py::none(),
           "guess(*recordings, progress=None): drafts a session from recordings, with their event streams as "
-          "cameras, and their IMUs. Fill in board and noise; the logger \"evical\" lists what is missing. "
+          "cameras, and their IMUs. Board and noise are not given (0): fill them in, or calibrate raises "
+          "InputError; the logger \"evical\" lists what is missing. "
           "Reads the whole recordings. Raises InputError if no session results.")
       .def("save", &writeSession, py::arg("path"), "Writes a session file: the whole file or nothing.")
       .def(
           "to_yaml",
-          [](const Session& s, const std::filesystem::path& folder) { return sessionYaml(s, folder); },
+          [](const Session& s, const std::filesystem::path& folder) {
+            return textOf(sessionYaml(s, folder));
+          },
           py::arg("folder") = ".", "The text that save writes, with paths relative to `folder`.")
       .def("set", &setKey, py::arg("key"), py::arg("value"),
            "Sets one value, as `--set` on the command line: an option (\"group.option\"), \"imus.NAME.KEY\" "
@@ -243,10 +297,14 @@ void bindSession(py::module_& module) {
                              "Values of all options by name; read-only: use `set` to change them.")
       .def_readonly("source", &Session::source, "The file it was read from.")
       .def_readwrite("recording", &Session::recording)
-      .def_readwrite("time_range_s", &Session::time_range_s,
-                     "[begin, end] since the recording's start; None: the whole recording.")
+      .def_property(
+          "time_range_s",
+          [](const Session& s) { return s.time_range_s ? tupleOf(*s.time_range_s) : py::none(); },
+          [](Session& s, const std::optional<std::array<double, 2>>& range_s) { s.time_range_s = range_s; },
+          "Tuple (begin, end) since the recording's start; None: the whole recording.")
       .def_readwrite("board", &Session::board)
-      .def_readwrite("reference", &Session::reference, "Name of an IMU; of a camera if there is no IMU.")
+      .def_property("reference", getName(&Session::reference), setName(&Session::reference),
+                    "Name of an IMU; of a camera if there is no IMU.")
       .def_property_readonly(
           "cameras", [](const py::object& self) { return sensorByName(self.cast<Session&>().cameras, self); },
           "SessionCamera by name. The mapping is read-only, the cameras are not.")
@@ -256,15 +314,12 @@ void bindSession(py::module_& module) {
       .def("copy", [](const Session& s) { return s; })
       .def("__copy__", [](const Session& s) { return s; })
       .def("__deepcopy__", [](const Session& s, const py::dict&) { return s; })
-      .def(py::pickle([](const Session& s) { return py::make_tuple(sessionYaml(s, "/"), s.source); },
-                      [](const py::tuple& state) {
-                        Session session = parseSession(state[0].cast<std::string>(), "/");
-                        session.source = state[1].cast<std::filesystem::path>();
-                        return session;
-                      }))
+      .def(py::pickle(
+          [](const Session& s) { return py::make_tuple(identifierOf(sessionYaml(s, "/")), s.source); },
+          &sessionFromState))
       .def("__repr__", [](const Session& s) {
-        return fmt::format("<evical.Session of '{}': {}, {}>", s.recording.string(),
-                           counted(s.cameras.size(), "camera"), counted(s.imus.size(), "IMU"));
+        return textOf(fmt::format("<evical.Session of '{}': {}, {}>", s.recording.string(),
+                                  counted(s.cameras.size(), "camera"), counted(s.imus.size(), "IMU")));
       });
 }
 

@@ -167,3 +167,65 @@ def test_an_option_has_the_same_type_for_each_value(session):
         assert type(session.options["grid.least_circles"]) is int
     assert type(session.options["report.split_half_check"]) is bool
     assert type(session.options["intrinsics.model"]) is str
+
+
+def test_a_guess_is_not_calibrated_until_its_board_and_noise_are_given(bag, session):
+    guessed = evical.Session.guess(bag)
+    [imu] = guessed.imus.values()
+
+    def refused(key):
+        for call in (evical.calibrate, evical.intrinsics):
+            with pytest.raises(evical.InputError, match=key):
+                call(guessed)
+
+    with pytest.raises(evical.InputError):
+        guessed.board.points_m
+    for name in ("cols", "rows", "spacing_m", "radius_m"):
+        refused("board")
+        setattr(guessed.board, name, getattr(session.board, name))
+    for name in ("accelerometer_noise_density", "gyroscope_noise_density"):
+        refused(name)
+        setattr(imu, name, getattr(session.imus["left_imu"], name))
+    [camera] = guessed.cameras.values()
+    camera.intrinsics = session.cameras["left"].intrinsics
+    guessed.set("report.split_half_check", False)
+    assert evical.calibrate(guessed).status in ("ok", "doubtful")
+
+
+def test_a_new_board_has_no_dimensions(session):
+    session.board = evical.Board()
+    with pytest.raises(evical.InputError, match="board"):
+        evical.calibrate(session)
+
+
+def test_the_current_folder_may_change(bag, session, monkeypatch, tmp_path):
+    monkeypatch.chdir(bag.parent)
+    guessed = evical.Session.guess(bag.name)
+    session.recording = bag.name
+    pickled = pickle.dumps(session)
+    monkeypatch.chdir(tmp_path)
+    for other in (guessed, pickle.loads(pickled)):
+        assert os.path.samefile(other.recording, bag)
+    (tmp_path / "own").mkdir()
+    monkeypatch.chdir(tmp_path / "own")
+    session.recording = os.path.relpath(bag)
+    evical.calibrate(session, output="result", progress=lambda stage, fraction: os.chdir(tmp_path))
+    assert (tmp_path / "own" / "result" / "result.yaml").exists() and not (tmp_path / "result").exists()
+
+
+def test_values_that_would_be_lost_cannot_be_changed(session):
+    session.time_range_s = [0.5, 5]
+    camera = session.cameras["left"]
+    camera.resolution_px = [346, 260]
+    camera.rejected_windows_s = [1.0, 2.0]
+    assert (session.time_range_s, camera.resolution_px, camera.rejected_windows_s) == ((0.5, 5), (346, 260), (1.0, 2.0))
+    for values in (session.time_range_s, camera.resolution_px, camera.rejected_windows_s):
+        with pytest.raises(TypeError):
+            values[0] = 3
+
+
+@pytest.mark.parametrize("call", [lambda: evical.Session.guess(3), lambda: evical.Session.guess(None),
+                                  lambda: evical.Session.load(3), lambda: evical.Board(3), lambda: evical.Camera(3)])
+def test_wrong_types_are_never_runtime_errors(call):
+    with pytest.raises(TypeError):
+        call()
