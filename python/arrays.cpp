@@ -3,18 +3,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 namespace evical::python {
 
 namespace py = pybind11;
 
-Numbers pointsFrom(const py::object& values, py::ssize_t columns, const char* what) {
-  Numbers numbers;
+namespace {
+
+constexpr std::string_view kNumberKinds = "biufO";
+
+bool hasNone(const py::array& objects) {
+  for (const py::handle each : objects.attr("flat"))
+    if (each.is_none()) return true;
+  return false;
+}
+
+py::array_t<double> frozen(py::array_t<double> array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+}  // namespace
+
+bool isMasked(const py::object& values) {
+  return py::module_::import("numpy.ma").attr("is_masked")(values).cast<bool>();
+}
+
+Numbers numbersFrom(const py::object& values, const std::string& what) {
   try {
-    numbers = Numbers(values);
+    const py::array array(values);
+    const char kind = array.dtype().kind();
+    if (kind == 'M' || kind == 'm')
+      throw py::type_error(
+          fmt::format("{}, not of the type {}", what, py::str(array.dtype()).cast<std::string>()));
+    if (isMasked(values)) throw py::type_error(what + ", without masked values");
+    if (kNumberKinds.find(kind) != std::string_view::npos && !(kind == 'O' && hasNone(array)))
+      return Numbers(array);
   } catch (py::error_already_set&) {
-    throw py::type_error(fmt::format("{} must be numbers of shape (..., {})", what, columns));
+    // Reported below.
   }
+  throw py::type_error(what);
+}
+
+Numbers pointsFrom(const py::object& values, py::ssize_t columns, const char* what) {
+  Numbers numbers = numbersFrom(values, fmt::format("{} must be numbers of shape (..., {})", what, columns));
   if (numbers.ndim() == 0 || numbers.shape(numbers.ndim() - 1) != columns)
     throw py::value_error(fmt::format("{} must have the shape (..., {}), not {}", what, columns,
                                       py::str(numbers.attr("shape")).cast<std::string>()));
@@ -30,7 +64,7 @@ std::vector<py::ssize_t> shapeLike(const Numbers& values, int dropped, const std
 py::array_t<double> arrayOf(const Eigen::VectorXd& vector) {
   py::array_t<double> array(vector.size());
   std::copy(vector.begin(), vector.end(), array.mutable_data());
-  return array;
+  return frozen(std::move(array));
 }
 
 py::array_t<double> arrayOf(const Eigen::Vector3d& vector) {
@@ -41,7 +75,7 @@ py::array_t<double> arrayOf(const Eigen::MatrixXd& matrix) {
   py::array_t<double> array({matrix.rows(), matrix.cols()});
   for (Eigen::Index row = 0; row < matrix.rows(); ++row)
     for (Eigen::Index col = 0; col < matrix.cols(); ++col) array.mutable_at(row, col) = matrix(row, col);
-  return array;
+  return frozen(std::move(array));
 }
 
 py::dtype recordType(const std::vector<FieldOfRecord>& fields, std::size_t size) {

@@ -6,11 +6,16 @@
 
 #include <pybind11/numpy.h>
 
+#include <string>
 #include <vector>
 
 namespace evical::python {
 
 using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+// Numbers of any shape. Raises TypeError for what is none: times, complex numbers, None, masked values; `what`
+// names the argument and its unit.
+Numbers numbersFrom(const pybind11::object& values, const std::string& what);
 
 // Points along the last axis, of any leading shape: (..., columns). Raises ValueError for another size; `what` names
 // the argument.
@@ -20,9 +25,13 @@ Numbers pointsFrom(const pybind11::object& values, pybind11::ssize_t columns, co
 std::vector<pybind11::ssize_t> shapeLike(const Numbers& values, int dropped,
                                          const std::vector<pybind11::ssize_t>& last);
 
+// Read-only, since these are values of properties: a change of such a copy would be lost.
 pybind11::array_t<double> arrayOf(const Eigen::VectorXd& vector);
 pybind11::array_t<double> arrayOf(const Eigen::Vector3d& vector);
 pybind11::array_t<double> arrayOf(const Eigen::MatrixXd& matrix);
+
+// True if a masked array hides some of its values.
+bool isMasked(const pybind11::object& values);
 
 struct FieldOfRecord {
   const char *name, *format;

@@ -1,11 +1,14 @@
 // evical.Camera: a lens with its parameters, projection, rays and undistorted events.
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/undistortion_table.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/errors.h"
+#include "python/interpreter.h"
 
 #include <fmt/format.h>
 #include <pybind11/operators.h>
@@ -38,9 +41,13 @@ CameraIntrinsics checked(const CameraIntrinsics& camera) {
 }
 
 // JSON is a subset of YAML, so the map is parsed like one in a session.
-CameraIntrinsics fromMap(const py::dict& map) {
+CameraIntrinsics readMap(const py::dict& map) {
   const auto text = py::module_::import("json").attr("dumps")(map).cast<std::string>();
-  return checked(readIntrinsics(YamlNode::parse(text, "intrinsics")));
+  return readIntrinsics(YamlNode::parse(text, "intrinsics"));
+}
+
+CameraIntrinsics fromMap(const py::dict& map) {
+  return checked(readMap(map));
 }
 
 py::dict toMap(const CameraIntrinsics& camera) {
@@ -55,6 +62,22 @@ py::dict toMap(const CameraIntrinsics& camera) {
   return map;
 }
 
+// Names that a file gives its cameras: a camchain, a result, or a camera_info; empty for other files.
+std::vector<std::string> namedCameras(const YamlNode& root) {
+  if (!root.isMap()) return {};
+  if (root.has("evical_result")) return root["cameras"].keys();
+  if (const auto name = root.find("camera_name"); name && name->isScalar()) return {name->text()};
+  return camchainCameras(root);
+}
+
+// Unlike in a session, where the only camera of a file is meant, a name must be that of a camera.
+CameraIntrinsics lensOf(const std::filesystem::path& file, const std::string& name) {
+  const std::vector<std::string> known = namedCameras(loadIntrinsics(file));
+  if (!name.empty() && !known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+    throw badInput(file.string(), fmt::format("has no camera '{}'", name), "Use one of: " + joined(known));
+  return checked(readIntrinsicsFile(file, name, ""));
+}
+
 // Calls `apply(in, out)` for each point along the last axis.
 template <class Apply>
 Numbers forEachPoint(const Numbers& points, py::ssize_t columns_out, const Apply& apply) {
@@ -63,7 +86,7 @@ Numbers forEachPoint(const Numbers& points, py::ssize_t columns_out, const Apply
   const py::ssize_t count = columns_in == 0 ? 0 : points.size() / columns_in;
   const double* from = points.data();
   double* to = out.mutable_data();
-  const py::gil_scoped_release others_work;
+  const OthersWork others_work;
   for (py::ssize_t i = 0; i < count; ++i) apply(from + i * columns_in, to + i * columns_out);
   return out;
 }
@@ -97,9 +120,18 @@ WholeNumbers fieldOf(const py::array& events, const char* name) {
     throw py::type_error(
         fmt::format("events must be an array of records with the fields t, x, y, p; {} is missing", name));
   const py::array values = events.attr("__getitem__")(name);
+  if (values.ndim() != events.ndim())
+    throw py::type_error(fmt::format("the field {} of the events must be one number per event", name));
+  if (isMasked(values))
+    throw py::type_error(fmt::format("the field {} of the events must not have masked values", name));
   const char kind = values.dtype().kind();
   if (kind != 'i' && kind != 'u' && kind != 'b')
     throw py::type_error(fmt::format("the field {} of the events must have an integer type", name));
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  if (kind == 'u' && values.itemsize() == sizeof(kLargest) && values.size() > 0 &&
+      values.attr("max")().cast<std::uint64_t>() > kLargest)
+    throw badInput("events", fmt::format("the field {} has a number above 2^63", name),
+                   "Give times in ns as int64");
   return WholeNumbers(values);
 }
 
@@ -111,46 +143,51 @@ py::dtype undistortedType() {
                     sizeof(UndistortedEvent));
 }
 
-py::array undistortEvents(const CameraIntrinsics& camera, const py::array& events) {
-  const WholeNumbers t = fieldOf(events, "t"), x = fieldOf(events, "x"), y = fieldOf(events, "y"),
-                     p = fieldOf(events, "p");
-  py::array undistorted(undistortedType(), std::vector<py::ssize_t>{t.size()});
-  auto* out = static_cast<UndistortedEvent*>(undistorted.mutable_data());
+// The table of all pixels pays off if there are more events than pixels.
+template <class Visit>
+void forEachIdealPixel(const CameraIntrinsics& camera, const WholeNumbers& x, const WholeNumbers& y,
+                       const Visit& visit) {
   const Resolution size_px = camera.resolution_px;
-  const py::gil_scoped_release others_work;
-  const UndistortionTable table(camera);
-  for (py::ssize_t i = 0; i < t.size(); ++i) {
+  const bool many = x.size() > static_cast<std::int64_t>(size_px.width_px) * size_px.height_px;
+  const UndistortionTable table = many ? UndistortionTable(camera) : UndistortionTable();
+  for (py::ssize_t i = 0; i < x.size(); ++i) {
     const std::int64_t x_px = x.data()[i], y_px = y.data()[i];
     if (x_px < 0 || y_px < 0 || x_px >= size_px.width_px || y_px >= size_px.height_px)
       throw badInput(fmt::format("event {}", i),
                      fmt::format("({}, {}) is outside the camera's {} x {} pixels", x_px, y_px,
                                  size_px.width_px, size_px.height_px),
                      "Pass events of this camera");
-    const Eigen::Vector2f& ideal = table(static_cast<int>(x_px), static_cast<int>(y_px));
-    out[i] = {t.data()[i], ideal.x(), ideal.y(), p.data()[i] > 0};
+    if (!table.empty()) {
+      visit(i, table(static_cast<int>(x_px), static_cast<int>(y_px)));
+      continue;
+    }
+    const auto ideal = idealPixel(camera, Eigen::Vector2d(x_px, y_px));
+    visit(i, ideal ? Eigen::Vector2f(ideal->cast<float>()) : Eigen::Vector2f::Constant(kNowhere));
   }
+}
+
+py::array undistortEvents(const CameraIntrinsics& camera, const py::array& events) {
+  const WholeNumbers t = fieldOf(events, "t"), x = fieldOf(events, "x"), y = fieldOf(events, "y"),
+                     p = fieldOf(events, "p");
+  if (events.ndim() != 1) throw py::value_error("events must have the shape (N,)");
+  py::array undistorted(undistortedType(), std::vector<py::ssize_t>{t.size()});
+  auto* out = static_cast<UndistortedEvent*>(undistorted.mutable_data());
+  const OthersWork others_work;
+  forEachIdealPixel(camera, x, y, [&](py::ssize_t i, const Eigen::Vector2f& ideal) {
+    out[i] = {t.data()[i], ideal.x(), ideal.y(), p.data()[i] > 0};
+  });
   return undistorted;
 }
 
-py::tuple stateOfLens(const CameraIntrinsics& c) {
-  py::tuple distortion(c.distortion.size());
-  for (std::size_t i = 0; i < c.distortion.size(); ++i) distortion[i] = c.distortion[i];
-  return py::make_tuple(cameraModelName(c.model), c.resolution_px.width_px, c.resolution_px.height_px,
-                        c.focal_length_px.x(), c.focal_length_px.y(), c.principal_point_px.x(),
-                        c.principal_point_px.y(), distortion);
+// A lens of a session may have its resolution from the recording.
+py::tuple stateOfLens(const CameraIntrinsics& camera) {
+  py::dict map = toMap(camera);
+  if (!camera.resolution_px.known()) map.attr("pop")("resolution_px");
+  return py::make_tuple(map);
 }
 
 CameraIntrinsics lensFromState(const py::tuple& state) {
-  const auto name = state[0].cast<std::string>();
-  const auto model = std::find(kCameraModelNames.begin(), kCameraModelNames.end(), name);
-  if (model == kCameraModelNames.end()) throw py::value_error("unknown lens model: " + name);
-  CameraIntrinsics lens;
-  lens.model = static_cast<CameraModel>(model - kCameraModelNames.begin());
-  lens.resolution_px = {state[1].cast<int>(), state[2].cast<int>()};
-  lens.focal_length_px = {state[3].cast<double>(), state[4].cast<double>()};
-  lens.principal_point_px = {state[5].cast<double>(), state[6].cast<double>()};
-  lens.distortion = state[7].cast<std::array<double, 5>>();
-  return lens;
+  return restored(state, 1, "Camera", [](const py::tuple& s) { return readMap(s[0].cast<py::dict>()); });
 }
 
 void bindNumbers(py::class_<CameraIntrinsics>& camera) {
@@ -206,13 +243,9 @@ void bindLens(py::module_& module) {
            "From a map with the keys of a session: model, resolution_px, focal_length_px, "
            "principal_point_px, distortion. Raises InputError.")
       .def_static(
-          "load",
-          [](const std::filesystem::path& path, const std::string& name) {
-            return checked(readIntrinsicsFile(path, name, ""));
-          },
-          py::arg("path"), py::arg("name") = "",
+          "load", lensOf, py::arg("path"), py::arg("name") = "",
           "From a file: such a map, a result, a Kalibr camchain or a ROS camera_info. `name` selects one of "
-          "several cameras. Raises InputError.");
+          "several cameras. Raises InputError, also if the file names its cameras and none has this name.");
   bindNumbers(camera);
   camera
       .def("project", projectPoints, py::arg("points"),
@@ -229,7 +262,7 @@ void bindLens(py::module_& module) {
            "[undistorted px, float32, see `undistort`], p [bool]. Raises InputError for events outside the "
            "image.")
       .def(py::self == py::self)
-      .def("__hash__", [](const CameraIntrinsics& c) { return py::hash(stateOfLens(c)); })
+      .def("__hash__", [](const CameraIntrinsics& c) { return py::hash(py::repr(stateOfLens(c))); })
       .def(py::pickle(&stateOfLens, &lensFromState))
       .def("__repr__", [](const CameraIntrinsics& c) {
         return fmt::format("<evical.Camera {}, {} x {} px>", cameraModelName(c.model),

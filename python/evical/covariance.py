@@ -17,7 +17,7 @@ class Covariance:
 
     Attributes:
         names: N names of rows with their units: "left.rotation.x [rad]", "left.time_offset [s]", ...
-        matrix: (N, N), in products of these units.
+        matrix: (N, N), in products of these units; read-only, like the other arrays of a result.
     """
 
     def __init__(self, names: Sequence[str], matrix: npt.NDArray[np.float64]) -> None:
@@ -39,7 +39,9 @@ class Covariance:
     @property
     def std(self) -> npt.NDArray[np.float64]:
         """(N,): sigmas."""
-        return np.sqrt(np.diagonal(self.matrix))
+        std: npt.NDArray[np.float64] = np.sqrt(np.diagonal(self.matrix))
+        std.setflags(write=False)
+        return std
 
     @property
     def correlation(self) -> npt.NDArray[np.float64]:
@@ -48,6 +50,7 @@ class Covariance:
         scale = np.outer(std, std)
         correlation: npt.NDArray[np.float64] = np.zeros_like(self.matrix)
         np.divide(self.matrix, scale, out=correlation, where=scale > 0)
+        correlation.setflags(write=False)
         return correlation
 
     def of(self, names: Sequence[str]) -> npt.NDArray[np.float64]:

@@ -124,3 +124,75 @@ def test_undistort_events_takes_a_camera_of_a_result(calibrated):
     left = calibrated[0].cameras["left"]
     events = events_at((10, 20), (30, 40))
     np.testing.assert_array_equal(evical.undistort_events(events, left), left.intrinsics.undistort_events(events))
+
+
+def test_a_name_is_that_of_a_camera_of_the_file(calibrated, tmp_path):
+    _, folder = calibrated
+    camchain = tmp_path / "camchain.yaml"
+    camchain.write_text("cam0: {camera_model: pinhole, intrinsics: [250, 252, 172, 131], distortion_model: radtan, "
+                        "distortion_coeffs: [0, 0, 0, 0], resolution: [346, 260]}\n")
+    info = tmp_path / "info.yaml"
+    info.write_text("image_width: 346\nimage_height: 260\ncamera_name: davis\ndistortion_model: plumb_bob\n"
+                    "camera_matrix: {rows: 3, cols: 3, data: [250, 0, 172, 0, 252, 131, 0, 0, 1]}\n"
+                    "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\n")
+    for file, name in ((folder / "result.yaml", "left"), (camchain, "cam0"), (info, "davis")):
+        assert evical.Camera.load(file) == evical.Camera.load(file, name)
+        with pytest.raises(evical.InputError, match=f"has no camera 'right'. Use one of: {name}"):
+            evical.Camera.load(file, "right")
+    alone = tmp_path / "alone.yaml"  # has no name
+    alone.write_text(str(PINHOLE))
+    assert evical.Camera.load(alone, "right") == evical.Camera(PINHOLE)
+
+
+def test_fields_of_several_numbers_are_no_events():
+    for name in ("t", "x", "y", "p"):
+        fields = [(each, "i8", (3,)) if each == name else (each, "i8") for each in ("t", "x", "y", "p")]
+        with pytest.raises(TypeError, match=f"the field {name} of the events must be one number per event"):
+            evical.Camera(PINHOLE).undistort_events(np.zeros(5, dtype=fields))
+    with pytest.raises(ValueError, match="events must have the shape"):
+        evical.Camera(PINHOLE).undistort_events(np.zeros((2, 3), dtype=EVENT))
+
+
+def test_masked_values_are_no_numbers():
+    camera = evical.Camera(PINHOLE)
+    events = np.ma.array(events_at((1, 2), (3, 4)))
+    assert len(camera.undistort_events(events)) == 2
+    events["x"][1] = np.ma.masked
+    with pytest.raises(TypeError, match="must not have masked values"):
+        camera.undistort_events(events)
+    pixels = np.ma.array([[1.0, 2.0], [3.0, 4.0]], mask=[[False, False], [True, False]])
+    for call in (camera.unproject, camera.undistort):
+        with pytest.raises(TypeError, match="masked"):
+            call(pixels)
+        assert np.isfinite(call(pixels[:1])).all()
+
+
+@pytest.mark.parametrize("name", ["t", "x", "y", "p"])
+def test_numbers_that_int64_does_not_have_are_refused(name):
+    events = np.zeros(3, dtype=[(each, "u8") for each in ("t", "x", "y", "p")])
+    events[name][1] = 2**63
+    with pytest.raises(evical.InputError, match=f"the field {name} has a number above 2\\^63"):
+        evical.Camera(PINHOLE).undistort_events(events)
+
+
+@pytest.mark.parametrize("wrong", [np.zeros((2, 3), dtype="datetime64[ns]"), np.zeros((2, 3), dtype=complex), [[1, 2, None]],
+                                   np.array([["1", "2", "3"]])])
+def test_what_numpy_would_convert_is_no_number(wrong):
+    with pytest.raises(TypeError, match="points must be numbers"):
+        evical.Camera(PINHOLE).project(wrong)
+
+
+def test_many_and_few_events_are_undistorted_alike():
+    camera = evical.Camera({**PINHOLE, "resolution_px": [40, 30], "principal_point_px": [20, 15]})
+    few = events_at(*[(x, y) for x in range(40) for y in range(30)])
+    many = np.concatenate([few, few])
+    np.testing.assert_array_equal(camera.undistort_events(many)[:len(few)], camera.undistort_events(few))
+    large = evical.Camera({**PINHOLE, "resolution_px": [30000, 30000], "principal_point_px": [15000, 15000]})
+    assert len(large.undistort_events(events_at((15000, 15000)))) == 1  # without a table of all its pixels
+
+
+def test_numbers_of_a_lens_are_read_only():
+    camera = evical.Camera(PINHOLE)
+    for name in ("focal_length_px", "principal_point_px", "distortion", "matrix"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(camera, name)[0] = 99
