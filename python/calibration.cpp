@@ -1,14 +1,17 @@
 // evical.calibrate and evical.intrinsics.
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/geometry/camera_model.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "core/pipeline/runs/unfinished_run.h"
 #include "core/report/result_yaml.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/errors.h"
 #include "python/interruptible.h"
 #include "python/result.h"
 
@@ -42,13 +45,23 @@ std::shared_ptr<const Result> calibrated(const Session& session,
   return resultOf(session, *run);
 }
 
+// The current folder may change during the calibration.
+Session withAbsolutePaths(Session session) {
+  forEachRecording(session, [](std::filesystem::path& file) {
+    if (!file.empty()) file = std::filesystem::absolute(file);
+  });
+  return session;
+}
+
 std::shared_ptr<Result> calibrate(const Session& given, const std::optional<std::filesystem::path>& output,
                                   const py::object& progress) {
-  const Session session = given;  // a copy, which no other thread can change
+  const Session session = withAbsolutePaths(given);  // a copy, which no other thread can change
+  const std::optional<std::filesystem::path> folder =
+      output ? std::optional(std::filesystem::absolute(*output)) : std::nullopt;
   std::shared_ptr<const Result> result;
   RunLog log;
   runInterruptibly(progress, log,
-                   [&](const RunContext& context) { result = calibrated(session, output, log, context); });
+                   [&](const RunContext& context) { result = calibrated(session, folder, log, context); });
   return std::const_pointer_cast<Result>(result);
 }
 
@@ -67,7 +80,7 @@ std::size_t cameraOf(const Session& session, const std::optional<std::string>& n
 
 IntrinsicsResult findIntrinsics(const Session& given, const std::optional<std::string>& camera,
                                 const py::object& progress) {
-  const Session session = given;
+  const Session session = withAbsolutePaths(given);
   IntrinsicsResult found;
   RunLog log;
   runInterruptibly(progress, log, [&](const RunContext& context) {
@@ -81,8 +94,12 @@ void bindIntrinsics(py::module_& module) {
   py::class_<IntrinsicsResult>(module, "IntrinsicsResult", "Result of the calibration of one lens alone.")
       .def_property_readonly(
           "status", [](const IntrinsicsResult& r) { return statusName(r.status); }, "ok or doubtful.")
-      .def_readonly("reason", &IntrinsicsResult::reason, "Why the status is not ok, as text.")
-      .def_readonly("advice", &IntrinsicsResult::advice, "Which further views would improve the result.")
+      .def_property_readonly(
+          "reason", [](const IntrinsicsResult& r) { return textOf(r.reason); },
+          "Why the status is not ok, as text.")
+      .def_property_readonly(
+          "advice", [](const IntrinsicsResult& r) { return textsOf(r.advice); },
+          "Which further views would improve the result.")
       .def_readonly("intrinsics", &IntrinsicsResult::intrinsics, "A Camera.")
       .def_property_readonly(
           "covariance", [](const IntrinsicsResult& r) { return arrayOf(Eigen::MatrixXd(r.covariance)); },
@@ -99,11 +116,13 @@ void bindIntrinsics(py::module_& module) {
             return py::make_tuple(py::bytes(runData(run)));
           },
           [](const py::tuple& state) {
-            const ReadRunData read = parseRunData(state[0].cast<py::bytes>());
-            if (read.run.intrinsics.size() != 1 || !read.run.intrinsics[0])
-              throw badInput("result", "comes from another version of Evical",
-                             "Use the same version in all processes");
-            return *read.run.intrinsics[0];
+            return restored(state, 1, "IntrinsicsResult", [](const py::tuple& s) {
+              const ReadRunData read = parseRunData(s[0].cast<py::bytes>());
+              if (read.run.intrinsics.size() != 1 || !read.run.intrinsics[0])
+                throwBadState("IntrinsicsResult");
+              validate(read.run.intrinsics[0]->intrinsics, "intrinsics");
+              return *read.run.intrinsics[0];
+            });
           }))
       .def("__repr__", [](const IntrinsicsResult& r) {
         return fmt::format("<evical.IntrinsicsResult {}: {:.3f} px RMS>", statusName(r.status),

@@ -2,30 +2,46 @@
 
 #include "core/base/error.h"
 #include "core/base/file_places.h"
+#include "core/base/yaml_node.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
 
 #include <fmt/format.h>
 
-#include <system_error>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 namespace evical::python {
 namespace {
 
-// Adds the parts of run.data that result.yaml does not contain. Both must have the same sensors.
-void addRunData(const std::filesystem::path& file, Result& result) {
+bool hasSensorsOf(const CalibrationResult& numbers, const NamedResult& named) {
+  return numbers.state.cameras.size() == named.cameras.size() &&
+         numbers.state.imus.size() == named.imus.size() &&
+         numbers.state.further_boards.size() + 1 == named.boards.size();
+}
+
+std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+constexpr std::string_view kResultHead = "evical_result: 1\n", kTruthHead = "evical_truth: 1\n";
+
+// Adds the parts of run.data that result.yaml does not contain.
+void addRunData(const std::filesystem::path& yaml, Result& result) {
+  const std::filesystem::path file = yaml.parent_path() / "run.data";
   if (!isThere(file)) {
     result.missing.push_back("the trajectory: there is no run.data next to result.yaml");
     return;
   }
-  ReadRunData data = readRunData(file);
+  ReadRunData data = readRunData(file, contentOf(yaml));
   result.missing = std::move(data.missing);
   if (!data.has_result) return;
-  const CalibrationState& known = result.numbers().state;
-  const CalibrationState& kept = data.run.result.state;
-  if (kept.cameras.size() != known.cameras.size() || kept.imus.size() != known.imus.size()) {
+  if (!hasSensorsOf(data.run.result, result.named)) {
     result.missing.push_back("the trajectory: run.data belongs to another run than result.yaml");
     return;
   }
@@ -33,6 +49,20 @@ void addRunData(const std::filesystem::path& file, Result& result) {
 }
 
 }  // namespace
+
+double Result::known(double number) const {
+  const bool without = is_truth || numbers().uncertainty.columns.empty();
+  return without && number == 0.0 ? std::numeric_limits<double>::quiet_NaN() : number;
+}
+
+std::string Result::status() const {
+  return is_truth ? "truth" : statusName(numbers().status);
+}
+
+std::string Result::yaml() const {
+  const std::string text = resultYaml(named);
+  return is_truth ? std::string(kTruthHead) + text.substr(kResultHead.size()) : text;
+}
 
 std::shared_ptr<const Result> resultOf(const Session& session, const CalibrationRun& run) {
   const std::shared_ptr<const CalibrationRun> not_owned(std::shared_ptr<void>(), &run);
@@ -46,9 +76,10 @@ std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
   const std::filesystem::path file = resultFileOf(path);
   auto result = std::make_shared<Result>();
   result->named = readResultYaml(file);
+  result->is_truth = YamlNode::load(file).has("evical_truth");
   // A file with another name is a copy without its run.data.
   if (file.filename() == kResultFile)
-    addRunData(file.parent_path() / "run.data", *result);
+    addRunData(file, *result);
   else
     result->missing.push_back("the trajectory: run.data is read only next to a file named result.yaml");
   return result;
@@ -57,14 +88,15 @@ std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
 ResultState stateOf(const Result& result) {
   CalibrationRun run;
   run.result = result.numbers();
-  return {resultYaml(result.named), runData(run), result.missing};
+  return {result.yaml(), runData(run), result.missing};
 }
 
 std::shared_ptr<Result> resultFrom(const ResultState& state) {
   auto result = std::make_shared<Result>();
   result->named = parseResultYaml(state.yaml, "result");
+  result->is_truth = state.yaml.starts_with(kTruthHead);
   ReadRunData data = parseRunData(state.data);
-  if (!data.has_result)
+  if (!data.has_result || !hasSensorsOf(data.run.result, result->named))
     throw badInput("result", "comes from another version of Evical", "Use the same version in all processes");
   result->named.result = std::make_shared<const CalibrationResult>(std::move(data.run.result));
   result->missing = state.missing;

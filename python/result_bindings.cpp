@@ -1,15 +1,20 @@
 // evical.Result and its sensors.
 #include "core/data/calibration_stage.h"
 #include "core/numerics/angles.h"
+#include "core/pipeline/runs/run_data.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "core/report/quantity_labels.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/errors.h"
+#include "python/interpreter.h"
 #include "python/result.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <optional>
 #include <utility>
 
 namespace evical::python {
@@ -26,6 +31,7 @@ struct CameraOfResult {
   const CameraUncertainty& sigma() const { return result->numbers().uncertainty.cameras.at(index); }
   const CameraFit& fit() const { return result->numbers().cameras.at(index); }
   const SensorDescription& known() const { return result->named.cameras.at(index); }
+  static std::size_t count(const Result& of) { return of.named.cameras.size(); }
 };
 struct ImuOfResult {
   std::shared_ptr<const Result> result;
@@ -35,7 +41,13 @@ struct ImuOfResult {
   const ImuUncertainty& sigma() const { return result->numbers().uncertainty.imus.at(index); }
   const ImuFit& fit() const { return result->numbers().imus.at(index); }
   const SensorDescription& known() const { return result->named.imus.at(index); }
+  static std::size_t count(const Result& of) { return of.named.imus.size(); }
 };
+
+py::array_t<double> sigmas(const Result& result, Eigen::Vector3d numbers) {
+  for (double& number : numbers) number = result.known(number);
+  return arrayOf(numbers);
+}
 
 py::array_t<double> poseMatrix(const RigidTransform& pose) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(4, 4);
@@ -48,40 +60,50 @@ Eigen::Vector3d inDegrees(const Eigen::Vector3d& angles_rad) {
   return kDegPerRad * angles_rad;
 }
 
-py::dict windowsOf(const CameraFit& fit) {
+py::object windowsOf(const CameraFit& fit) {
   py::dict windows;
   windows["total"] = fit.windows_total;
   windows["complete"] = fit.windows_complete;
   windows["partial"] = fit.windows_partial;
   windows["used"] = fit.windows_used;
-  return windows;
+  return readOnly(windows);
 }
 
 // Properties that cameras and IMUs share.
 template <class Sensor>
 void bindSensor(py::class_<Sensor>& sensor) {
-  sensor.def_property_readonly("name", [](const Sensor& s) { return s.known().name; })
-      .def_property_readonly("stream", [](const Sensor& s) { return s.known().stream; })
+  sensor.def_property_readonly("name", [](const Sensor& s) { return identifierOf(s.known().name); })
+      .def_property_readonly("stream", [](const Sensor& s) { return identifierOf(s.known().stream); })
       .def_property_readonly(
-          "rotation_std_deg", [](const Sensor& s) { return arrayOf(inDegrees(s.sigma().rotation_std_rad)); },
-          "(3,), deg, about the axes of the reference.")
+          "rotation_std_deg",
+          [](const Sensor& s) { return sigmas(*s.result, inDegrees(s.sigma().rotation_std_rad)); },
+          "(3,), deg, about the axes of the reference. Sigmas are 0 for what was not estimated, and NaN if "
+          "the "
+          "file has none.")
       .def_property_readonly(
-          "translation_std_m", [](const Sensor& s) { return arrayOf(s.sigma().translation_std_m); },
+          "translation_std_m", [](const Sensor& s) { return sigmas(*s.result, s.sigma().translation_std_m); },
           "(3,), m, in the frame of the reference.")
       .def_property_readonly(
           "time_offset_s", [](const Sensor& s) { return s.state().time_offset_s; },
           "Time on the reference's clock = time on the sensor's clock + time_offset_s.")
-      .def_property_readonly("time_offset_std_s", [](const Sensor& s) { return s.sigma().time_offset_std_s; })
+      .def_property_readonly("time_offset_std_s",
+                             [](const Sensor& s) { return s.result->known(s.sigma().time_offset_std_s); })
       .def_property_readonly(
           "clock_drift_ppm", [](const Sensor& s) { return s.state().time_offset_drift_ppm; },
           "Growth of the offset, us per s; time_offset_s is valid at clock_drift_at_s.")
-      .def_property_readonly("clock_drift_std_ppm",
-                             [](const Sensor& s) { return s.sigma().time_offset_drift_std_ppm; })
+      .def_property_readonly(
+          "clock_drift_std_ppm",
+          [](const Sensor& s) { return s.result->known(s.sigma().time_offset_drift_std_ppm); })
       .def_property_readonly("clock_drift_at_s", [](const Sensor& s) { return s.state().time_offset_at_s; })
       .def(py::pickle(
           [](const Sensor& s) { return py::make_tuple(std::const_pointer_cast<Result>(s.result), s.index); },
           [](const py::tuple& state) {
-            return Sensor{state[0].cast<std::shared_ptr<Result>>(), state[1].cast<std::size_t>()};
+            return restored(state, 2, "Result", [](const py::tuple& s) {
+              const auto result = s[0].cast<std::shared_ptr<Result>>();
+              const auto index = s[1].cast<std::size_t>();
+              if (!result || index >= Sensor::count(*result)) throwBadState("Result");
+              return Sensor{result, index};
+            });
           }));
 }
 
@@ -107,20 +129,23 @@ void bindCamera(py::module_& module) {
       .def_property_readonly(
           "line_delay_us", [](const CameraOfResult& c) { return c.state().line_delay_us; },
           "Rolling shutter of a frame camera: time between the exposures of consecutive rows.")
-      .def_property_readonly("reprojection_rms_px",
-                             [](const CameraOfResult& c) { return c.fit().reprojection_rms_px; })
+      .def_property_readonly(
+          "reprojection_rms_px",
+          [](const CameraOfResult& c) { return c.result->known(c.fit().reprojection_rms_px); })
       .def_property_readonly(
           "windows", [](const CameraOfResult& c) { return windowsOf(c.fit()); },
           "Numbers of event windows: total, complete, partial, used.")
-      .def("__repr__",
-           [](const CameraOfResult& c) { return fmt::format("<evical.CameraResult '{}'>", c.known().name); });
+      .def("__repr__", [](const CameraOfResult& c) {
+        return textOf(fmt::format("<evical.CameraResult '{}'>", c.known().name));
+      });
 }
 
 void bindImu(py::module_& module) {
   py::class_<ImuOfResult> imu(module, "ImuResult", "An IMU of a result. measured = mapping @ true + bias.");
   bindSensor(imu);
   imu.def_property_readonly(
-         "accelerometer_stream", [](const ImuOfResult& i) { return i.known().accelerometer_stream; },
+         "accelerometer_stream",
+         [](const ImuOfResult& i) { return identifierOf(i.known().accelerometer_stream); },
          "Stream of the accelerometer, if it is separate; `stream` is then the gyroscope's.")
       .def_property_readonly(
           "reference_from_imu", [](const ImuOfResult& i) { return poseMatrix(i.state().reference_from_imu); },
@@ -129,21 +154,23 @@ void bindImu(py::module_& module) {
           "gyroscope_bias_rad_s",
           [](const ImuOfResult& i) { return arrayOf(i.state().gyroscope_bias_rad_s); },
           "(3,); where it drifts, its mean.")
-      .def_property_readonly("gyroscope_bias_std_rad_s",
-                             [](const ImuOfResult& i) { return arrayOf(i.sigma().gyroscope_bias_std_rad_s); })
+      .def_property_readonly(
+          "gyroscope_bias_std_rad_s",
+          [](const ImuOfResult& i) { return sigmas(*i.result, i.sigma().gyroscope_bias_std_rad_s); })
       .def_property_readonly(
           "gyroscope_scale_misalignment",
           [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().gyroscopeMatrix())); },
           "(3, 3): from true rates in the IMU's frame to measured ones.")
-      .def_property_readonly("gyroscope_rms_rad_s",
-                             [](const ImuOfResult& i) { return i.fit().gyroscope_rms_rad_s; })
+      .def_property_readonly(
+          "gyroscope_rms_rad_s",
+          [](const ImuOfResult& i) { return i.result->known(i.fit().gyroscope_rms_rad_s); })
       .def_property_readonly(
           "accelerometer_bias_m_s2",
           [](const ImuOfResult& i) { return arrayOf(i.state().accelerometer_bias_m_s2); },
           "(3,); where it drifts, its mean.")
       .def_property_readonly(
           "accelerometer_bias_std_m_s2",
-          [](const ImuOfResult& i) { return arrayOf(i.sigma().accelerometer_bias_std_m_s2); })
+          [](const ImuOfResult& i) { return sigmas(*i.result, i.sigma().accelerometer_bias_std_m_s2); })
       .def_property_readonly(
           "accelerometer_scale_misalignment",
           [](const ImuOfResult& i) {
@@ -153,16 +180,18 @@ void bindImu(py::module_& module) {
       .def_property_readonly(
           "accelerometer_delay_s", [](const ImuOfResult& i) { return i.state().accelerometer_delay_s; },
           "Delay relative to the gyroscope, whose clock is the IMU's.")
-      .def_property_readonly("accelerometer_rms_m_s2",
-                             [](const ImuOfResult& i) { return i.fit().accelerometer_rms_m_s2; })
-      .def("__repr__",
-           [](const ImuOfResult& i) { return fmt::format("<evical.ImuResult '{}'>", i.known().name); });
+      .def_property_readonly(
+          "accelerometer_rms_m_s2",
+          [](const ImuOfResult& i) { return i.result->known(i.fit().accelerometer_rms_m_s2); })
+      .def("__repr__", [](const ImuOfResult& i) {
+        return textOf(fmt::format("<evical.ImuResult '{}'>", i.known().name));
+      });
 }
 
 template <class Sensor>
 py::object byName(const std::shared_ptr<const Result>& result, const std::vector<SensorDescription>& known) {
   py::dict sensors;
-  for (std::size_t i = 0; i < known.size(); ++i) sensors[py::str(known[i].name)] = Sensor{result, i};
+  for (std::size_t i = 0; i < known.size(); ++i) sensors[identifierOf(known[i].name)] = Sensor{result, i};
   return readOnly(sensors);
 }
 
@@ -171,36 +200,45 @@ py::object covarianceOf(const Result& result) {
       .attr("Covariance")(columnNames(result.named), arrayOf(result.numbers().uncertainty.covariance()));
 }
 
-py::dict timingOf(const Result& result) {
+py::object timingOf(const Result& result) {
   py::dict timing;
   forEachTiming(result.numbers().timing, [&](const char* key, double seconds) { timing[key] = seconds; });
-  return timing;
+  return readOnly(timing);
 }
 
 using Shared = std::shared_ptr<Result>;
 
+void warnIfForeign(const std::filesystem::path& path) {
+  const std::filesystem::path file = resultFileOf(path);
+  const std::optional<std::string> why =
+      file.filename() == kResultFile ? whyRunDataIsForeign(file) : std::nullopt;
+  if (!why) return;
+  const py::object logger = py::module_::import("logging").attr("getLogger")("evical");
+  called(logger.attr("warning"), py::make_tuple("%s: %s", textOf(file.string()), textOf(*why)));
+}
+
 void bindVerdict(py::class_<Result, Shared>& result) {
-  result
+  result.def_property_readonly("status", &Result::status, "ok, doubtful or failed; truth: of a simulation.")
       .def_property_readonly(
-          "status", [](const Result& r) { return statusName(r.numbers().status); }, "ok, doubtful or failed.")
-      .def_property_readonly(
-          "reason", [](const Result& r) { return r.numbers().reason; }, "Why the status is not ok, as text.")
+          "reason", [](const Result& r) { return textOf(r.numbers().reason); },
+          "Why the status is not ok, as text.")
       .def_property_readonly(
           "repair",
           [](const Result& r) -> py::object {
             const auto& repair = r.numbers().repair;
             if (!repair) return py::none();
-            return py::make_tuple(repair->key, repair->value);
+            return py::make_tuple(textOf(repair->key), textOf(repair->value));
           },
           "(key, value) for Session.set if that would fix the cause; else None.")
       .def_property_readonly(
-          "weakest", [](const Result& r) { return r.numbers().uncertainty.weakest; },
+          "weakest", [](const Result& r) { return textOf(r.numbers().uncertainty.weakest); },
           "The direction that this recording determines least, as text.")
-      .def_property_readonly("notes", [](const Result& r) { return r.numbers().notes; })
+      .def_property_readonly("notes", [](const Result& r) { return textsOf(r.numbers().notes); })
       .def_property_readonly(
-          "version", [](const Result& r) { return r.named.version; }, "Version of Evical that wrote it.")
-      .def_readonly(
-          "missing", &Result::missing,
+          "version", [](const Result& r) { return textOf(r.named.version); },
+          "Version of Evical that wrote it.")
+      .def_property_readonly(
+          "missing", [](const Result& r) { return textsOf(r.missing); },
           "List of str: each missing part of an older or damaged folder, with the reason; empty if complete.")
       .def_property_readonly("timing_s", timingOf);
 }
@@ -214,16 +252,24 @@ void bindResult(py::module_& module) {
   result.def_static(
       "load",
       [](const std::filesystem::path& path) {
-        const py::gil_scoped_release others_work;
-        return std::const_pointer_cast<Result>(loadResult(path));
+        std::shared_ptr<Result> loaded;
+        {
+          const OthersWork others_work;
+          loaded = std::const_pointer_cast<Result>(loadResult(path));
+        }
+        warnIfForeign(path);
+        return loaded;
       },
       py::arg("path"),
       "From the folder that a calibration wrote, or its result.yaml; also from truth.yaml of a simulation. "
-      "`missing` lists what an older folder lacks. Raises InputError.");
+      "`missing` lists what an older folder lacks. result.yaml is the truth: if it was changed, run.data "
+      "with "
+      "the trajectory is not used, and the logger \"evical\" warns. Raises InputError.");
   bindVerdict(result);
   result
       .def_property_readonly(
-          "reference", [](const Result& r) { return r.named.reference; }, "Name of the reference sensor.")
+          "reference", [](const Result& r) { return identifierOf(r.named.reference); },
+          "Name of the reference sensor.")
       .def_property_readonly(
           "cameras", [](const Shared& r) { return byName<CameraOfResult>(r, r->named.cameras); },
           "CameraResult by name.")
@@ -242,17 +288,19 @@ void bindResult(py::module_& module) {
       .def(py::pickle(
           [](const Result& r) {
             const ResultState state = stateOf(r);
-            return py::make_tuple(state.yaml, py::bytes(state.data), state.missing);
+            return py::make_tuple(identifierOf(state.yaml), py::bytes(state.data), textsOf(state.missing));
           },
           [](const py::tuple& state) {
-            return resultFrom({state[0].cast<std::string>(), state[1].cast<py::bytes>(),
-                               state[2].cast<std::vector<std::string>>()});
+            return restored(state, 3, "Result", [](const py::tuple& s) {
+              return resultFrom({bytesOf(s[0].cast<py::str>()), s[1].cast<py::bytes>(),
+                                 s[2].cast<std::vector<std::string>>()});
+            });
           }))
       .def(
-          "to_yaml", [](const Result& r) { return resultYaml(r.named); }, "The content of result.yaml.")
+          "to_yaml", [](const Result& r) { return textOf(r.yaml()); }, "The content of result.yaml.")
       .def("__repr__", [](const Result& r) {
-        return fmt::format("<evical.Result {}: {} cameras, {} IMUs>", statusName(r.numbers().status),
-                           r.named.cameras.size(), r.named.imus.size());
+        return fmt::format("<evical.Result {}: {} cameras, {} IMUs>", r.status(), r.named.cameras.size(),
+                           r.named.imus.size());
       });
 }
 

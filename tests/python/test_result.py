@@ -90,9 +90,20 @@ def test_parts_keep_their_result(calibrated):
 def test_nothing_of_a_result_can_be_changed(calibrated):
     with pytest.raises(AttributeError):
         calibrated[0].status = "ok"
-    before = calibrated[0].gravity_m_s2
-    before[:] = 0
-    assert np.linalg.norm(calibrated[0].gravity_m_s2) > 9
+    result = calibrated[0]
+    left, imu = result.cameras["left"], result.imus["left_imu"]
+    arrays = [result.gravity_m_s2, left.reference_from_camera, left.rotation_std_deg, left.translation_std_m,
+              imu.gyroscope_bias_rad_s, imu.gyroscope_scale_misalignment, imu.accelerometer_bias_std_m_s2, result.covariance.matrix,
+              result.covariance.std, result.covariance.correlation, left.intrinsics.matrix]
+    for array in arrays:
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0
+    for mapping in (result.timing_s, left.windows):
+        with pytest.raises(TypeError):
+            mapping["total"] = 0
+    own = left.reference_from_camera.copy()
+    own[0, 3] = 99  # as can be done with what a method returns
+    result.trajectory.at([1.0, 2.0])[0, 0, 3] = 99
 
 
 def test_a_result_of_an_older_program_has_what_it_has(result_folder):
@@ -180,3 +191,70 @@ def test_a_damaged_pickle_is_refused(calibrated):
 def test_sensors_of_a_result_are_not_assigned(calibrated):
     with pytest.raises(TypeError):
         calibrated[0].cameras["left"] = None
+
+
+def test_result_yaml_is_the_truth(result_folder, calibrated, caplog):
+    """run.data is its cache: an edited result.yaml counts, with what it does not contain missing."""
+    file = result_folder / "result.yaml"
+    text = file.read_text()
+    file.write_text(re.sub(r"time_offset_s: \S+", "time_offset_s: 0.5", text, count=1))  # the camera's comes first
+    changed = evical.Result.load(result_folder)
+    assert changed.cameras["left"].time_offset_s == 0.5
+    assert any("result.yaml was changed later" in each for each in changed.missing)
+    assert any("result.yaml was changed later" in record.getMessage() for record in caplog.records)
+    with pytest.raises(evical.InputError, match="trajectory: the result has none .*changed later"):
+        changed.trajectory
+    file.write_text(text)
+    assert evical.Result.load(result_folder).missing == []
+
+
+def test_run_data_of_a_run_with_the_same_sensors_is_not_mixed_in(result_folder, session, tmp_path):
+    session.time_range_s = (0, 4)
+    other = evical.calibrate(session, output=tmp_path / "other")
+    (result_folder / "result.yaml").write_bytes((tmp_path / "other" / "result.yaml").read_bytes())
+    mixed = evical.Result.load(result_folder)
+    assert mixed.cameras["left"].time_offset_s == pytest.approx(other.cameras["left"].time_offset_s, rel=1e-12)
+    assert any("another run" in each for each in mixed.missing)
+
+
+def test_a_truth_has_no_sigmas_and_no_status(simulated):
+    truth = evical.Result.load(simulated / "short_bag" / "truth.yaml")
+    for again in (truth, pickle.loads(pickle.dumps(truth))):
+        left, imu = again.cameras["left"], again.imus["left_imu"]
+        assert again.status == "truth" and "truth" in repr(again)
+        for numbers in (left.rotation_std_deg, left.translation_std_m, left.time_offset_std_s, left.clock_drift_std_ppm,
+                        left.reprojection_rms_px, imu.gyroscope_bias_std_rad_s, imu.accelerometer_bias_std_m_s2,
+                        imu.gyroscope_rms_rad_s, imu.accelerometer_rms_m_s2):
+            assert np.isnan(numbers).all()
+        assert np.isfinite(left.reference_from_camera).all() and np.isfinite(left.time_offset_s)
+        assert again.to_yaml().startswith("evical_truth: 1")
+
+
+def test_what_was_not_estimated_has_the_sigma_0(calibrated):
+    np.testing.assert_array_equal(calibrated[0].imus["left_imu"].rotation_std_deg, 0)  # the reference
+
+
+@pytest.mark.parametrize("kind", ["datetime64[ns]", "timedelta64[ns]", "complex128", "str"])
+def test_times_of_other_types_are_refused(calibrated, kind):
+    times = np.array([1, 2]).astype(kind)
+    for call in (calibrated[0].trajectory.at, lambda t: calibrated[0].trajectory.camera_at("left", t)):
+        with pytest.raises(TypeError, match="times_s must be numbers: seconds since Result.start_ns"):
+            call(times)
+
+
+def test_times_in_nanoseconds_are_refused(calibrated):
+    result = calibrated[0]
+    absolute = result.start_ns + np.array([10**9, 2 * 10**9])
+    for times in (absolute, absolute - result.start_ns, absolute * 1e-9 + 1.7e9, absolute[0]):
+        with pytest.raises(evical.InputError, match="is not a time of this recording, whose trajectory is from"):
+            result.trajectory.at(times)
+    seconds = 1e-9 * (absolute - result.start_ns)
+    assert np.isfinite(result.trajectory.at(seconds)).all()
+
+
+def test_poses_that_are_all_nan_are_a_warning(calibrated, caplog):
+    trajectory = calibrated[0].trajectory
+    trajectory.at([trajectory.end_s + 1, 1.0])
+    assert caplog.records == []
+    assert np.isnan(trajectory.at([1500.0, 2500.0])).all()
+    assert "all poses are NaN" in caplog.records[0].getMessage()
