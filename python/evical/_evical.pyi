@@ -1,5 +1,6 @@
 import os
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+import pathlib
+from typing import Any, Callable, Dict, Iterator, List, Mapping, NoReturn, Optional, Sequence, Tuple, Type, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,29 @@ _Progress = Optional[Callable[[str, float], object]]
 _Numbers = npt.NDArray[np.float64]
 _Records = npt.NDArray[np.void]
 
-class Stream:
+# Made by functions of the module only: a call without this argument, which has no value, is an error.
+class _Made:
+    def __init__(self, *, made_by_evical: NoReturn) -> None: ...
+
+# Read as a pathlib.Path, assigned as any path.
+class _PathMember:
+    def __get__(self, instance: object, owner: Optional[Type[object]] = None) -> pathlib.Path: ...
+    def __set__(self, instance: object, value: _Path) -> None: ...
+
+# Read as a tuple, assigned as any sequence.
+class _RangeMember:
+    def __get__(self, instance: object, owner: Optional[Type[object]] = None) -> Optional[Tuple[float, float]]: ...
+    def __set__(self, instance: object, value: Optional[Sequence[float]]) -> None: ...
+
+class _ResolutionMember:
+    def __get__(self, instance: object, owner: Optional[Type[object]] = None) -> Optional[Tuple[int, int]]: ...
+    def __set__(self, instance: object, value: Optional[Sequence[int]]) -> None: ...
+
+class _TimesMember:
+    def __get__(self, instance: object, owner: Optional[Type[object]] = None) -> Tuple[float, ...]: ...
+    def __set__(self, instance: object, value: Sequence[float]) -> None: ...
+
+class Stream(_Made):
     @property
     def name(self) -> str: ...
     @property
@@ -29,7 +52,7 @@ class Stream:
     @property
     def angular_rate_to_rad_s(self) -> float: ...
 
-class Fault:
+class Fault(_Made):
     @property
     def stream(self) -> str: ...
     @property
@@ -39,7 +62,7 @@ class Fault:
     @property
     def text(self) -> str: ...
 
-class Frame:
+class Frame(_Made):
     @property
     def t(self) -> int: ...
     @property
@@ -51,7 +74,7 @@ class Frame:
     @property
     def brightness(self) -> npt.NDArray[np.uint8]: ...
 
-class Packet:
+class Packet(_Made):
     @property
     def stream(self) -> Stream: ...
     @property
@@ -64,7 +87,7 @@ class Packet:
     def frames(self) -> List[Frame]: ...
     def __len__(self) -> int: ...
 
-class Recording:
+class Recording(_Made):
     def __enter__(self) -> Recording: ...
     def __exit__(self, *args: object) -> None: ...
     def __iter__(self) -> Iterator[Packet]: ...
@@ -119,25 +142,25 @@ class Board:
     @property
     def points_m(self) -> _Numbers: ...
 
-class SessionCamera:
+class SessionCamera(_Made):
     @property
     def name(self) -> str: ...
     stream: str
     intrinsics: Optional[Camera]
-    resolution_px: Optional[Sequence[int]]
-    recording: _Path
+    resolution_px: _ResolutionMember
+    recording: _PathMember
     clock_offset_s: float
-    rejected_windows_s: Sequence[float]
+    rejected_windows_s: _TimesMember
 
-class SessionImu:
+class SessionImu(_Made):
     @property
     def name(self) -> str: ...
     stream: str
     accelerometer_stream: str
     gyroscope_noise_density: float
     accelerometer_noise_density: float
-    recording: _Path
-    accelerometer_recording: _Path
+    recording: _PathMember
+    accelerometer_recording: _PathMember
     columns: str
     accelerometer_columns: str
     @property
@@ -146,7 +169,7 @@ class SessionImu:
     def angular_rate_factor(self) -> float: ...
     clock_offset_s: float
 
-class Session:
+class Session(_Made):
     @staticmethod
     def load(path: _Path) -> Session: ...
     @staticmethod
@@ -157,9 +180,9 @@ class Session:
     @property
     def options(self) -> Mapping[str, Union[bool, int, float, str]]: ...
     @property
-    def source(self) -> _Path: ...
-    recording: _Path
-    time_range_s: Optional[Sequence[float]]
+    def source(self) -> pathlib.Path: ...
+    recording: _PathMember
+    time_range_s: _RangeMember
     board: Board
     reference: str
     @property
@@ -170,7 +193,7 @@ class Session:
     def __copy__(self) -> Session: ...
     def __deepcopy__(self, memo: Dict[int, Any]) -> Session: ...
 
-class Trajectory:
+class Trajectory(_Made):
     @property
     def begin_s(self) -> float: ...
     @property
@@ -178,7 +201,7 @@ class Trajectory:
     def at(self, times_s: npt.ArrayLike) -> _Numbers: ...
     def camera_at(self, name: str, times_s: npt.ArrayLike) -> _Numbers: ...
 
-class _SensorResult:
+class _SensorResult(_Made):
     @property
     def name(self) -> str: ...
     @property
@@ -210,7 +233,7 @@ class CameraResult(_SensorResult):
     @property
     def reprojection_rms_px(self) -> float: ...
     @property
-    def windows(self) -> Dict[str, int]: ...
+    def windows(self) -> Mapping[str, int]: ...
 
 class ImuResult(_SensorResult):
     @property
@@ -236,7 +259,7 @@ class ImuResult(_SensorResult):
     @property
     def accelerometer_rms_m_s2(self) -> float: ...
 
-class Result:
+class Result(_Made):
     @staticmethod
     def load(path: _Path) -> Result: ...
     @property
@@ -254,7 +277,7 @@ class Result:
     @property
     def missing(self) -> List[str]: ...
     @property
-    def timing_s(self) -> Dict[str, float]: ...
+    def timing_s(self) -> Mapping[str, float]: ...
     @property
     def reference(self) -> str: ...
     @property
@@ -271,7 +294,7 @@ class Result:
     def trajectory(self) -> Trajectory: ...
     def to_yaml(self) -> str: ...
 
-class IntrinsicsResult:
+class IntrinsicsResult(_Made):
     @property
     def status(self) -> str: ...
     @property
@@ -290,7 +313,7 @@ class IntrinsicsResult:
     def views_used(self) -> int: ...
 
 def inspect(path: _Path, progress: _Progress = None) -> Dict[str, Any]: ...
-def _open(path: _Path, streams: List[str]) -> Recording: ...
+def _open(path: _Path, streams: Optional[List[str]]) -> Recording: ...
 def _set_recording_server(command: List[str]) -> None: ...
 def _serve_recording(path: _Path) -> None: ...
 def _calibrate(session: Session, output: Optional[_Path], progress: _Progress) -> Result: ...

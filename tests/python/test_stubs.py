@@ -3,6 +3,7 @@
 import ast
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -27,6 +28,27 @@ def run(tmp_path, *arguments):
     environment = {**os.environ, "MYPYPATH": os.environ["PYTHONPATH"], "MYPY_CACHE_DIR": str(tmp_path / "cache")}
     return subprocess.run([sys.executable, "-m", *map(str, arguments)], capture_output=True, text=True, cwd=tmp_path,
                           env=environment)
+
+
+NOT_MADE = ["CameraResult", "Fault", "Frame", "ImuResult", "IntrinsicsResult", "Packet", "Recording", "Result", "Session", "SessionCamera",
+            "SessionImu", "Stream", "Trajectory"]
+
+MEMBERS = """
+import pathlib
+import evical
+
+session = evical.Session.load("session.yaml")
+recording: pathlib.Path = session.recording
+name: str = session.source.name + session.recording.name
+session.recording = "recording.bag"
+session.recording = pathlib.Path("recording.bag")
+session.time_range_s = [0.5, 5]
+session.time_range_s = None
+camera = session.cameras["left"]
+camera.resolution_px = [346, 260]
+camera.rejected_windows_s = [1.0]
+camera.recording = "other.bag"
+"""
 
 
 def test_hints_are_of_what_is_there():
@@ -63,6 +85,25 @@ def test_a_program_is_checked(tmp_path):
     (tmp_path / "program.py").write_text(PROGRAM.replace("time_offset_s", "time_offset_ms").replace('"session.yaml"', "3"))
     checked = run(tmp_path, "mypy", "--strict", "program.py")
     assert 'has no attribute "time_offset_ms"' in checked.stdout and 'incompatible type "int"' in checked.stdout
+
+
+def test_the_pages_examples_are_typed(source, tmp_path):
+    blocks = re.findall(r"^```python\n(.*?)^```$", (source / "docs" / "python.md").read_text(), re.MULTILINE | re.DOTALL)
+    (tmp_path / "examples.py").write_text("\n".join(blocks))
+    (tmp_path / "members.py").write_text(MEMBERS)
+    for program in ("examples.py", "members.py"):
+        checked = run(tmp_path, "mypy", "--strict", program)
+        assert checked.returncode == 0, checked.stdout
+
+
+def test_what_cannot_be_made_is_an_error_for_mypy_too(tmp_path):
+    (tmp_path / "program.py").write_text("import evical\n" + "".join(f"evical.{name}()\n" for name in NOT_MADE) + "evical.Board()\n")
+    checked = run(tmp_path, "mypy", "--strict", "program.py")
+    assert checked.stdout.count("Missing named argument") == len(NOT_MADE) == checked.stdout.count("error:"), checked.stdout
+    for name in NOT_MADE:
+        with pytest.raises(TypeError):
+            getattr(evical, name)()
+    evical.Board()
 
 
 @pytest.mark.parametrize("name", ["open", "inspect", "calibrate", "intrinsics", "undistort_events", "Recording", "Session", "Result",
