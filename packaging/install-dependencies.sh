@@ -26,8 +26,8 @@ run=(
 package=(dpkg-dev file lintian appstream desktop-file-utils man-db)
 test=(
   clang-format clang-tidy python3 xvfb xauth xdotool openbox imagemagick python3-h5py python3-rosbag slurm-wlm munge locales
-  # Python module and notebooks
-  python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
+  # Python module, also with AddressSanitizer, and notebooks
+  libclang-rt-14-dev python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
   # documentation site
   mkdocs
   # other programs' loaders for the files that Evical exports, and their libraries
