@@ -20,14 +20,17 @@ namespace evical {
 namespace {
 
 void checkCount(const std::vector<SensorView>& views, std::size_t count, const char* what,
-                const IntrinsicsInput& input, const IntrinsicsOptions& options) {
+                const IntrinsicsInput& input, const IntrinsicsOptions& options, std::size_t close = 0) {
   if (static_cast<int>(count) >= options.least_views) return;
   const std::string missing = missingPlaces(views, input.resolution_px);
   throw calibrationFailed(
       input.observations.camera,
-      fmt::format("only {} at least {:.0f} % of the board, but {} are needed for intrinsics{}",
-                  counted(count, what, "shows", "show"), 100.0 * options.least_circles, options.least_views,
-                  missing.empty() ? "" : "; none reaches " + missing),
+      fmt::format(
+          "only {} at least {:.0f} % of the board, but {} are needed for intrinsics{}{}",
+          counted(count, what, "shows", "show"), 100.0 * options.least_circles, options.least_views,
+          close == 0 ? ""
+                     : fmt::format("; {} more are within {} s of these", close, options.least_view_spacing_s),
+          missing.empty() ? "" : "; none reaches " + missing),
       "Move the board through the whole image for at least 20 s, and keep it completely in view most of the "
       "time");
 }
@@ -160,7 +163,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
       input.start ? *input.start
                   : roughStart(all, input.board, input.resolution_px, input.detection_intrinsics);
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
-  checkCount(views, views.size(), "well-spaced view", input, options);
+  checkCount(views, views.size(), "well-spaced view", input, options, all.size() - views.size());
   const Estimation given{input.board, input.resolution_px, input.detection_intrinsics, options, context};
   Solution solution = input.start ? Solution{bestOf({*input.start}, views, given), {}} : solve(views, given);
   const Bundle& bundle = solution.bundle;

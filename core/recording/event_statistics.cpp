@@ -4,11 +4,13 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/numerics/robust.h"
+#include "core/recording/stray_stamps.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 namespace evical {
@@ -17,6 +19,8 @@ namespace {
 constexpr Resolution kLargestGuess_px = {2048,
                                          2048};  // if the file does not state it; no event sensor has more
 constexpr std::size_t kMostNamedPixels = 8;
+constexpr std::int64_t kLongStep_ns = 3600 * kSecond_ns;
+constexpr std::uint64_t kFewStrays = kEventStamps.enough;
 
 }  // namespace
 
@@ -51,7 +55,9 @@ void EventStatistics::add(EventSpan events) {
   unsigned largest_x = 0, largest_y = 0;
   for (const Event& event : events) {
     const std::int64_t interval_ns = event.time_ns - previous_ns;
-    if (interval_ns < 0 || interval_ns > gap_ns) checkInterval(previous_ns, event.time_ns);
+    if (interval_ns < 0 || interval_ns > gap_ns)
+      checkInterval(previous_ns, event.time_ns,
+                    numbers_.count + static_cast<std::uint64_t>(&event - events.data()));
     numbers_.largest_gap_ns = std::max(numbers_.largest_gap_ns, interval_ns);
     previous_ns = event.time_ns;
     numbers_.on += event.brighter ? 1 : 0;
@@ -78,7 +84,10 @@ void EventStatistics::add(EventSpan events) {
   numbers_.seen_px.height_px = std::max(numbers_.seen_px.height_px, static_cast<int>(largest_y) + 1);
 }
 
-void EventStatistics::checkInterval(std::int64_t previous_ns, std::int64_t time_ns) {
+// A few events before or after a long step are strays, which do not extend the recording.
+void EventStatistics::checkInterval(std::int64_t previous_ns, std::int64_t time_ns, std::uint64_t before) {
+  if (time_ns - previous_ns > kLongStep_ns && before < kFewStrays) numbers_.first_ns = time_ns;
+  if (std::abs(time_ns - previous_ns) > kLongStep_ns) last_step_ = {before, previous_ns};
   const double step_ms = 1e-6 * static_cast<double>(time_ns - previous_ns);
   if (time_ns >= previous_ns) {
     addFault(FaultKind::Gap, previous_ns, fmt::format("No events for {:.3f} ms.", step_ms));
@@ -98,6 +107,8 @@ void EventStatistics::addFault(FaultKind kind, std::int64_t at_ns, std::string t
 
 void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>& faults) {
   numbers_.off = numbers_.count - numbers_.on;
+  if (last_step_.count > 0 && numbers_.count - last_step_.count < kFewStrays)
+    numbers_.last_ns = last_step_.time_ns;
   const double duration_s = secondsSince(numbers_.first_ns, numbers_.last_ns);
   if (duration_s > 0.0) numbers_.rate_hz = static_cast<double>(numbers_.count) / duration_s;
   numbers_.shortest_interval_s = shortestInterval_s();

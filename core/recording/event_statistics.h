@@ -22,7 +22,7 @@ class EventStatistics {
   static constexpr std::uint32_t kInterval_us = 5, kIntervals = 4000;
 
   unsigned rowsWith(unsigned y_px);
-  void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
+  void checkInterval(std::int64_t previous_ns, std::int64_t time_ns, std::uint64_t before);
   double shortestInterval_s() const;
   void findHotPixels(double duration_s, StreamSummary& summary, std::vector<RecordingFault>& faults) const;
   std::uint32_t neighbourMedian(int x_px, int y_px) const;
@@ -40,6 +40,10 @@ class EventStatistics {
   int most_rows_ = 0;
   std::uint64_t outside_ = 0;
   StampStep stamp_step_;
+  struct {
+    std::uint64_t count = 0;   // of the events before it
+    std::int64_t time_ns = 0;  // before it
+  } last_step_;                // of hours
 };
 
 }  // namespace evical

@@ -1,11 +1,14 @@
 #include "core/recording/inspection.h"
 
+#include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
 #include "core/data/stamp_batches.h"
 #include "core/recording/event_statistics.h"
 #include "core/recording/imu_statistics.h"
 #include "core/recording/separate_reader.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +23,12 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
   if (samples.empty()) return;
   summary.first_ns = samples.front().time_ns;
   summary.last_ns = samples.back().time_ns;
+  std::size_t rates = 0, forces = 0;  // values other than 0
   for (std::size_t i = 0; i < samples.size(); ++i) {
     summary.without_rate += lacksRate(samples[i]) ? 1 : 0;
     summary.without_force += lacksForce(samples[i]) ? 1 : 0;
+    rates += samples[i].angular_rate.isZero(0.0) ? 0 : 1;
+    forces += samples[i].specific_force.isZero(0.0) ? 0 : 1;
     summary.mean_acceleration += samples[i].specific_force / static_cast<double>(samples.size());
     summary.mean_angular_rate += samples[i].angular_rate / static_cast<double>(samples.size());
     if (i == 0) continue;
@@ -30,6 +36,9 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
     summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
   }
+  // A driver marks the covariance as unknown by the number that means: without this sensor.
+  if (summary.without_rate == samples.size() && 2 * rates > samples.size()) summary.without_rate = 0;
+  if (summary.without_force == samples.size() && 2 * forces > samples.size()) summary.without_force = 0;
   std::vector<std::int64_t> times_ns;
   for (const RawImuSample& sample : samples) times_ns.push_back(sample.time_ns);
   const double span_s = secondsSince(summary.first_ns, summary.last_ns);
@@ -100,7 +109,12 @@ class TimeStatistics {
     longest_exposure_s_ = std::max(longest_exposure_s_, frame.exposure_s);
   }
 
-  void finish(StreamSummary& summary) const {
+  void finish(StreamSummary& summary, std::vector<RecordingFault>& faults) const {
+    if (summary.info.timed && backward_steps_ > 0)
+      faults.push_back(
+          {summary.info.name, FaultKind::BackwardTime, 0.0,
+           fmt::format("Time runs backwards {}: {} are out of order.", counted(backward_steps_, "time"),
+                       summary.info.type == StreamType::Frames ? "frames" : "points")});
     summary.count = count_;
     summary.first_ns = first_ns_;
     summary.last_ns = last_ns_;
@@ -172,11 +186,18 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
   }
   inspection.faults = reader.faults();
+  const auto hasWrongTimes = [faults = inspection.faults](const StreamInfo& info) {
+    return std::ranges::any_of(faults, [&](const RecordingFault& fault) {
+      return fault.kind == FaultKind::Unit && fault.stream == info.name;
+    });
+  };
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
     StreamSummary& summary = inspection.streams.emplace_back();
     summary.info = reader.streams()[i];
+    if (summary.info.type == StreamType::Frames && hasWrongTimes(summary.info)) summary.info.timed = false;
     summary.count = summary.info.messages;
-    if (const auto found = others.find(i); found != others.end()) found->second.finish(summary);
+    if (const auto found = others.find(i); found != others.end())
+      found->second.finish(summary, inspection.faults);
     if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
     if (summary.info.type != StreamType::Imu) continue;
     std::vector<ImuSample> samples;
@@ -188,6 +209,9 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
   }
+  if (inspection.streams.empty())
+    inspection.faults.push_back(
+        {"", FaultKind::Empty, 0.0, "The recording has no streams: nothing was recorded."});
   return inspection;
 }
 

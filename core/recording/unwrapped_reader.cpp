@@ -89,11 +89,20 @@ bool UnwrappedReader::read(Packet& packet) {
   unwrapAll(detector, packet.imu_samples);
   unwrapAll(detector, packet.frames);
   unwrapAll(detector, packet.points);
+  seen_.resize(detectors_.size());
+  if (reader_->streams()[packet.stream].timed) seen_[packet.stream].add(packet);
   return true;
 }
 
 const std::vector<RecordingFault>& UnwrappedReader::faults() const {
-  faults_ = reader_->faults();
+  faults_.clear();
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    const StreamInfo& info = reader_->streams()[k];
+    if (const auto why = whyImplausible(info.type, seen_[k]))
+      faults_.push_back({info.name, FaultKind::Unit, 0.0, *why});
+  }
+  const std::vector<RecordingFault>& own = reader_->faults();
+  faults_.insert(faults_.end(), own.begin(), own.end());
   for (std::size_t k = 0; k < detectors_.size(); ++k)
     if (const WrapDetector& detector = detectors_[k]; detector.wraps() > 0)
       faults_.push_back(

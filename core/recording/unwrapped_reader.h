@@ -1,7 +1,9 @@
 // Continues times of counters that wrap: a counter of microseconds in 32 bits does after 71.6 min. Readers of formats whose
-// counters have a known width do this themselves; tables and messages contain counters of any driver.
+// counters have a known width do this themselves; tables and messages contain counters of any driver. States which
+// streams have times that cannot be true.
 #pragma once
 
+#include "core/recording/plausible_times.h"
 #include "core/recording/recording_reader.h"
 
 #include <cstdint>
@@ -46,6 +48,7 @@ class UnwrappedReader : public RecordingReader {
 
   std::unique_ptr<RecordingReader> reader_;
   std::vector<WrapDetector> detectors_;  // by stream
+  std::vector<SeenTimes> seen_;          // by stream
   mutable std::vector<RecordingFault> faults_;
 };
 

@@ -4,6 +4,7 @@
 #include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
+#include "core/recording/plausible_times.h"
 #include "core/recording/separate_reader.h"
 
 #include <fmt/format.h>
@@ -100,6 +101,23 @@ void filterImplausible(Stream& stream, SensorPacket& packet) {
   stream.points.filter(packet.points);
 }
 
+// Numbers in place of times, 1 s apart as for pictures without times; points of one view share theirs.
+void number(Stream& stream, Packet& packet) {
+  if (!stream.numbered) return;
+  for (Frame& frame : packet.frames) frame.time_ns = kSecond_ns * (*stream.numbered)++;
+  for (MeasuredPoint& point : packet.points) {
+    if (*stream.numbered == 0 || point.time_ns != stream.recorded_ns) ++*stream.numbered;
+    stream.recorded_ns = point.time_ns;
+    point.time_ns = kSecond_ns * *stream.numbered;
+  }
+}
+
+std::size_t bytesOf(const Packet& packet) {
+  std::size_t bytes = packet.events.size() * sizeof(Event) + packet.points.size() * sizeof(MeasuredPoint);
+  for (const Frame& frame : packet.frames) bytes += frame.bytes.size();
+  return bytes;
+}
+
 // Flushes the samples that a stream's filter still holds at the end of the file.
 bool flushNext(File& file) {
   while (file.flushed < file.streams.size()) {
@@ -135,15 +153,20 @@ void File::add(std::size_t in_file, std::size_t sensor, const SessionImu& imu) {
   streams.push_back({in_file, sensor, imu.name, imu.clock_offset_s, imu.clock_scale, imu});
 }
 
+Stream& File::of(const Packet& packet) {
+  return *std::ranges::find(streams, packet.stream, &Stream::in_file);
+}
+
 std::int64_t File::time_ns() const {
   return finished ? std::numeric_limits<std::int64_t>::max() : firstTime_ns(next);
 }
 
-std::optional<std::int64_t> MergedStreams::begin() {
+std::optional<std::int64_t> MergedStreams::begin(bool camera_alone) {
   for (File& file : files_) {
     std::vector<std::size_t> selected;
     for (const Stream& stream : file.streams) selected.push_back(stream.in_file);
     file.reader->select(selected);
+    if (camera_alone) judgeTimes(file);
     advance(file);
   }
   const File* const first = behind();
@@ -184,14 +207,46 @@ bool MergedStreams::read(SensorPacket& packet) {
   return true;
 }
 
+bool MergedStreams::readPacket(File& file) const {
+  if (file.ahead.empty()) return !stop_.stop_requested() && file.reader->read(file.raw);
+  file.raw = std::move(file.ahead.front());
+  file.ahead.pop_front();
+  return true;
+}
+
+// From the first frames or views. Views by hand are seconds apart, so that their interval sets how far a stray is.
+void MergedStreams::judgeTimes(File& file) const {
+  constexpr std::size_t kEnough = 30, kMost_bytes = std::size_t{64} << 20;
+  constexpr double kFar = 10.0;  // intervals
+  Stream& stream = file.streams.front();
+  const StreamType type = file.info(stream).type;
+  if (!file.info(stream).timed || (type != StreamType::Frames && type != StreamType::Points)) return;
+  const StopWaiting until_stop(stop_);
+  SeenTimes seen;
+  std::size_t bytes = 0;
+  for (Packet packet; seen.count() < kEnough && bytes < kMost_bytes && file.reader->read(packet);) {
+    seen.add(packet);
+    bytes += bytesOf(packet);
+    file.ahead.push_back(std::move(packet));
+    packet = {};
+  }
+  if (whyImplausible(type, seen)) stream.numbered = 0;
+  StampTolerance tolerance = type == StreamType::Frames ? kSampleStamps : kPointStamps;
+  tolerance.ahead_ns =
+      std::max(tolerance.ahead_ns, nanosecondsFrom(kFar * (stream.numbered ? 1.0 : seen.median_s())));
+  if (type == StreamType::Frames) stream.frames = StampFilter<Frame>(tolerance);
+  if (type == StreamType::Points) stream.points = StampFilter<MeasuredPoint>(tolerance);
+}
+
 // Reads the next packet that is not empty.
 void MergedStreams::advance(File& file) {
   const StopWaiting until_stop(stop_);
   while (!file.read_out) {
-    file.read_out = stop_.stop_requested() || !file.reader->read(file.raw);
+    file.read_out = !readPacket(file);
     if (file.read_out) break;
     if (file.raw.empty()) continue;
-    Stream& stream = *std::ranges::find(file.streams, file.raw.stream, &Stream::in_file);
+    Stream& stream = file.of(file.raw);
+    number(stream, file.raw);
     toSessionUnits(file, stream);
     filterImplausible(stream, file.next);
     setClock(stream, file.next);

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -44,6 +45,9 @@ class MergedStreams {
     StampFilter<Frame> frames{kSampleStamps};
     StampFilter<MeasuredPoint> points{kPointStamps};
     std::optional<std::int64_t> first_ns = {};  // in its own clock; fixed point of clock_scale
+    // Of frames or points whose times cannot be true: their number so far, in place of times, and the last recorded one.
+    std::optional<std::int64_t> numbered = {};
+    std::int64_t recorded_ns = 0;
     std::uint64_t immeasurable = 0;
     std::int64_t immeasurable_ns = 0;  // the first
 
@@ -54,7 +58,8 @@ class MergedStreams {
     std::filesystem::path path;
     std::unique_ptr<RecordingReader> reader;
     std::vector<Stream> streams = {};
-    Packet raw = {};  // from the reader
+    std::deque<Packet> ahead = {};  // read to judge the times of frames
+    Packet raw = {};                // from the reader
     SensorPacket next = {};
     bool read_out = false;    // true: only samples inside the filters remain
     std::size_t flushed = 0;  // number of flushed streams
@@ -63,6 +68,7 @@ class MergedStreams {
     void add(std::size_t in_file, std::size_t sensor, const SessionCamera& camera);
     void add(std::size_t in_file, std::size_t sensor, const SessionImu& imu);
     const StreamInfo& info(const Stream& stream) const { return reader->streams()[stream.in_file]; }
+    Stream& of(const Packet& packet);
     std::int64_t time_ns() const;
   };
 
@@ -73,8 +79,8 @@ class MergedStreams {
   const std::vector<File>& files() const { return files_; }
 
   // Reads the first packet of each file; all streams must be known. Returns the time of the first item, if
-  // any.
-  std::optional<std::int64_t> begin();
+  // any. For a camera alone, frames and points whose times cannot be true are numbered 1 s apart.
+  std::optional<std::int64_t> begin(bool camera_alone = false);
   // Throws CalibrationError (BadInput), with this advice, for a file whose clock is unrelated to that of the
   // first file, which starts later by the argument. Files of the same sensors may follow each other after any
   // time.
@@ -84,11 +90,14 @@ class MergedStreams {
   const File* behind() const;
   bool read(SensorPacket& packet);
   double fractionRead() const;
+  bool isStopped() const { return stop_.stop_requested(); }
   // Appends the faults of the readers.
   void addFaults(std::vector<RecordingFault>& faults) const;
 
  private:
   void advance(File& file);
+  bool readPacket(File& file) const;
+  void judgeTimes(File& file) const;
 
   std::stop_token stop_;
   std::vector<File> files_;

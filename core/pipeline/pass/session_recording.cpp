@@ -87,7 +87,7 @@ SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
   for (const SessionCamera& camera : session.cameras)
     addSensor("cameras", camera, camera.stream, kCameraStreams);
   for (const SessionImu& imu : session.imus) addSensor("imus", imu, imu.joinedStream(), kImuStreams);
-  start_ns_ = streams_.begin().value_or(0);
+  start_ns_ = streams_.begin(isCameraAlone()).value_or(0);
   checkTimed();
   streams_.checkClocks([](double first_later_s) {
     return fmt::format(
@@ -168,8 +168,12 @@ void SessionRecording::addSensor(const char* section, const Sensor& sensor, cons
   places_.emplace_back(place, file.streams.size() - 1);
 }
 
+bool SessionRecording::isCameraAlone() const {
+  return session_.cameras.size() == 1 && session_.imus.empty();
+}
+
 void SessionRecording::checkTimed() const {
-  if (session_.cameras.size() == 1 && session_.imus.empty()) return;
+  if (isCameraAlone()) return;
   for (std::size_t camera = 0; camera < session_.cameras.size(); ++camera) {
     if (info(camera).timed) continue;
     throw badInput(session_.cameras[camera].name,
@@ -214,8 +218,27 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
                  howTo(HowTo::GiveResolution));
 }
 
+// Everything else follows from wrong times, so it would be wrong advice.
+void SessionRecording::checkTimes() const {
+  for (std::size_t sensor = 0; sensor < places_.size(); ++sensor) {
+    const MergedStreams::File& file = streams_.files()[places_[sensor].first];
+    const MergedStreams::Stream& own = stream(sensor);
+    if (own.numbered || own.clock_scale != 1.0) continue;
+    for (const RecordingFault& fault : file.reader->faults()) {
+      const bool wrong = fault.kind == FaultKind::Unit || fault.kind == FaultKind::SecondClock;
+      if (!wrong || fault.stream != info(sensor).name) continue;
+      throw badInput(fmt::format("{}: {}", file.path.string(), own.name),
+                     fault.text.substr(0, fault.text.size() - 1),
+                     "Write the recording again with right times");
+    }
+  }
+}
+
 bool SessionRecording::read(SensorPacket& packet) {
-  if (!streams_.read(packet)) return false;
+  if (!streams_.read(packet)) {
+    if (!streams_.isStopped()) checkTimes();
+    return false;
+  }
   if (packet.sensor < session_.cameras.size()) unmirror(packet);
   return true;
 }

@@ -43,6 +43,7 @@ class SessionRecording {
   // Time of the first event or sample in any file; 0 if there is none.
   std::int64_t start_ns() const { return start_ns_; }
 
+  // At the end, throws CalibrationError (BadInput) if the times of a sensor cannot be true.
   bool read(SensorPacket& packet);
   double fractionRead() const { return streams_.fractionRead(); }
   // Faults of the files, and removed data; complete after read() has returned false.
@@ -68,7 +69,9 @@ class SessionRecording {
   const MergedStreams::Stream& stream(std::size_t sensor) const;
   const StreamInfo& info(std::size_t sensor) const;
   void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;
+  bool isCameraAlone() const;
   void checkTimed() const;
+  void checkTimes() const;
   void unmirror(SensorPacket& packet) const;
 
   const Session& session_;

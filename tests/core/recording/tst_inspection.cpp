@@ -1,6 +1,7 @@
 #include "core/recording/inspection.h"
 #include "core/recording/inspection_json.h"
 #include "tests/core/recording/aedat/aedat3_builder.h"
+#include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/picture_samples.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/core/recording/sample_recording.h"
@@ -62,6 +63,10 @@ class TestInspection : public QObject {
   void json_holdsTheContractsKeys();
   void frames_areCountedWithTheirExposures();
   void untimedPictures_areToldSo();
+  void unknownCovariances_hideNoSensor();
+  void framesOutOfOrder_areAFault();
+  void strayEvents_doNotExtendTheRecording();
+  void emptyRecording_isAFault();
   void hostileSamples_areSurvived();
   void hostileEvents_areSurvived();
 
@@ -291,6 +296,57 @@ void TestInspection::untimedPictures_areToldSo() {
   QCOMPARE(inspection.streams[0].rate_hz, 0.0);
   QVERIFY(!inspection.streams[0].info.timed);
   QCOMPARE(kinds(inspection.faults), QStringList({"guess"}));
+}
+
+// -1 marks a missing sensor, but some drivers mean an unknown covariance.
+void TestInspection::unknownCovariances_hideNoSensor() {
+  for (const bool values : {true, false}) {
+    Samples samples = handheld();
+    BagBuilder bag;
+    const std::uint32_t topic = bag.addImu("/imu");
+    for (ImuSample& sample : samples) {
+      if (!values) sample.specific_force_m_s2.setZero();
+      std::string message = imuMessage(sample);
+      const double unknown = -1.0;
+      message.replace(message.size() - 9 * sizeof unknown, sizeof unknown, bytesOf(unknown));
+      bag.message(topic, sample.time_ns, message);
+    }
+    std::ofstream(path("imu.bag"), std::ios::binary) << bag.finished();
+    const auto reader = openRecording(path("imu.bag"));
+    const Inspection inspection = inspectRecording(*reader);
+    QVERIFY(imuStreamKind(inspection.streams.at(0)) ==
+            (values ? ImuStreamKind::Whole : ImuStreamKind::Gyroscope));
+  }
+}
+
+void TestInspection::framesOutOfOrder_areAFault() {
+  const ScratchFolder folder;
+  folder.write("cam0/data.csv",
+               "#t,name\n1000000000,a.png\n1100000000,b.png\n1050000000,c.png\n1150000000,d.png\n");
+  for (const char* name : {"a", "b", "c", "d"})
+    folder.write(std::string("cam0/data/") + name + ".png", pngBytes(8, 6));
+  const auto reader = openRecording(folder / "cam0");
+  QCOMPARE(kinds(inspectRecording(*reader).faults), QStringList{"backward_time"});
+}
+
+void TestInspection::strayEvents_doNotExtendTheRecording() {
+  constexpr std::int64_t kBegin_ns = 1'700'000'000'000'000'000;
+  std::string table = "t_ns,x,y,p\n0,1,1,1\n";
+  for (int i = 0; i < 5000; ++i)
+    table += std::to_string(kBegin_ns + 10'000 * i) + "," + std::to_string(i % 64) + "," +
+             std::to_string(i % 48) + ",1\n";
+  const ScratchFolder folder;
+  const auto reader = openRecording(folder.write("events.csv", table + "0,1,1,1\n"));
+  const StreamSummary events = inspectRecording(*reader).streams.at(0);
+  QCOMPARE(qint64(events.first_ns), qint64(kBegin_ns));
+  QCOMPARE(qint64(events.last_ns), qint64(kBegin_ns + 10'000 * 4999));
+  QCOMPARE(events.count, std::uint64_t{5002});
+}
+
+void TestInspection::emptyRecording_isAFault() {
+  const ScratchFolder folder;
+  const auto reader = openRecording(folder.write("a.bag", BagBuilder().finished()));
+  QCOMPARE(kinds(inspectRecording(*reader).faults), QStringList{"empty"});
 }
 
 void TestInspection::hostileSamples_areSurvived() {

@@ -56,6 +56,10 @@ class TestSessionRecording : public QObject {
   void twoImusOfOneTable_areRead();
   void clocksWithoutRelation_areRefused();
   void clockInAnotherUnit_isNamed();
+  void wrongTimesOfAnImu_areRefusedWithTheUnit();
+  void wrongTimesOfACameraAlone_areReplacedByNumbers_data();
+  void wrongTimesOfACameraAlone_areReplacedByNumbers();
+  void reportedFramesOneNsApart_areAllUsed();
   void missingStream_namesFileAndStreams();
   void intrinsicsOfAnotherResolution_areRefused();
   void samplesThatAreNoMeasurements_stayOutside();
@@ -367,6 +371,70 @@ void TestSessionRecording::clockInAnotherUnit_isNamed() {
   } catch (const CalibrationError& error) {
     QVERIFY2(QString(error.what()).contains("1000 times too small: correct their unit"), error.what());
   }
+}
+
+void TestSessionRecording::wrongTimesOfAnImu_areRefusedWithTheUnit() {
+  for (ImuSample& sample : written_.imu_samples) sample.time_ns /= 1000;
+  for (Event& event : written_.events) event.time_ns /= 1000;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), written_);
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  try {
+    while (recording.read(packet)) {
+    }
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains("1000 times too small (us read as ns"), error.what());
+  }
+}
+
+void TestSessionRecording::wrongTimesOfACameraAlone_areReplacedByNumbers_data() {
+  QTest::addColumn<qint64>("step_ns");
+  QTest::addColumn<qint64>("expected_ns");
+  QTest::newRow("a count") << qint64{1} << qint64{1'000'000'000};
+  QTest::newRow("all equal") << qint64{0} << qint64{0};  // one view
+  QTest::newRow("hours") << qint64{3'600'000'000'000} << qint64{1'000'000'000};
+  QTest::newRow("pictures by hand") << qint64{7'000'000'000} << qint64{7'000'000'000};
+  QTest::newRow("a camera") << qint64{50'000'000} << qint64{50'000'000};
+}
+
+// Views of points; frames are handled alike.
+void TestSessionRecording::wrongTimesOfACameraAlone_areReplacedByNumbers() {
+  QFETCH(qint64, step_ns);
+  QFETCH(qint64, expected_ns);
+  constexpr int kViews = 40, kPoints = 30;
+  std::string table = "time_ns,point,x_px,y_px\n";
+  for (int view = 0; view < kViews; ++view)
+    for (int point = 0; point < kPoints; ++point)
+      table +=
+          QString("%1,%2,%3,20\n").arg(1'000'000'000 + view * step_ns).arg(point).arg(point).toStdString();
+  writeFile(path("points.csv"), table);
+  session_.imus.clear();
+  session_.recording = path("points.csv");
+  session_.cameras[0].stream = "points.csv";
+  session_.cameras[0].resolution_px = {640, 480};
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  std::vector<std::int64_t> times_ns;
+  while (recording.read(packet))
+    for (const MeasuredPoint& point : packet.points) times_ns.push_back(point.time_ns);
+  QCOMPARE(times_ns.size(), std::size_t{kViews * kPoints});
+  for (std::size_t i = kPoints; i < times_ns.size(); i += kPoints)
+    QCOMPARE(qint64(times_ns[i] - times_ns[i - kPoints]), expected_ns);
+}
+
+void TestSessionRecording::reportedFramesOneNsApart_areAllUsed() {
+  const QString folder = qEnvironmentVariable("EVICAL_DATA");
+  if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
+  session_.recording = (folder + "/reports/containers/bagcreater_from_indices_1ns_apart.bag").toStdString();
+  session_.imus.clear();
+  session_.cameras[0].stream = "/cam0/image_raw";
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  int count = 0;
+  while (recording.read(packet))
+    for (const Frame& frame : packet.frames) QCOMPARE(qint64(frame.time_ns), 1'000'000'000 * qint64{count++});
+  QCOMPARE(count, 8);
 }
 
 void TestSessionRecording::missingStream_namesFileAndStreams() {
