@@ -6,6 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 namespace evical::pictures {
@@ -29,6 +33,25 @@ void readRows(const std::filesystem::path& table, const char* columns, PictureLi
   }
 }
 
+// "rgb/1305031102.175304" of "rgb/1305031102.175304.png", within the list's folder.
+std::string_view stemOf(std::string_view cell) {
+  cell.remove_prefix(std::min(cell.size(), cell.rfind('/') + 1));
+  const std::size_t point = cell.rfind('.');
+  const bool extension = point != std::string_view::npos && isPictureName(cell);
+  return extension ? cell.substr(0, point) : cell;
+}
+
+// The column with the name of a picture: with an extension before one without, which may be a number.
+std::optional<std::size_t> pictureColumn(const std::vector<std::string_view>& cells,
+                                         const std::map<std::string, std::string, std::less<>>& by_stem) {
+  const auto isKnown = [&](std::string_view cell) { return by_stem.contains(stemOf(cell)); };
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    if (isPictureName(cells[k]) && isKnown(cells[k])) return k;
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    if (isKnown(cells[k])) return k;
+  return std::nullopt;
+}
+
 std::int64_t middle(std::int64_t a, std::int64_t b) {
   return a + (b - a) / 2;
 }
@@ -50,6 +73,44 @@ void readNamedTimes(const std::filesystem::path& table, int unit_digits, Picture
     list.pictures.push_back(std::move(picture));
     return true;
   });
+}
+
+void readAnyTimes(const std::filesystem::path& table, int unit_digits, PictureList& list) {
+  std::map<std::string, std::string, std::less<>> by_stem;
+  for (const std::string& name : pictureNames(list.folder)) by_stem[name.substr(0, name.rfind('.'))] = name;
+  std::vector<TimeRow> rows;
+  readRows(table, "time, file", list, [&](std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (std::string_view cell = takeColumn(line); !cell.empty(); cell = takeColumn(line))
+      cells.push_back(cell);
+    const std::optional<std::size_t> named = pictureColumn(cells, by_stem);
+    const std::size_t first = named == 0 && cells.size() > 1 ? 1 : 0;
+    TimeRow row;
+    const bool date = cells.size() > first + 1 &&
+                      parseDate(fmt::format("{} {}", cells[first], cells[first + 1]), row.first_ns);
+    if (!date && !parseDate(cells[first], row.first_ns) &&
+        !parseTime(cells[first], unit_digits, row.first_ns))
+      return false;
+    if (named)
+      list.pictures.push_back({row.first_ns, 0.0, by_stem.find(stemOf(cells[*named]))->second});
+    else
+      rows.push_back(row);
+    return true;
+  });
+  if (list.pictures.empty()) pairWithTimes(rows, false, list);
+}
+
+int usualDigits(const std::filesystem::path& table, int of_decimals) {
+  TextLines lines(table);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view first = takeColumn(line), second = takeColumn(line);
+    double number = 0.0;
+    if (first.empty() || first.front() == '#' || !parseNumber(first, number)) continue;
+    const bool decimals = first.find_first_of(".eE") != std::string_view::npos ||
+                          (parseNumber(second, number) && second.find('.') != std::string_view::npos);
+    return decimals ? of_decimals : 0;
+  }
+  return of_decimals;
 }
 
 std::vector<TimeRow> readTimes(const std::filesystem::path& table, int unit_digits, bool two_columns,

@@ -20,6 +20,10 @@ std::string nameAt(std::int64_t time_ns) {
   return std::to_string(time_ns) + ".png";
 }
 
+bool hasTime(const std::string& name) {
+  return !pictures::timesInNames({name}).times_ns.empty();
+}
+
 const char* const kEurocImu =
     "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],a_RS_S_y "
     "[m "
@@ -40,6 +44,15 @@ class TestPictureFolders : public QObject {
   void eurocLists_sayBadLines();
   void kalibr_hasAStreamAFolder();
   void namesInMicroseconds_areSaid();
+  void namesOfAllKinds_areTimes_data();
+  void namesOfAllKinds_areTimes();
+  void tablesOfAllKinds_areTimes_data();
+  void tablesOfAllKinds_areTimes();
+  void twoCamerasInOneFolder_areTwoStreams();
+  void eurocWithoutTable_takesTheNames();
+  void eurocTimesInAnotherUnit_areCorrected_data();
+  void eurocTimesInAnotherUnit_areCorrected();
+  void picturesOfKalibr_stayWithAnyNameOfTheImu();
   void dsec_hasTheMiddleOfTheExposure();
   void dsec_withoutExposures_hasTheCommonTimes();
   void tumVie_hasExposures();
@@ -157,6 +170,148 @@ void TestPictureFolders::namesInMicroseconds_areSaid() {
   const Contents contents = readEverything(scratch_->path());
   QCOMPARE(contents.frames.at(0)[1].time_ns - contents.frames.at(0)[0].time_ns, 50'000'000);
   QVERIFY(contents.hasFault(FaultKind::Guess));
+}
+
+void TestPictureFolders::namesOfAllKinds_areTimes_data() {
+  QTest::addColumn<QStringList>("names");
+  QTest::addColumn<qint64>("step_ns");  // 0: no times
+  const auto row = [](const char* name, const QStringList& names, qint64 step_ns) {
+    QTest::newRow(name) << names << step_ns;
+  };
+  row("ns", {"1700000000000000000", "1700000000050000000", "1700000000100000000"}, 50'000'000);
+  row("ns since the start", {"000000000000", "000050000000", "000100000000"}, 50'000'000);
+  row("us", {"1700000000000000", "1700000000050000", "1700000000100000"}, 50'000'000);
+  row("ms", {"1700000000000", "1700000000050", "1700000000100"}, 50'000'000);
+  row("s", {"1700000000", "1700000001", "1700000002"}, 1'000'000'000);
+  row("decimals", {"1700000000.000000", "1700000000.050000", "1700000000.100000"}, 50'000'000);
+  row("decimals since the start", {"0.000000", "0.050000", "0.100000"}, 50'000'000);
+  row("s and ns", {"1700000000_000000000", "1700000000_050000000", "1700000000_100000000"}, 50'000'000);
+  row("s and ns without zeros", {"1700000000_999999999", "1700000001_49999999", "1700000001_99999999"},
+      50'000'000);
+  row("a word before", {"cam0_1700000000000000000", "cam0_1700000000050000000", "cam0_1700000000100000000"},
+      50'000'000);
+  row("a word behind", {"1700000000000000000_left", "1700000000050000000_left", "1700000000100000000_left"},
+      50'000'000);
+  row("date of 17 digits", {"20240506070809000", "20240506070809050", "20240506070809100"}, 50'000'000);
+  row("date of a telephone", {"IMG_20240506_070809", "IMG_20240506_070811", "IMG_20240506_070813"},
+      2'000'000'000);
+  row("date with lines", {"2024-05-06-07-08-09", "2024-05-06-07-08-11", "2024-05-06-07-08-13"},
+      2'000'000'000);
+  row("a count of 12 digits", {"000000000000", "000000000001", "000000000002"}, 0);
+  row("a count of 19 digits", {"0000000000000000000", "0000000000000000001", "0000000000000000002"}, 0);
+  row("a count from a large number", {"100000000000", "100000000001", "100000000002"}, 0);
+  row("a count of 6 digits", {"000000", "000001", "000002"}, 0);
+  row("a count with a point", {"frame.0001", "frame.0002", "frame.0003"}, 0);
+  row("a count with a line", {"board_1_01", "board_1_02", "board_1_03"}, 0);
+}
+
+void TestPictureFolders::namesOfAllKinds_areTimes() {
+  QFETCH(QStringList, names);
+  QFETCH(qint64, step_ns);
+  for (const QString& name : names) scratch_->write(name.toStdString() + ".png", pngBytes(8, 6));
+  const Contents contents = readEverything(scratch_->path());
+  QCOMPARE(contents.streams.size(), std::size_t{1});
+  QCOMPARE(contents.frameCount(), 3u);
+  QCOMPARE(contents.streams[0].timed, step_ns > 0);
+  const std::vector<Frame>& frames = contents.frames.at(0);
+  const qint64 expected_ns = step_ns > 0 ? step_ns : 1'000'000'000;
+  QCOMPARE(qint64(frames[1].time_ns - frames[0].time_ns), expected_ns);
+  QCOMPARE(qint64(frames[2].time_ns - frames[1].time_ns), expected_ns);
+}
+
+void TestPictureFolders::tablesOfAllKinds_areTimes_data() {
+  QTest::addColumn<QString>("table");
+  QTest::addColumn<QString>("content");
+  const auto row = [](const char* name, const char* table, const char* content) {
+    QTest::newRow(name) << QString(table) << QString(content);
+  };
+  row("data.csv", "cam0/data.csv",
+      "#timestamp [ns],filename\n1000000000,000000.png\n1050000000,000001.png\n1100000000,000002.png\n");
+  row("times.txt of KITTI", "times.txt", "1.000000e+00\n1.050000e+00\n1.100000e+00\n");
+  row("times.txt of TUM's monocular data", "cam0/times.txt",
+      "000000 1.000000 0.5\n000001 1.050000 0.5\n000002 1.100000 0.5\n");
+  row("times.txt in ns", "cam0/times.txt", "1700000001000000000\n1700000001050000000\n1700000001100000000\n");
+  row("timestamps.txt with dates", "cam0/timestamps.txt",
+      "2011-09-26 13:02:25.000000000\n2011-09-26 13:02:25.050000000\n2011-09-26 13:02:25.100000000\n");
+  row("timestamps.txt with names", "cam0/timestamps.txt",
+      "000000.png 1.000000\n000001.png 1.050000\n000002.png 1.100000\n");
+  row("as rgb.txt of TUM RGB-D", "cam0.txt",
+      "# color images\n# timestamp filename\n1.000000 cam0/000000.png\n1.050000 cam0/000001.png\n1.100000 "
+      "cam0/000002.png\n");
+}
+
+void TestPictureFolders::tablesOfAllKinds_areTimes() {
+  QFETCH(QString, table);
+  QFETCH(QString, content);
+  addNumbered("cam0", 3);
+  scratch_->write(table.toStdString(), content.toStdString());
+  const Contents contents = readEverything(scratch_->path());
+  QCOMPARE(contents.streams.size(), std::size_t{1});
+  QVERIFY(contents.streams[0].timed);
+  QCOMPARE(contents.frameCount(), 3u);
+  const std::vector<Frame>& frames = contents.frames.at(0);
+  QCOMPARE(qint64(frames[1].time_ns - frames[0].time_ns), qint64(50'000'000));
+  QCOMPARE(qint64(frames[2].time_ns - frames[1].time_ns), qint64(50'000'000));
+}
+
+void TestPictureFolders::twoCamerasInOneFolder_areTwoStreams() {
+  for (const char* name : {"left00", "left01", "left02", "right00", "right01", "right02"})
+    scratch_->write(std::string(name) + ".png", pngBytes(8, 6) + name);
+  const Contents contents = readEverything(scratch_->path());
+  QCOMPARE(contents.streams.size(), std::size_t{2});
+  QCOMPARE(QString::fromStdString(contents.streams[0].name), QString("left"));
+  QCOMPARE(QString::fromStdString(contents.streams[1].name), QString("right"));
+  QCOMPARE(contents.frames.at(1).size(), std::size_t{3});
+}
+
+void TestPictureFolders::eurocWithoutTable_takesTheNames() {
+  addEurocCamera("mav0/cam0", 5);
+  std::filesystem::remove(*scratch_ / "mav0/cam0/data.csv");
+  scratch_->write("mav0/imu0/data.csv", kEurocImu);
+  const Contents contents = readEverything(scratch_->path());
+  QCOMPARE(contents.streams.size(), std::size_t{2});
+  QCOMPARE(QString::fromStdString(contents.streams[0].name), QString("cam0"));
+  QCOMPARE(qint64(contents.frames.at(0)[1].time_ns), qint64(kPictureFoldersStart_ns + 50'000'000));
+  QCOMPARE(contents.sampleCount(), 2u);
+}
+
+void TestPictureFolders::eurocTimesInAnotherUnit_areCorrected_data() {
+  QTest::addColumn<QString>("format");  // of the time, from its s and ns
+  QTest::addColumn<QString>("said");
+  QTest::newRow("s") << "%1.%2"
+                     << "read as s";
+  QTest::newRow("rounded by a spreadsheet") << "1.40364E+18"
+                                            << "in the names are used";
+}
+
+void TestPictureFolders::eurocTimesInAnotherUnit_areCorrected() {
+  QFETCH(QString, format);
+  QFETCH(QString, said);
+  addEurocCamera("cam0", 6);
+  std::string list = "#timestamp [ns],filename\n";
+  for (int i = 0; i < 6; ++i) {
+    const QString time = QString::number(kPictureFoldersStart_ns + i * qint64{50'000'000});
+    const QString written = format.contains('%') ? format.arg(time.left(10), time.mid(10)) : format;
+    list += written.toStdString() + "," + time.toStdString() + ".png\n";
+  }
+  scratch_->write("cam0/data.csv", list);
+  const Contents contents = readEverything(*scratch_ / "cam0");
+  QVERIFY(contents.streams[0].timed);
+  QCOMPARE(qint64(contents.frames.at(0)[5].time_ns), qint64(kPictureFoldersStart_ns + 250'000'000));
+  QVERIFY(std::ranges::any_of(contents.faults, [&](const RecordingFault& fault) {
+    return fault.text.find(said.toStdString()) != std::string::npos;
+  }));
+}
+
+void TestPictureFolders::picturesOfKalibr_stayWithAnyNameOfTheImu() {
+  for (int i = 0; i < 3; ++i)
+    scratch_->write("cam0/" + nameAt(kPictureFoldersStart_ns + i * 50'000'000), pngBytes(8, 6));
+  scratch_->write(
+      "imu.csv",
+      "timestamp,omega_x,omega_y,omega_z,alpha_x,alpha_y,alpha_z\n1385030208726607500,1,2,3,4,5,9.8\n");
+  const Contents contents = readEverything(scratch_->path());
+  QCOMPARE(contents.frameCount(), 3u);
+  QCOMPARE(contents.sampleCount(), 1u);
 }
 
 void TestPictureFolders::dsec_hasTheMiddleOfTheExposure() {
@@ -296,10 +451,10 @@ void TestPictureFolders::timesBeyondTheLimit_areLeftOut() {
   const Contents contents = readEverything(*scratch_ / "cam0");
   QCOMPARE(contents.frameCount(), 2u);
   QCOMPARE(contents.faults.size(), std::size_t{1});
-  QVERIFY(!pictures::timeInName("4611686018427387904.png"));
-  QVERIFY(!pictures::timeInName("99999999999999999999.png"));
-  QVERIFY(!pictures::timeInName("00000001234.png"));
-  QVERIFY(pictures::timeInName("0000000000123456789.png"));
+  QVERIFY(!hasTime("4611686018427387904.png"));
+  QVERIFY(!hasTime("99999999999999999999.png"));
+  QVERIFY(!hasTime("00000001234.png"));
+  QVERIFY(hasTime("0000000000123456789.png"));
 }
 
 void TestPictureFolders::byDefault_picturesAreNotRead() {
