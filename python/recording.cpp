@@ -112,6 +112,14 @@ PixelLayout layoutOf(const Frame& frame) {
       return {"bayer_gbrg8", "u1", 1, 1};
     case FrameFormat::BayerGrbg8:
       return {"bayer_grbg8", "u1", 1, 1};
+    case FrameFormat::BayerRggb16:
+      return {"bayer_rggb16", frame.big_endian ? ">u2" : "<u2", 1, 2};
+    case FrameFormat::BayerBggr16:
+      return {"bayer_bggr16", frame.big_endian ? ">u2" : "<u2", 1, 2};
+    case FrameFormat::BayerGbrg16:
+      return {"bayer_gbrg16", frame.big_endian ? ">u2" : "<u2", 1, 2};
+    case FrameFormat::BayerGrbg16:
+      return {"bayer_grbg16", frame.big_endian ? ">u2" : "<u2", 1, 2};
     case FrameFormat::Encoded:
       break;
   }

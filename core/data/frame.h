@@ -21,6 +21,10 @@ enum class FrameFormat {
   BayerBggr8,
   BayerGbrg8,
   BayerGrbg8,
+  BayerRggb16,  // as Gray16
+  BayerBggr16,
+  BayerGbrg16,
+  BayerGrbg16,
   Encoded  // a JPEG, PNG, PGM, TIFF or BMP file's bytes
 };
 

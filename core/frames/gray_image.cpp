@@ -52,6 +52,14 @@ Layout layoutOf(FrameFormat format) {
       return {CV_8UC1, cv::COLOR_BayerGBRG2GRAY};
     case FrameFormat::BayerGrbg8:
       return {CV_8UC1, cv::COLOR_BayerGRBG2GRAY};
+    case FrameFormat::BayerRggb16:
+      return {CV_16UC1, cv::COLOR_BayerRGGB2GRAY};
+    case FrameFormat::BayerBggr16:
+      return {CV_16UC1, cv::COLOR_BayerBGGR2GRAY};
+    case FrameFormat::BayerGbrg16:
+      return {CV_16UC1, cv::COLOR_BayerGBRG2GRAY};
+    case FrameFormat::BayerGrbg16:
+      return {CV_16UC1, cv::COLOR_BayerGRBG2GRAY};
     default:
       return {};
   }
@@ -98,10 +106,13 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
                    fmt::format("has {} bytes, but {} x {} pixels of its format need {}", frame.bytes.size(),
                                width, height, std::max(step, needed) * (height - 1) + needed),
                    "Copy the recording again, or remove the truncated picture");
-  if (layout.to_gray >= 0 && layout.type == CV_8UC1 && (width < 3 || height < 3))
+  if (layout.to_gray >= 0 && CV_MAT_CN(layout.type) == 1 && (width < 3 || height < 3))
     throw badInput(place, "is too small for a Bayer pattern", "Remove this picture");
-  const cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step);
-  if (layout.to_gray < 0) return seen.clone();
+  cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step).clone();
+  // Before the pattern is interpolated.
+  if (layout.type == CV_16UC1 && frame.big_endian != (std::endian::native == std::endian::big))
+    swapBytes(seen);
+  if (layout.to_gray < 0) return seen;
   cv::Mat gray;
   cv::cvtColor(seen, gray, layout.to_gray);
   return gray;
@@ -148,10 +159,7 @@ GrayImage decodeFrame(const Frame& frame, const std::string& place) {
                    fmt::format("has {} x {} pixels instead of the specified {} x {}", image.size_px.width_px,
                                image.size_px.height_px, frame.size_px.width_px, frame.size_px.height_px),
                    "Remove this picture: it is damaged or from another camera");
-  if (picture.type() == CV_16UC1) {
-    if (!encoded && frame.big_endian != (std::endian::native == std::endian::big)) swapBytes(picture);
-    picture = eightBits(picture);
-  }
+  if (picture.type() == CV_16UC1) picture = eightBits(picture);
   image.pixels.assign(picture.datastart, picture.dataend);
   return image;
 }

@@ -340,15 +340,28 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
   return remarks;
 }
 
-std::vector<std::string> notesOn(const Session& session) {
+// Why a stream that is probably of an IMU is not read.
+std::string unreadImu(const std::vector<InspectedRecording>& recordings) {
+  for (const InspectedRecording& each : recordings)
+    for (const RecordingFault& fault : each.inspection.faults)
+      if (fault.kind == FaultKind::Unreadable && fault.text.find("of an IMU") != std::string::npos)
+        return fault.text;
+  return {};
+}
+
+std::vector<std::string> notesOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   std::vector<std::string> notes = {"board: complete its entry"};
   for (const SessionCamera& camera : session.cameras)
     if (!camera.resolution_px.known())
       notes.push_back(
           fmt::format("cameras.{}: give resolution_px, which is not in the recording", camera.name));
-  if (session.imus.empty() && session.cameras.size() == 1)
-    notes.push_back("there is no IMU: add its recording, or calibrate only the camera " +
+  if (session.imus.empty() && session.cameras.size() == 1) {
+    const std::string unread = unreadImu(recordings);
+    notes.push_back((unread.empty()
+                         ? "there is no IMU: add its recording, or calibrate only the camera "
+                         : "there is no IMU that can be read. " + unread + " Or calibrate only the camera ") +
                     howTo(HowTo::CalibrateLens));
+  }
   return notes;
 }
 
@@ -387,7 +400,7 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
   keepReference(session);
   validate(session, session.recording.string());
   draft.yaml = sessionYaml(session, folder, remarksOn(session, recordings));
-  draft.notes = notesOn(session);
+  draft.notes = notesOn(session, recordings);
   for (std::string& note : unusedFrames(session, recordings)) draft.notes.push_back(std::move(note));
   return draft;
 }

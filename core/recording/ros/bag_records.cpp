@@ -55,6 +55,7 @@ ConnectionData parseConnectionData(std::string_view bytes) {
     if (name == "type") connection.type = value;
     if (name == "md5sum") connection.md5 = value;
     if (name == "message_definition") connection.definition = value;
+    if (name == "callerid") connection.publisher = value;
   });
   return connection;
 }

@@ -41,7 +41,7 @@ bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
 
 // Content of a connection record's data.
 struct ConnectionData {
-  std::string_view topic, type, md5, definition;
+  std::string_view topic, type, md5, definition, publisher;
 };
 ConnectionData parseConnectionData(std::string_view bytes);
 

@@ -1,14 +1,12 @@
 #include "core/recording/ros/bag_source.h"
 
-#include "core/base/nearest_name.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <regex>
-#include <system_error>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace evical::ros {
@@ -36,33 +34,6 @@ bool takeBagRecord(std::string_view& records, BagRecord& record) {
   return true;
 }
 
-// Parts before and after this one from `rosbag record --split`: "a_3.bag" for "a_2.bag". Their names may
-// also contain their start time, which differs: "a_2024-05-06-07-08-09_2.bag". They count from 0:
-// without part 0 these are recordings that a person numbered.
-std::vector<std::string> otherParts(const std::filesystem::path& path) {
-  constexpr const char* kNumbered = R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.bag)";
-  const std::regex numbered(kNumbered);
-  std::smatch own, other;
-  const std::string name = path.filename().string();
-  std::vector<std::string> parts;
-  if (!std::regex_match(name, own, numbered)) return parts;
-  const int number = std::stoi(own[3]);
-  bool has_first = number == 0;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path() / ".", error)) {
-    const std::string candidate = entry.path().filename().string();
-    if (!std::regex_match(candidate, other, numbered)) continue;
-    const bool same = own[1] == other[1] && own[2].matched == other[2].matched;
-    if (!same) continue;
-    const int its_number = std::stoi(other[3]);
-    has_first = has_first || its_number == 0;
-    if (std::abs(its_number - number) == 1) parts.push_back(candidate);
-  }
-  if (!has_first) return {};
-  std::sort(parts.begin(), parts.end());
-  return parts;
-}
-
 }  // namespace
 
 BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
@@ -70,12 +41,7 @@ BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
   rewind();
   listTopics();
   rewind();
-  const std::vector<std::string> parts = otherParts(path);
-  if (parts.empty()) return;
-  sink_(FaultKind::Part,
-        fmt::format("The name is that of a part of a split recording: {} {} in the same folder. Only this "
-                    "part is read.",
-                    joined(parts), parts.size() == 1 ? "is" : "are"));
+  separatePublishers();
 }
 
 void BagSource::rewind() {
@@ -106,6 +72,7 @@ void BagSource::listTopics() {
   topic_of_connection_.clear();  // an incomplete index is not used
   chunk_connections_.clear();
   topics_.clear();
+  publishers_.clear();
   listByScan();
   const bool never_closed = has_header && header.index_position == 0;
   sink_(FaultKind::NoIndex,
@@ -272,6 +239,37 @@ void BagSource::listFromChunk(std::uint64_t position) {
   chunk_ = {};
 }
 
+// A topic of a sensor with messages of several nodes in turn is several topics. Nodes that follow each other, as after a
+// restart, are one publisher.
+void BagSource::separatePublishers() {
+  constexpr int kMostMessages = 20'000, kEnoughTurns = 4;
+  std::map<std::string, std::set<std::string>> nodes;
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
+    const Topic& topic = topics_[i].topic;
+    const bool read = contentOf(topic.type, topic.md5, topic.definition) != Content::Other;
+    if (read && !publishers_[i].empty()) nodes[topic.name + ' ' + topic.type].insert(publishers_[i]);
+  }
+  std::erase_if(nodes, [](const auto& of_topic) { return of_topic.second.size() < 2; });
+  if (nodes.empty()) return;
+  const auto keyOf = [&](std::size_t i) { return topics_[i].topic.name + ' ' + topics_[i].topic.type; };
+  wanted_.assign(topics_.size(), false);
+  for (std::size_t i = 0; i < topics_.size(); ++i) wanted_[i] = nodes.contains(keyOf(i));
+  const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
+  std::map<std::string, std::pair<std::string, int>> turns;
+  SourceMessage message;
+  for (int k = 0; k < kMostMessages && next(message); ++k) {
+    auto& [last, count] = turns[keyOf(message.topic)];
+    if (publishers_[message.topic] != last) ++count;
+    last = publishers_[message.topic];
+  }
+  sink_ = sink;
+  for (std::size_t i = 0; i < topics_.size(); ++i)
+    if (nodes.contains(keyOf(i)) && turns[keyOf(i)].second >= kEnoughTurns)
+      topics_[i].topic.publisher = publishers_[i];
+  wanted_.clear();
+  rewind();
+}
+
 // The record's header has the topic under which messages were stored. The data are the header of the
 // publisher's connection, which may have another name, or none if a program wrote the bag itself.
 void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::ConnectionData& data) {
@@ -281,6 +279,7 @@ void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::
   topics_.push_back({{std::string(topic), std::string(data.type), std::string(data.md5),
                       std::string(data.definition), Serialization::Ros1},
                      0});
+  publishers_.emplace_back(data.publisher);
 }
 
 // u32 connection, u32 messages, ...

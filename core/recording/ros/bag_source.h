@@ -56,6 +56,7 @@ class BagSource : public MessageSource {
   bool listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks);
   void listByScan();
   void listFromChunk(std::uint64_t position);
+  void separatePublishers();
   void addConnection(const rosbag::RecordHeader& header, const rosbag::ConnectionData& data);
   void addChunkInfo(std::uint64_t chunk, std::string_view counts);
 
@@ -73,6 +74,7 @@ class BagSource : public MessageSource {
   std::uint64_t position_ = 0;    // of the next record to read
   std::uint64_t chunk_data_ = 0;  // begin of the last chunk's data
   std::vector<SourceTopic> topics_;
+  std::vector<std::string> publishers_;  // nodes, by topic
   std::vector<bool> wanted_;
   std::unordered_map<std::uint32_t, std::size_t> topic_of_connection_;
   std::map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos

@@ -1,7 +1,9 @@
 #include "core/recording/ros/event_packet_decoder.h"
 
 #include "core/base/time.h"
+#include "core/recording/prophesee/word_decoders.h"
 
+#include <bit>
 #include <cstring>
 
 namespace evical::ros {
@@ -85,9 +87,47 @@ void decodeLibcaerCmp(const EventPacket& packet, std::vector<Event>& events) {
   }
 }
 
+// Words of a packet, from a few of them on, nearly all of a known kind.
+template <class Word, class Fits>
+bool fitsWords(std::string_view bytes, const Fits& fits) {
+  constexpr double kNearlyAll = 0.99;
+  const std::size_t words = bytes.size() / sizeof(Word);
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < words; ++i) good += fits(wordAt<Word>(bytes, i * sizeof(Word))) ? 1 : 0;
+  return static_cast<double>(good) >= kNearlyAll * static_cast<double>(words);
+}
+
+// Kinds of EVT2 and EVT2.1: off, on, high time, trigger, IMU, others, continued.
+bool isKnownKind(unsigned kind) {
+  return kind <= 1 || kind == 8 || kind == 0xA || kind >= 0xD;
+}
+
+// The columns of EVT2.1's vectors begin at multiples of 32.
+bool isEvt21(std::uint64_t word) {
+  const auto kind = static_cast<unsigned>(word >> 60);
+  return isKnownKind(kind) && (kind > 1 || (word >> 43 & 0x1F) == 0);
+}
+
+bool fits(Encoding encoding, std::string_view bytes) {
+  switch (encoding) {
+    case Encoding::Evt2:
+      return fitsWords<std::uint32_t>(bytes, [](std::uint32_t word) { return isKnownKind(word >> 28); });
+    case Encoding::Evt21:
+      return fitsWords<std::uint64_t>(bytes, isEvt21) ||
+             fitsWords<std::uint64_t>(bytes, [](std::uint64_t word) { return isEvt21(std::rotl(word, 32)); });
+    default:
+      return fitsWords<std::uint16_t>(bytes, [](unsigned word) {
+        const unsigned kind = word >> 12;
+        return kind != 1 && kind != 9 && (kind < 0xB || kind > 0xD);
+      });
+  }
+}
+
 }  // namespace
 
 Encoding encodingOf(std::string_view name) {
+  if (name == "evt2") return Encoding::Evt2;
+  if (name == "evt21") return Encoding::Evt21;
   if (name == "evt3") return Encoding::Evt3;
   if (name == "mono") return Encoding::Mono;
   if (name == "trigger") return Encoding::Trigger;
@@ -100,11 +140,14 @@ bool EventPacketDecoder::decode(const EventPacket& packet, std::vector<Event>& e
   if (packet.big_endian) return false;
   const std::size_t size = packet.events.size();
   const Encoding encoding = encodingOf(packet.encoding);
-  const bool has_base = encoding != Encoding::Evt3 && encoding != Encoding::Trigger;
+  const bool has_base = !isOfSensor(encoding) && encoding != Encoding::Trigger;
   if (has_base && (packet.time_base_ns < 0 || packet.time_base_ns > kLatestBase_ns)) return false;
   switch (encoding) {
+    case Encoding::Evt2:
+    case Encoding::Evt21:
     case Encoding::Evt3:
-      decodeEvt3(packet, events);
+      if (words_encoding_ == Encoding::Unknown) lookAtWords(packet, encoding);
+      decodeWords(packet, events);
       return size % 2 == 0;
     case Encoding::Mono:
       decodeMono(packet, events);
@@ -133,10 +176,35 @@ void EventPacketDecoder::followSequence(std::uint64_t sequence) {
   last_sequence_ = sequence;
 }
 
-void EventPacketDecoder::decodeEvt3(const EventPacket& packet, std::vector<Event>& events) {
+// Drivers may state another encoding than the sensor's.
+void EventPacketDecoder::lookAtWords(const EventPacket& packet, Encoding stated) {
+  constexpr std::size_t kEnough_bytes = 256;
+  Encoding content = stated;
+  if (!fits(stated, packet.events) && packet.events.size() >= kEnough_bytes) {
+    for (const Encoding other : {Encoding::Evt21, Encoding::Evt2, Encoding::Evt3})
+      if (content == stated && other != stated && fits(other, packet.events)) content = other;
+    other_encoding_ = content == stated            ? ""
+                      : content == Encoding::Evt21 ? "evt21"
+                      : content == Encoding::Evt2  ? "evt2"
+                                                   : "evt3";
+  }
+  if (packet.events.size() >= kEnough_bytes) words_encoding_ = content;
+  if (words_ || content == Encoding::Evt3) return;
+  if (content == Encoding::Evt2) {
+    words_ = std::make_unique<prophesee::Evt2Decoder>(packet.resolution_px);
+  } else {
+    const bool exchanged = !fitsWords<std::uint64_t>(packet.events, isEvt21);
+    words_ = std::make_unique<prophesee::Evt21Decoder>(packet.resolution_px, exchanged);
+  }
+}
+
+void EventPacketDecoder::decodeWords(const EventPacket& packet, std::vector<Event>& events) {
   evt3_.setResolution(packet.resolution_px);
   const std::size_t before = events.size();
-  evt3_.decode(packet.events, events);
+  if (words_)
+    words_->decode(packet.events, 0, events);
+  else
+    evt3_.decode(packet.events, events);
   if (events.size() > before && packet.stamp_ns != 0)
     host_clock_.add(events[before].time_ns, packet.stamp_ns);
 }

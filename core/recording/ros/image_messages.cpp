@@ -27,7 +27,13 @@ constexpr ImageEncoding kImageEncodings[] = {{"mono8", FrameFormat::Gray8, 1},
                                              {"bayer_rggb8", FrameFormat::BayerRggb8, 1},
                                              {"bayer_bggr8", FrameFormat::BayerBggr8, 1},
                                              {"bayer_gbrg8", FrameFormat::BayerGbrg8, 1},
-                                             {"bayer_grbg8", FrameFormat::BayerGrbg8, 1}};
+                                             {"bayer_grbg8", FrameFormat::BayerGrbg8, 1},
+                                             {"bayer_rggb16", FrameFormat::BayerRggb16, 2},
+                                             {"bayer_bggr16", FrameFormat::BayerBggr16, 2},
+                                             {"bayer_gbrg16", FrameFormat::BayerGbrg16, 2},
+                                             {"bayer_grbg16", FrameFormat::BayerGrbg16, 2},
+                                             {"8UC3", FrameFormat::Bgr8, 3},  // as OpenCV orders colours
+                                             {"8UC4", FrameFormat::Bgra8, 4}};
 
 const ImageEncoding* encodingNamed(std::string_view name) {
   const auto same = [&](const ImageEncoding& encoding) { return encoding.name == name; };
@@ -35,8 +41,10 @@ const ImageEncoding* encodingNamed(std::string_view name) {
   return found == std::end(kImageEncodings) ? nullptr : found;
 }
 
+// `part` is in lower case.
 bool has(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
+  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
 void assign(const ImageMessage& image, Frame& frame) {
@@ -54,7 +62,7 @@ bool isReadableImage(std::string_view encoding) {
 // compressed_image_transport writes "bgr8; jpeg compressed bgr8", compressed_depth_image_transport "16UC1;
 // compressedDepth png", whose pictures follow a header of that transport.
 bool isReadablePackedImage(std::string_view format) {
-  if (has(format, "compressedDepth")) return false;
+  if (has(format, "compresseddepth")) return false;
   return format.empty() || has(format, "jpeg") || has(format, "jpg") || has(format, "png");
 }
 
@@ -84,18 +92,27 @@ bool parsePackedImage(std::string_view message, Serialization serialization, Ima
   return true;
 }
 
-bool toFrame(const ImageMessage& image, Frame& frame) {
+std::optional<WrongStep> wrongStep(const ImageMessage& image) {
   const ImageEncoding* const encoding = encodingNamed(image.encoding);
+  if (!encoding) return std::nullopt;
   const auto width = static_cast<std::uint64_t>(image.size_px.width_px);
   const auto height = static_cast<std::uint64_t>(image.size_px.height_px);
-  const std::uint64_t row_bytes = image.row_bytes;
-  if (!encoding || row_bytes < width * encoding->pixel_bytes || row_bytes * height > image.bytes.size())
-    return false;
+  const std::uint64_t needed = width * encoding->pixel_bytes;
+  if (image.row_bytes >= needed) return std::nullopt;
+  return WrongStep{image.row_bytes, needed, needed * height == image.bytes.size()};
+}
+
+bool toFrame(const ImageMessage& image, Frame& frame) {
+  const ImageEncoding* const encoding = encodingNamed(image.encoding);
+  const auto height = static_cast<std::uint64_t>(image.size_px.height_px);
+  const std::optional<WrongStep> wrong = wrongStep(image);
+  const std::uint64_t row_bytes = wrong ? wrong->needed_bytes : image.row_bytes;
+  if (!encoding || (wrong && !wrong->complete) || row_bytes * height > image.bytes.size()) return false;
   assign(image, frame);
   frame.format = encoding->format;
   frame.big_endian = image.big_endian;
   frame.size_px = image.size_px;
-  frame.row_bytes = image.row_bytes;
+  frame.row_bytes = static_cast<std::size_t>(row_bytes);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include "core/recording/ros/message_cursor.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,7 +14,7 @@ namespace evical::ros {
 
 // Encodings and formats that can be read, for people.
 inline constexpr const char* kReadableImages =
-    "mono8, mono16, 8UC1, 16UC1, rgb8, bgr8, rgba8, bgra8 and bayer_*8";
+    "mono8, mono16, 8UC1, 8UC3, 8UC4, 16UC1, rgb8, bgr8, rgba8, bgra8, bayer_*8 and bayer_*16";
 inline constexpr const char* kReadablePackedImages = "jpeg and png";
 
 bool isReadableImage(std::string_view encoding);      // "mono8"
@@ -32,6 +33,13 @@ struct ImageMessage {
 // False if the bytes do not fit the stated sizes.
 bool parseImage(std::string_view message, Serialization serialization, ImageMessage& image);
 bool parsePackedImage(std::string_view message, Serialization serialization, ImageMessage& image);
+
+// A step that is shorter than a row; complete: the data have all rows without gaps.
+struct WrongStep {
+  std::uint64_t step_bytes = 0, needed_bytes = 0;
+  bool complete = false;
+};
+std::optional<WrongStep> wrongStep(const ImageMessage& image);
 
 // Frame of a message with a readable encoding or format; false if its numbers contradict one another, or
 // packed bytes are not a picture of this format.

@@ -1,9 +1,13 @@
 #include "core/recording/ros/message_types.h"
 
+#include "core/base/trimmed.h"
 #include "core/recording/ros/message_layout.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -27,6 +31,13 @@ constexpr MessageType kEventArray2 = {
     "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
     "================================================================================\n"
     "MSG: dvs_msgs/Event\nuint16 x\nuint16 y\nbuiltin_interfaces/Time ts\nbool polarity\n"};
+
+// Before 2015: without a header and a size; times are us.
+constexpr MessageType kOldEventArray1 = {
+    Content::OldEventArray, "dvs_msgs/EventArray", "d2e726b2040dbc135644f4709c150a10",
+    "Event[] events\n"
+    "================================================================================\n"
+    "MSG: dvs_msgs/Event\nuint16 x\nuint16 y\nuint64 time\nbool polarity\n"};
 
 constexpr MessageType kEventPacket1 = {
     Content::EventPacket, "event_camera_msgs/EventPacket", "8a6101b351a64529ac77bd8b71074e52",
@@ -102,8 +113,9 @@ constexpr MessageType kPackedImage2 = {
     "================================================================================\n"
     "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"};
 
-constexpr std::array kTypes = {&kEventArray1, &kEventArray2, &kEventPacket1, &kEventPacket2, &kImu1,
-                               &kImu2,        &kImage1,      &kImage2,       &kPackedImage1, &kPackedImage2};
+constexpr std::array kTypes = {&kEventArray1,  &kEventArray2,  &kOldEventArray1, &kEventPacket1,
+                               &kEventPacket2, &kImu1,         &kImu2,           &kImage1,
+                               &kImage2,       &kPackedImage1, &kPackedImage2};
 
 struct KnownName {
   std::string_view type;  // as ROS 1 writes it
@@ -125,11 +137,49 @@ Content contentByLastPart(std::string_view type) {
   return last == "Imu" ? Content::Imu : Content::Other;
 }
 
+std::string inRos1(std::string_view type) {
+  std::string plain(type);
+  if (const std::size_t infix = plain.find("/msg/"); infix != std::string::npos) plain.erase(infix, 4);
+  return plain;
+}
+
+Content contentByName(std::string_view type) {
+  const std::string plain = inRos1(type);
+  for (const KnownName& known : kKnownNames)
+    if (plain == known.type) return known.content;
+  return Content::Other;
+}
+
+std::string lowered(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+bool hasOneOf(const std::string& text, std::initializer_list<const char*> words) {
+  return std::ranges::any_of(words, [&](const char* word) { return text.find(word) != std::string::npos; });
+}
+
+// The fields of a message itself, without those of its parts.
+std::string fieldsOf(std::string_view definition) {
+  std::string fields;
+  for (std::string_view rest = definition.substr(0, definition.find("\n=")); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = trimmed(rest.substr(0, std::min(rest.find('#'), end)));
+    if (!line.empty()) fields += (fields.empty() ? "" : ", ") + std::string(line);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  constexpr std::size_t kMost = 200;
+  return fields.size() > kMost ? fields.substr(0, kMost) + " ..." : fields;
+}
+
 }  // namespace
 
 StreamType streamTypeOf(Content content) {
   switch (content) {
     case Content::EventArray:
+    case Content::OldEventArray:
     case Content::EventPacket:
       return StreamType::Events;
     case Content::Imu:
@@ -160,17 +210,38 @@ const MessageType& packedImageType(Serialization serialization) {
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition) {
   for (const MessageType* known : kTypes)
     if (!md5.empty() && md5 == known->md5) return known->content;
-  std::string plain_type(type);
-  if (const std::size_t infix = plain_type.find("/msg/"); infix != std::string::npos)
-    plain_type.erase(infix, 4);
-  for (const KnownName& known : kKnownNames)
-    if (plain_type == known.type) return known.content;
   const std::optional<std::string> layout = messageLayout(definition);
   for (const MessageType* known : kTypes)
     if (layout && layout == messageLayout(known->definition)) return known->content;
   // The fields of an existing definition take precedence over the name.
   if (layout && !layout->empty()) return Content::Other;
-  return contentByLastPart(type);
+  const Content known = contentByName(type);
+  return known != Content::Other ? known : contentByLastPart(type);
+}
+
+std::string whyUnread(std::string_view topic, std::string_view type, std::string_view definition) {
+  const std::string fields = fieldsOf(definition);
+  if (contentByName(type) != Content::Other)
+    return fmt::format("The messages of type {} have other fields ({}) than those that are read.", type,
+                       fields);
+  const std::string words = lowered(topic) + " " + lowered(type);
+  const bool measures =
+      hasOneOf(lowered(type), {"vector3", "accel", "twist", "quaternion", "float", "array"});
+  const bool is_imu = hasOneOf(lowered(lastPart(type)), {"imu", "inertial", "sensorcombined", "gyro"}) ||
+                      (measures && hasOneOf(words, {"imu", "gyro", "accel", "/acc"}));
+  if (is_imu)
+    return fmt::format(
+        "{} has messages of type {}, probably of an IMU, which are not read: convert them to "
+        "sensor_msgs/Imu, or to a CSV table.",
+        topic, type);
+  if (!hasOneOf(words, {"dvs", "event", "davis", "prophesee"}) ||
+      hasOneOf(words, {"info", "param", "diagnos", "rosout", "clock"}))
+    return {};
+  if (!hasOneOf(lowered(lastPart(type)), {"event", "packet", "array"})) return {};
+  return fmt::format(
+      "{} has messages of type {}, probably with events, which are not read: convert them to "
+      "dvs_msgs/EventArray.",
+      topic, type);
 }
 
 }  // namespace evical::ros

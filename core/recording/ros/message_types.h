@@ -4,11 +4,12 @@
 #include "core/data/recording.h"
 #include "core/recording/ros/message_cursor.h"
 
+#include <string>
 #include <string_view>
 
 namespace evical::ros {
 
-enum class Content { Other, EventArray, EventPacket, Imu, Image, PackedImage };
+enum class Content { Other, EventArray, OldEventArray, EventPacket, Imu, Image, PackedImage };
 
 StreamType streamTypeOf(Content content);
 
@@ -23,8 +24,11 @@ const MessageType& imuType(Serialization serialization);
 const MessageType& imageType(Serialization serialization);
 const MessageType& packedImageType(Serialization serialization);
 
-// By md5 first, then by the names of known packages, then by the fields of the definition, and without one by
-// the last part of the name: packages are renamed and copied.
+// By md5 first, then by the fields of the definition, and without one by the name of a known package, or the last part of
+// any name: packages are renamed and copied, and forks have other fields.
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition);
+
+// Why messages that may be of a sensor are not read; empty for others.
+std::string whyUnread(std::string_view topic, std::string_view type, std::string_view definition);
 
 }  // namespace evical::ros

@@ -1,6 +1,7 @@
 #include "core/recording/ros/ros_files.h"
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/base/yaml_node.h"
 #include "core/recording/ros/bag_source.h"
 #include "core/recording/ros/compression.h"
@@ -11,7 +12,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <regex>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -27,16 +31,87 @@ bool isRecordingFile(const fs::path& path) {
   return false;
 }
 
+// Name of a part of a split recording: "a_3.bag", "a_3.mcap". It may also contain its start time, which differs:
+// "a_2024-05-06-07-08-09_2.bag".
+const std::regex& numberedPart() {
+  static const std::regex numbered(R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.(bag|db3|mcap)(?:\.zstd)?)");
+  return numbered;
+}
+
+// Parts before and after this one. They count from 0: without part 0 these are recordings that a person numbered.
+std::vector<std::string> otherParts(const fs::path& path) {
+  const std::regex& numbered = numberedPart();
+  std::smatch own, other;
+  const std::string name = path.filename().string();
+  std::vector<std::string> parts;
+  if (!std::regex_match(name, own, numbered)) return parts;
+  const int number = std::stoi(own[3]);
+  bool has_first = number == 0;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path.parent_path() / ".", error)) {
+    const std::string candidate = entry.path().filename().string();
+    if (!std::regex_match(candidate, other, numbered)) continue;
+    const bool same = own[1] == other[1] && own[2].matched == other[2].matched && own[4] == other[4];
+    if (!same) continue;
+    const int its_number = std::stoi(other[3]);
+    has_first = has_first || its_number == 0;
+    if (std::abs(its_number - number) == 1) parts.push_back(candidate);
+  }
+  if (!has_first) return {};
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+// The parts of one split ROS 1 recording, if the folder has no other bags.
+bool isSplitBag(const std::vector<fs::path>& bags) {
+  std::smatch first, other;
+  if (bags.size() < 2) return false;
+  const std::string first_name = bags.front().filename().string();
+  if (!std::regex_match(first_name, first, numberedPart()) || std::stoi(first[3]) != 0) return false;
+  for (std::size_t i = 0; i < bags.size(); ++i) {
+    const std::string name = bags[i].filename().string();
+    const bool next = std::regex_match(name, other, numberedPart()) && other[1] == first[1] &&
+                      std::stoi(other[3]) == static_cast<int>(i);
+    if (!next) return false;
+  }
+  return true;
+}
+
 // "bag_10" is after "bag_9".
-std::vector<fs::path> filesByNumber(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (isRecordingFile(entry.path())) files.push_back(entry.path());
+void sortByNumber(std::vector<fs::path>& files) {
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     const std::string left = a.filename().string(), right = b.filename().string();
     return std::tuple(left.size(), left) < std::tuple(right.size(), right);
   });
+}
+
+// Files of ROS 2, or the parts of a split recording of ROS 1.
+std::vector<fs::path> filesByNumber(const fs::path& folder) {
+  std::vector<fs::path> files, bags;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (isRecordingFile(entry.path())) files.push_back(entry.path());
+    if (entry.path().extension() == ".bag") bags.push_back(entry.path());
+  }
+  sortByNumber(bags);
+  if (files.empty() && isSplitBag(bags)) files = bags;
+  sortByNumber(files);
   return files;
+}
+
+// Parts that follow the listed ones: a recorder that crashes lists its last file too late.
+std::vector<fs::path> laterParts(const fs::path& folder, const std::vector<fs::path>& listed) {
+  std::vector<fs::path> later;
+  std::smatch last, other;
+  if (listed.empty()) return later;
+  const std::string last_name = listed.back().filename().string();
+  if (!std::regex_match(last_name, last, numberedPart())) return later;
+  for (const fs::path& file : filesByNumber(folder)) {
+    const std::string name = file.filename().string();
+    const bool follows = std::regex_match(name, other, numberedPart()) && other[1] == last[1] &&
+                         other[4] == last[4] && std::stoi(other[3]) > std::stoi(last[3]);
+    if (follows && std::ranges::find(listed, file) == listed.end()) later.push_back(file);
+  }
+  return later;
 }
 
 // Only files in the folder: metadata may come from anywhere.
@@ -87,7 +162,15 @@ class UnpackedSource : public MessageSource {
 }  // namespace
 
 std::vector<fs::path> rosFiles(const fs::path& path, const FaultSink& sink) {
-  if (!fs::is_directory(path)) return {path};
+  if (!fs::is_directory(path)) {
+    const std::vector<std::string> parts = otherParts(path);
+    if (!parts.empty())
+      sink(FaultKind::Part,
+           fmt::format("The name is that of a part of a split recording: {} {} in the same folder. Only this "
+                       "part is read; give the folder to read all.",
+                       joined(parts), parts.size() == 1 ? "is" : "are"));
+    return {path};
+  }
   std::vector<fs::path> files;
   if (fs::exists(path / "metadata.yaml")) {
     try {
@@ -106,6 +189,12 @@ std::vector<fs::path> rosFiles(const fs::path& path, const FaultSink& sink) {
     return true;
   });
   if (files.empty()) files = filesByNumber(path);
+  for (const fs::path& file : laterParts(path, files)) {
+    sink(FaultKind::Metadata,
+         fmt::format("metadata.yaml does not list {}, which is in the folder; it is read, too.",
+                     file.filename().string()));
+    files.push_back(file);
+  }
   if (!files.empty()) return files;
   throw badInput(path.string(), "the folder has no .db3 or .mcap file", "Copy the whole folder");
 }

@@ -102,6 +102,27 @@ bool decodeEventArray(std::string_view message, Serialization serialization, std
   return false;
 }
 
+bool decodeOldEventArray(std::string_view message, std::vector<Event>& events) {
+  events.clear();
+  MessageCursor cursor(message, Serialization::Ros1);
+  const std::uint64_t count = cursor.number<std::uint32_t>();
+  if (!cursor.ok() || count * kEventBytes > cursor.remaining()) return false;
+  events.resize(static_cast<std::size_t>(count));
+  constexpr std::uint64_t kLatest_us = static_cast<std::uint64_t>(kLatestTime_ns / kMicrosecond_ns);
+  bool good = true;
+  for (Event& event : events) {
+    event.x_px = cursor.number<std::uint16_t>();
+    event.y_px = cursor.number<std::uint16_t>();
+    const auto time_us = cursor.number<std::uint64_t>();
+    good = good && time_us <= kLatest_us;
+    event.time_ns = good ? static_cast<std::int64_t>(time_us) * kMicrosecond_ns : 0;
+    event.brighter = cursor.number<std::uint8_t>() != 0;
+  }
+  if (good && cursor.wellEnded()) return true;
+  events.clear();
+  return false;
+}
+
 bool decodeImu(std::string_view message, Serialization serialization, std::vector<RawImuSample>& samples) {
   samples.clear();
   MessageCursor cursor(message, serialization);

@@ -16,6 +16,8 @@ namespace evical::ros {
 // invalid. The resolution changes only if the message states one.
 bool decodeEventArray(std::string_view message, Serialization serialization, std::vector<Event>& events,
                       Resolution& resolution_px);
+// The array of 2015 and before: only events, with times in us.
+bool decodeOldEventArray(std::string_view message, std::vector<Event>& events);
 bool decodeImu(std::string_view message, Serialization serialization, std::vector<RawImuSample>& samples);
 
 // event_camera_msgs/EventPacket: events in an encoding of the sensor.

@@ -58,6 +58,8 @@ std::uint64_t statedBytes(const std::filesystem::path& path) {
   return (page == 1 ? 65536 : page) * pages;
 }
 
+constexpr std::int64_t kLargestId = std::int64_t{1} << 40;
+
 }  // namespace
 
 class SqliteSource::Database {
@@ -235,11 +237,15 @@ void SqliteSource::countMessages() {
     topics_[found->second].messages = static_cast<std::uint64_t>(statement.integer(1));
     count_ += topics_[found->second].messages;
   }
+  last_whole_id_ = largest_id_;
   if (statement.ok()) return;
+  Statement walk(*database_, "SELECT id FROM messages ORDER BY id");
+  while (walk.step()) last_whole_id_ = walk.integer(0);
   for (SourceTopic& topic : topics_) topic.messages = 0;
   count_ = 0;
   Statement last(*database_, "SELECT MAX(id) FROM messages");
-  largest_id_ = last.step() ? last.integer(0) : 0;
+  // Without the last pages the largest id is unknown: then the search ends with the doubled steps.
+  largest_id_ = last.step() ? last.integer(0) : kLargestId;
 }
 
 void SqliteSource::rewind() {
@@ -294,8 +300,8 @@ bool SqliteSource::readOnBehindDamage(const std::string& reason) {
   sink_(FaultKind::Corrupt,
         fmt::format("The file is damaged after message {} ({}); readable messages after it are read.",
                     last_id_, reason));
+  if (last_id_ > from_id_ || (by_time_ && last_id_ == 0)) skip_ids_ = 0;
   by_time_ = false;
-  if (last_id_ > from_id_) skip_ids_ = 0;
   from_id_ = std::max(from_id_, last_id_);
   for (;;) {
     if (from_id_ > largest_id_ || skip_ids_ > largest_id_ - from_id_) return false;
@@ -305,6 +311,14 @@ bool SqliteSource::readOnBehindDamage(const std::string& reason) {
     if (messages_->step()) return true;
     if (messages_->ok()) return false;
   }
+}
+
+// The library reads zeros in place of missing pages, which are those of the last messages.
+bool SqliteSource::isCutOff(std::int64_t id, std::string_view bytes) const {
+  constexpr std::int64_t kLast = 16;
+  constexpr std::size_t kZeros = 80;  // IMU messages end with up to 72
+  return id > last_whole_id_ - kLast && bytes.size() > kZeros &&
+         bytes.substr(bytes.size() - kZeros).find_first_not_of('\0') == std::string_view::npos;
 }
 
 bool SqliteSource::handOut(SourceMessage& message) {
@@ -317,6 +331,11 @@ bool SqliteSource::handOut(SourceMessage& message) {
   ++read_;
   last_id_ = std::max(last_id_, id);
   std::string_view bytes = messages_->bytes(3);
+  if (cut_ && isCutOff(id, bytes)) {
+    sink_(FaultKind::Truncated,
+          fmt::format("The message {} ends in the missing part of the file; it is left out.", place()));
+    return false;
+  }
   if (bytes.starts_with(kZstdMagic)) {
     const Unpacked result = unpackZstdFrame(bytes, unpacked_);
     limit_.add(unpacked_.size());

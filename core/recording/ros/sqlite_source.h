@@ -44,6 +44,7 @@ class SqliteSource : public MessageSource {
   void query();
   bool step();
   bool readOnBehindDamage(const std::string& reason);
+  bool isCutOff(std::int64_t id, std::string_view bytes) const;
   bool handOut(SourceMessage& message);
 
   std::filesystem::path path_;
@@ -54,12 +55,13 @@ class SqliteSource : public MessageSource {
   std::vector<SourceTopic> topics_;
   std::vector<bool> wanted_;
   std::map<std::int64_t, std::size_t> topic_of_id_;
-  bool cut_ = false;             // shorter than its header states
-  bool by_time_ = true;          // otherwise in the order of storage
-  std::int64_t last_id_ = 0;     // of the messages read, the largest
-  std::int64_t from_id_ = 0;     // begin of the query
-  std::int64_t skip_ids_ = 1;    // step after a query without new messages
-  std::int64_t largest_id_ = 0;  // of all messages
+  bool cut_ = false;                // shorter than its header states
+  bool by_time_ = true;             // otherwise in the order of storage
+  std::int64_t last_id_ = 0;        // of the messages read, the largest
+  std::int64_t from_id_ = 0;        // begin of the query
+  std::int64_t skip_ids_ = 1;       // step after a query without new messages
+  std::int64_t largest_id_ = 0;     // of all messages
+  std::int64_t last_whole_id_ = 0;  // before the first missing page
   std::uint64_t count_ = 0, read_ = 0;
   std::string unpacked_;
 };

@@ -29,6 +29,17 @@ bool isReadable(Content content, std::string_view encoding) {
 
 }  // namespace
 
+// The reason if a picture is damaged by its step.
+std::string TopicStreams::stepText(std::size_t stream, std::string_view message) const {
+  ImageMessage image;
+  if (states_[stream].content != Content::Image || !parseImage(message, states_[stream].serialization, image))
+    return {};
+  const std::optional<WrongStep> wrong = wrongStep(image);
+  return wrong ? fmt::format(" (its step is {} bytes, but a row of {} has {})", wrong->step_bytes,
+                             image.encoding, wrong->needed_bytes)
+               : std::string();
+}
+
 bool TopicStreams::State::refused() const {
   if (encoding.empty()) return false;
   if (content == Content::EventPacket) return encodingOf(encoding) == Encoding::Unknown;
@@ -41,18 +52,24 @@ const char* TopicStreams::State::readableEncodings() const {
 }
 
 std::size_t TopicStreams::add(const Topic& topic) {
-  const auto found = known_.find({topic.name, topic.type});
+  const std::string name = topic.publisher.empty() ? topic.name : topic.name + " of " + topic.publisher;
+  const auto found = known_.find({name, topic.type});
   if (found != known_.end()) return found->second;
   if (listed_) return kNone;
   const std::size_t index = streams_.size();
-  known_[{topic.name, topic.type}] = index;
+  known_[{name, topic.type}] = index;
   State state;
   state.content = contentOf(topic.type, topic.md5, topic.definition);
   state.serialization = topic.serialization;
   StreamInfo stream;
-  stream.name = topic.name;
+  stream.name = name;
   stream.message = topic.type;
   stream.type = streamTypeOf(state.content);
+  if (state.content == Content::Other) state.unread = whyUnread(topic.name, topic.type, topic.definition);
+  if (!topic.publisher.empty())
+    addFault(name, FaultKind::Metadata,
+             fmt::format("Several nodes publish on {} at the same time; {} is a separate stream.", topic.name,
+                         name));
   streams_.push_back(std::move(stream));
   states_.push_back(std::move(state));
   return index;
@@ -66,9 +83,9 @@ void TopicStreams::lookInto(std::size_t stream, std::string_view message) {
   const auto count = [&state](std::int64_t time_ns) {
     (time_ns == 0 ? state.zero_stamps : state.other_stamps) += 1;
   };
-  if (state.content == Content::EventArray) {
+  if (state.content == Content::EventArray || state.content == Content::OldEventArray) {
     std::vector<Event> events;
-    decodeEventArray(message, state.serialization, events, info.resolution_px);
+    decodeArray(stream, message, events);
     for (const Event& event : events) count(event.time_ns);
   } else if (state.content == Content::Imu) {
     std::vector<RawImuSample> samples;
@@ -110,6 +127,8 @@ bool TopicStreams::knows(std::size_t stream) const {
   switch (state.content) {
     case Content::Other:
       return true;
+    case Content::OldEventArray:
+      return state.other_stamps > 0;
     case Content::EventArray:
       return state.other_stamps > 0 && (sized || state.other_stamps > kEnoughStamps);
     case Content::Imu:
@@ -131,6 +150,7 @@ void TopicStreams::finishLooking() {
     if (encoding == Encoding::Trigger) info.type = StreamType::Triggers;
     info.readable = info.type != StreamType::Triggers && info.type != StreamType::Other && !state.refused();
     state.selected = info.readable && info.type != StreamType::Frames;
+    if (!state.unread.empty()) addFault(info.name, FaultKind::Unreadable, state.unread);
     if (state.stampless())
       addFault(info.name, FaultKind::NoStamps,
                "Stamps are 0; the times of recording are used, which have a jitter of some ms.");
@@ -153,7 +173,7 @@ void TopicStreams::finishLooking() {
 // pulsed at any time, perhaps only at the end.
 void TopicStreams::listTriggers() {
   for (std::size_t i = 0, topics = streams_.size(); i < topics; ++i) {
-    if (encodingOf(states_[i].encoding) != Encoding::Evt3 || streams_[i].type != StreamType::Events) continue;
+    if (!isOfSensor(encodingOf(states_[i].encoding)) || streams_[i].type != StreamType::Events) continue;
     StreamInfo triggers;
     triggers.name = streams_[i].name + "/triggers";
     triggers.type = StreamType::Triggers;
@@ -201,7 +221,7 @@ bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int
   }
   if (!whole) {
     addFault(streams_[stream].name, FaultKind::Corrupt,
-             fmt::format("A message {} is damaged; {}.", place,
+             fmt::format("A message {} is damaged{}; {}.", place, stepText(stream, message),
                          packet.events.empty() ? "it is left out" : "its end is left out"));
   }
   return !packet.empty();
@@ -210,16 +230,30 @@ bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int
 bool TopicStreams::decodeEvents(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                                 std::vector<Event>& events) {
   const State& state = states_[stream];
-  const bool whole =
-      state.content == Content::EventPacket
-          ? decodePacket(stream, message, events)
-          : decodeEventArray(message, state.serialization, events, streams_[stream].resolution_px);
+  const bool whole = state.content == Content::EventPacket ? decodePacket(stream, message, events)
+                                                           : decodeArray(stream, message, events);
   if (state.stampless()) {
     if (!isTime(record_time_ns)) events.clear();
     for (Event& event : events) event.time_ns = record_time_ns;
   }
+  followMessage(stream, events);
   putInOrder(stream, events);
   return whole && (!state.stampless() || isTime(record_time_ns));
+}
+
+bool TopicStreams::decodeArray(std::size_t stream, std::string_view message, std::vector<Event>& events) {
+  const State& state = states_[stream];
+  return state.content == Content::OldEventArray
+             ? decodeOldEventArray(message, events)
+             : decodeEventArray(message, state.serialization, events, streams_[stream].resolution_px);
+}
+
+void TopicStreams::followMessage(std::size_t stream, const std::vector<Event>& events) {
+  State& state = states_[stream];
+  if (events.empty()) return;
+  const std::int64_t back_ns = state.latest_ns - events.front().time_ns;
+  if (state.messages++ > 0 && back_ns > kMicrosecond_ns && back_ns < kSecond_ns) ++state.overlapping;
+  state.latest_ns = events.back().time_ns;
 }
 
 bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, std::vector<Event>& events) {
@@ -259,6 +293,12 @@ bool TopicStreams::decodeFrame(std::size_t stream, std::string_view message, std
                          image.encoding, state.readableEncodings()));
     return true;
   }
+  if (const auto wrong = state.content == Content::Image ? wrongStep(image) : std::nullopt;
+      wrong && wrong->complete)
+    addFault(info.name, FaultKind::Metadata,
+             fmt::format(
+                 "The step is {} bytes, but rows of {} have {}; the data are complete and are read as such.",
+                 wrong->step_bytes, image.encoding, wrong->needed_bytes));
   Frame frame;
   const bool whole = state.content == Content::Image ? toFrame(image, frame) : toPackedFrame(image, frame);
   if (state.stampless()) frame.time_ns = record_time_ns;
@@ -308,8 +348,19 @@ bool TopicStreams::handOutRest(Packet& packet) {
 }
 
 void TopicStreams::finishReading() {
-  for (std::size_t i = 0; i < streams_.size(); ++i)
-    if (states_[i].selected && states_[i].content == Content::EventPacket) finishEventPackets(i);
+  constexpr std::uint64_t kFewest = 10;
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const State& state = states_[i];
+    if (state.selected && state.content == Content::EventPacket) finishEventPackets(i);
+    // Each other one, if both publish equally often.
+    if (state.messages < kFewest || 4 * state.overlapping < state.messages) continue;
+    addFault(
+        streams_[i].name, FaultKind::SecondClock,
+        fmt::format(
+            "{} of {} messages begin before the end of the one before: two cameras seem to publish on this "
+            "topic. Record each on a separate topic.",
+            state.overlapping, state.messages));
+  }
 }
 
 void TopicStreams::finishEventPackets(std::size_t stream) {
@@ -320,12 +371,15 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
         info.name, FaultKind::LostMessages,
         counted(state.decoder.lostMessages(), "message", "is", "are") + " missing between those recorded.");
   }
-  const Evt3Counts& counts = state.decoder.evt3Counts();
-  if (counts.outside > 0) {
+  if (const std::uint64_t outside = state.decoder.outside(); outside > 0) {
     addFault(info.name, FaultKind::Outside,
-             fmt::format("{} outside of the sensor {} left out.", counted(counts.outside, "event"),
-                         counts.outside == 1 ? "is" : "are"));
+             fmt::format("{} outside of the sensor {} left out.", counted(outside, "event"),
+                         outside == 1 ? "is" : "are"));
   }
+  if (const std::string_view other = state.decoder.otherEncoding(); !other.empty())
+    addFault(info.name, FaultKind::Encoding,
+             fmt::format("The messages state the encoding {}, but their content is {}; it is read as {}.",
+                         state.encoding, other, other));
   if (state.decoder.triggers() > 0 && !state.trigger_stream)
     addFault(info.name, FaultKind::Triggers,
              fmt::format("There {} {}.", state.decoder.triggers() == 1 ? "is" : "are",

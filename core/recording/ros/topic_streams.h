@@ -21,6 +21,7 @@ struct Topic {
   std::string name, type;
   std::string md5, definition;  // empty if the container has none
   Serialization serialization = Serialization::Ros1;
+  std::string publisher = {};  // the node, for a topic that several publish at the same time; otherwise empty
 };
 
 class TopicStreams {
@@ -65,7 +66,11 @@ class TopicStreams {
     // Steps back within messages, which were sorted.
     std::uint64_t disordered = 0;
     std::int64_t largest_disorder_ns = 0;
+    // Messages that begin before the end of the one before, as those of two publishers do.
+    std::uint64_t messages = 0, overlapping = 0;
+    std::int64_t latest_ns = 0;
     std::string encoding;  // of event packets and pictures, from their first message
+    std::string unread;    // why messages of a sensor are not read
     // Decoder of event packets.
     EventPacketDecoder decoder;
     std::optional<std::size_t> trigger_stream;
@@ -83,6 +88,9 @@ class TopicStreams {
                      std::vector<RawImuSample>& samples);
   bool decodeFrame(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                    std::vector<Frame>& frames);
+  bool decodeArray(std::size_t stream, std::string_view message, std::vector<Event>& events);
+  void followMessage(std::size_t stream, const std::vector<Event>& events);
+  std::string stepText(std::size_t stream, std::string_view message) const;
   void putInOrder(std::size_t stream, std::vector<Event>& events);
   void finishEventPackets(std::size_t stream);
 

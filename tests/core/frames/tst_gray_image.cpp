@@ -113,6 +113,10 @@ void TestGrayImage::bayer_beginsWithTheNamedColour_data() {
   QTest::newRow("bggr") << FrameFormat::BayerBggr8 << 1 << 1;
   QTest::newRow("gbrg") << FrameFormat::BayerGbrg8 << 0 << 1;
   QTest::newRow("grbg") << FrameFormat::BayerGrbg8 << 1 << 0;
+  QTest::newRow("rggb of 16 bit") << FrameFormat::BayerRggb16 << 0 << 0;
+  QTest::newRow("bggr of 16 bit") << FrameFormat::BayerBggr16 << 1 << 1;
+  QTest::newRow("gbrg of 16 bit") << FrameFormat::BayerGbrg16 << 0 << 1;
+  QTest::newRow("grbg of 16 bit") << FrameFormat::BayerGrbg16 << 1 << 0;
 }
 
 void TestGrayImage::bayer_beginsWithTheNamedColour() {

@@ -75,6 +75,10 @@ std::uint32_t BagBuilder::addConnection(const std::string& topic, const std::str
   return id;
 }
 
+void BagBuilder::setPublisher(std::uint32_t id, const std::string& node) {
+  connections_.at(id).data += field("callerid", node);
+}
+
 void BagBuilder::setTopicInData(std::uint32_t id, const std::optional<std::string>& topic) {
   Connection& connection = connections_.at(id);
   connection.data = (topic ? field("topic", *topic) : std::string()) + connection.type;

@@ -27,6 +27,7 @@ class BagBuilder {
   // The topic in the connection's data, which the record's header also has: librosbag's Bag::write omits it,
   // and a publisher may use another name.
   void setTopicInData(std::uint32_t connection, const std::optional<std::string>& topic);
+  void setPublisher(std::uint32_t connection, const std::string& node);  // as rosbag record does
   std::uint32_t addImu(const std::string& topic) { return addConnection(topic, "sensor_msgs/Imu", kImuMd5); }
 
   void message(std::uint32_t connection, std::int64_t record_time_ns, const std::string& content);

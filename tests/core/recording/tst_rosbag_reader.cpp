@@ -43,6 +43,12 @@ class TestRosbagReader : public QObject {
   void type_isToldByMd5NameOrDefinition();
   void select_leavesOutTheOthers();
   void twoConnectionsOfATopic_areOneStream();
+  void publishersInTurn_areTwoStreams_data();
+  void publishersInTurn_areTwoStreams();
+  void oldEvents_areReadByTheirDefinition();
+  void unreadTypesOfSensors_areNamed_data();
+  void unreadTypesOfSensors_areNamed();
+  void splitBags_areJoined();
   void topicsOfBagWrite_areThoseOfTheRecords_data();
   void topicsOfBagWrite_areThoseOfTheRecords();
   void lateTopic_isDescribedAtOpening();
@@ -153,6 +159,10 @@ void TestRosbagReader::type_isToldByMd5NameOrDefinition_data() {
                                            << "0123"
                                            << "uint32 count\nfloat64[] values\n"
                                            << false;
+  QTest::newRow("other fields, known name") << "dvs_msgs/EventArray"
+                                            << "0123"
+                                            << "uint32 count\nfloat64[] values\n"
+                                            << false;
   QTest::newRow("something else") << "std_msgs/String"
                                   << "992ce8a1687cec8c8bd883ec73ca41d1"
                                   << "string data\n"
@@ -187,6 +197,98 @@ void TestRosbagReader::twoConnectionsOfATopic_areOneStream() {
   const Contents contents = readAll(folder_.write("two.bag", bag.finished()));
   QCOMPARE(contents.streams.size(), std::size_t{1});
   QCOMPARE(contents.eventCount(), std::size_t{8});
+}
+
+void TestRosbagReader::publishersInTurn_areTwoStreams_data() {
+  QTest::addColumn<bool>("in_turn");
+  QTest::newRow("in turn") << true;
+  QTest::newRow("restarted") << false;
+}
+
+void TestRosbagReader::publishersInTurn_areTwoStreams() {
+  QFETCH(bool, in_turn);
+  constexpr int kMessages = 12;
+  BagBuilder bag;
+  const std::uint32_t nodes[] = {bag.addEvents("/events"), bag.addEvents("/events")};
+  bag.setPublisher(nodes[0], "/left");
+  bag.setPublisher(nodes[1], "/right");
+  for (int i = 0; i < kMessages; ++i) {
+    const std::int64_t time_ns = kRosbagReaderStart_ns + i * std::int64_t{1'000'000};
+    bag.message(nodes[in_turn ? i % 2 : i / (kMessages / 2)], time_ns,
+                eventMessage(time_ns, kRosbagReaderSize_px, someEvents(4, time_ns)));
+  }
+  const Contents contents = readAll(folder_.write("publishers.bag", bag.finished()));
+  QCOMPARE(contents.streams.size(), std::size_t{in_turn ? 2U : 1U});
+  QCOMPARE(contents.eventCount(), std::size_t{48});
+  QCOMPARE(contents.streams[0].name, std::string(in_turn ? "/events of /left" : "/events"));
+  QCOMPARE(contents.hasFault(FaultKind::Metadata), in_turn);
+}
+
+void TestRosbagReader::oldEvents_areReadByTheirDefinition() {
+  BagBuilder bag;
+  const std::uint32_t connection = bag.addConnection(
+      "/dvs/events", "dvs_msgs/EventArray", "d2e726b2040dbc135644f4709c150a10",
+      "Event[] events\n====\nMSG: dvs_msgs/Event\nuint16 x\nuint16 y\nuint64 time\nbool polarity\n");
+  std::string message = bytesOf(std::uint32_t{2});
+  for (std::uint16_t i = 0; i < 2; ++i)
+    message +=
+        bytesOf(i) + bytesOf(std::uint16_t{7}) + bytesOf(std::uint64_t{1000U + i}) + bytesOf(std::uint8_t{1});
+  bag.message(connection, kRosbagReaderStart_ns, message);
+  const Contents contents = readAll(folder_.write("old.bag", bag.finished()));
+  QCOMPARE(contents.eventCount(), std::size_t{2});
+  QCOMPARE(contents.events.at(0)[1].time_ns, std::int64_t{1'001'000});
+  QCOMPARE(int{contents.events.at(0)[1].y_px}, 7);
+  QVERIFY(contents.faults.empty());
+}
+
+void TestRosbagReader::unreadTypesOfSensors_areNamed_data() {
+  QTest::addColumn<QString>("topic");
+  QTest::addColumn<QString>("type");
+  QTest::addColumn<QString>("said");
+  QTest::newRow("vectors") << "/imu/gyro"
+                           << "geometry_msgs/Vector3Stamped"
+                           << "probably of an IMU";
+  QTest::newRow("PX4") << "/fmu/out/sensor_combined"
+                       << "px4_msgs/SensorCombined"
+                       << "probably of an IMU";
+  QTest::newRow("raw IMU") << "/novatel/raw"
+                           << "novatel_gps_msgs/RawImu"
+                           << "probably of an IMU";
+  QTest::newRow("events") << "/davis/events"
+                          << "our_msgs/EventBatchArray"
+                          << "probably with events";
+  QTest::newRow("a log") << "/rosout"
+                         << "rosgraph_msgs/Log"
+                         << "";
+  QTest::newRow("a position") << "/gps"
+                              << "geometry_msgs/Vector3Stamped"
+                              << "";
+}
+
+void TestRosbagReader::unreadTypesOfSensors_areNamed() {
+  QFETCH(QString, topic);
+  QFETCH(QString, type);
+  QFETCH(QString, said);
+  BagBuilder bag;
+  const std::uint32_t connection =
+      bag.addConnection(topic.toStdString(), type.toStdString(), "0123", "float64 x\nfloat64 y\n");
+  bag.message(connection, kRosbagReaderStart_ns, std::string(16, '\0'));
+  const Contents contents = readAll(folder_.write("types.bag", bag.finished()));
+  QCOMPARE(contents.faults.size(), std::size_t{said.isEmpty() ? 0U : 1U});
+  if (said.isEmpty()) return;
+  const QString text = QString::fromStdString(contents.faults.front().text);
+  QVERIFY2(text.contains(said) && text.contains(topic) && text.contains(type), qPrintable(text));
+}
+
+void TestRosbagReader::splitBags_areJoined() {
+  const std::filesystem::path folder = folder_ / "split";
+  std::filesystem::create_directory(folder);
+  const std::string bag = bagWith("dvs_msgs/EventArray", kEventArrayMd5, "");
+  for (int i = 0; i < 11; ++i)
+    std::ofstream(folder / ("a_" + std::to_string(i) + ".bag"), std::ios::binary) << bag;
+  QCOMPARE(readAll(folder).eventCount(), 55u);
+  std::ofstream(folder / "other.bag", std::ios::binary) << bag;
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(folder));
 }
 
 void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords_data() {

@@ -59,6 +59,27 @@ const RecordingFault* faultOf(const Contents& contents, FaultKind kind) {
   return nullptr;
 }
 
+// Events 1 us apart in the words of an encoding.
+constexpr int kWordEvents = 100;
+std::string wordsIn(const QString& encoding) {
+  std::string bytes;
+  for (std::uint64_t i = 0; i < kWordEvents; ++i) {
+    const std::uint64_t x = i * 7 % 64, y = i * 5 % 48, on = i % 2;
+    if (encoding == "evt3") {
+      bytes += words<std::uint16_t>({0x8000, 0x6000 | i, y, 0x2000 | on << 11 | x});
+      continue;
+    }
+    const bool short_words = encoding == "evt2";
+    if (i % 64 == 0)
+      bytes += short_words ? words<std::uint32_t>({0x80000000 | i / 64})
+                           : words<std::uint64_t>({(0x80000000 | i / 64) << 32});
+    bytes += short_words ? words<std::uint32_t>({on << 28 | i % 64 << 22 | x << 11 | y})
+                         : words<std::uint64_t>({on << 60 | i % 64 << 54 | (x & ~31ULL) << 43 | y << 32 |
+                                                 std::uint64_t{1} << (x & 31)});
+  }
+  return bytes;
+}
+
 }  // namespace
 
 class TestEventPackets : public QObject {
@@ -72,6 +93,8 @@ class TestEventPackets : public QObject {
   void libcaerCmp_isDecodedAndWarnedOf();
   void evt3_livesOnFromMessageToMessage();
   void evt3_offsetToTheHost_isTheLeastDelay();
+  void wordsOfSensors_areReadByTheirContent_data();
+  void wordsOfSensors_areReadByTheirContent();
   void lostMessage_takesThePosition();
   void triggers_areListed();
   void triggers_areListedWhereverTheyOccur();
@@ -178,6 +201,28 @@ void TestEventPackets::evt3_offsetToTheHost_isTheLeastDelay() {
   QVERIFY(offset_s.has_value());
   QVERIFY(std::abs(*offset_s - (1.7e9 + 250e-6)) < 1e-6);
   QVERIFY(faultOf(contents, FaultKind::HostClock) != nullptr);
+}
+
+void TestEventPackets::wordsOfSensors_areReadByTheirContent_data() {
+  QTest::addColumn<QString>("stated");
+  QTest::addColumn<QString>("content");
+  for (const char* stated : {"evt2", "evt21", "evt3"})
+    for (const char* content : {"evt2", "evt21", "evt3"})
+      QTest::addRow("%s, stated as %s", content, stated) << stated << content;
+}
+
+void TestEventPackets::wordsOfSensors_areReadByTheirContent() {
+  QFETCH(QString, stated);
+  QFETCH(QString, content);
+  const Contents contents = contentsOf(bagOf({{stated.toStdString(), wordsIn(content)}}));
+  const std::vector<Event>& events = contents.events.at(0);
+  QCOMPARE(events.size(), std::size_t{kWordEvents});
+  for (int i = 0; i < kWordEvents; ++i)
+    QVERIFY(sameForEventPackets(events[static_cast<std::size_t>(i)], 1000 * i, i * 7 % 64, i * 5 % 48,
+                                i % 2 == 1));
+  const RecordingFault* const fault = faultOf(contents, FaultKind::Encoding);
+  QCOMPARE(fault != nullptr, stated != content);
+  if (fault) QVERIFY2(fault->text.find(content.toStdString()) != std::string::npos, fault->text.c_str());
 }
 
 void TestEventPackets::lostMessage_takesThePosition() {

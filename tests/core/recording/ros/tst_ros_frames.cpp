@@ -41,6 +41,8 @@ class TestRosFrames : public QObject {
   void byDefault_framesAreNotRead();
   void otherEncodings_areRefusedByName_data();
   void otherEncodings_areRefusedByName();
+  void wrongStep_isCorrectedIfTheDataAreComplete_data();
+  void wrongStep_isCorrectedIfTheDataAreComplete();
   void damagedImages_areSaid_data();
   void damagedImages_areSaid();
   void packedImages_comeAsTheyAre_data();
@@ -83,6 +85,12 @@ void TestRosFrames::encodings_comeAsTheyAre_data() {
   row("bayer_bggr8", 1, FrameFormat::BayerBggr8);
   row("bayer_gbrg8", 1, FrameFormat::BayerGbrg8);
   row("bayer_grbg8", 1, FrameFormat::BayerGrbg8);
+  row("bayer_rggb16", 2, FrameFormat::BayerRggb16);
+  row("bayer_bggr16", 2, FrameFormat::BayerBggr16);
+  row("bayer_gbrg16", 2, FrameFormat::BayerGbrg16);
+  row("bayer_grbg16", 2, FrameFormat::BayerGrbg16);
+  row("8UC3", 3, FrameFormat::Bgr8);
+  row("8UC4", 4, FrameFormat::Bgra8);
 }
 
 void TestRosFrames::encodings_comeAsTheyAre() {
@@ -154,7 +162,7 @@ void TestRosFrames::byDefault_framesAreNotRead() {
 
 void TestRosFrames::otherEncodings_areRefusedByName_data() {
   QTest::addColumn<QString>("encoding");
-  for (const char* encoding : {"yuv422", "32FC1", "bayer_rggb16", "8UC3", "MONO8"})
+  for (const char* encoding : {"yuv422", "32FC1", "bayer_rggb32", "8UC2", "MONO8"})
     QTest::newRow(encoding) << encoding;
 }
 
@@ -172,12 +180,32 @@ void TestRosFrames::otherEncodings_areRefusedByName() {
   }
 }
 
+void TestRosFrames::wrongStep_isCorrectedIfTheDataAreComplete_data() {
+  QTest::addColumn<int>("bytes");
+  QTest::addColumn<bool>("read");
+  QTest::newRow("complete") << 12 << true;
+  QTest::newRow("shorter") << 11 << false;
+}
+
+void TestRosFrames::wrongStep_isCorrectedIfTheDataAreComplete() {
+  QFETCH(int, bytes);
+  QFETCH(bool, read);
+  const TestImage image{
+      kRosFramesStart_ns, 3, 2, "mono16", false, 3, std::string(static_cast<std::size_t>(bytes), '\x07')};
+  const Contents contents = readEverything(bag({imageMessage(image, false)}));
+  QCOMPARE(contents.frameCount(), read ? 1u : 0u);
+  if (read) QCOMPARE(contents.frames.at(0).front().row_bytes, std::size_t{6});
+  QCOMPARE(contents.faults.size(), std::size_t{1});
+  QVERIFY2(contents.faults.front().text.find("step is 3 bytes") != std::string::npos,
+           contents.faults.front().text.c_str());
+}
+
 void TestRosFrames::damagedImages_areSaid_data() {
   QTest::addColumn<quint32>("width");
   QTest::addColumn<quint32>("height");
   QTest::addColumn<quint32>("step");
   QTest::newRow("rows longer than the data") << 3u << 2u << 4u;
-  QTest::newRow("rows shorter than the pixels") << 3u << 2u << 2u;
+  QTest::newRow("rows shorter than the pixels") << 3u << 1u << 2u;
   QTest::newRow("more rows than data") << 3u << 3u << 3u;
   QTest::newRow("no rows") << 3u << 0u << 3u;
   QTest::newRow("absurd width") << 4'000'000'000u << 2u << 3u;
