@@ -344,7 +344,7 @@ void bindRecording(py::module_& module) {
                                                        : ""));
       });
   module.def("_set_recording_server", setRecordingServer, py::arg("command"));
-  module.def("_serve_recording", serveRecording, py::arg("path"));
+  module.def("_serve_recording", serveRecording, py::arg("path"), py::arg("names") = "");
   module.def("_open", openForPython, py::arg("path"), py::arg("streams"));
   module.def("inspect", inspect, py::arg("path"), py::arg("progress") = py::none(),
              "Contents and faults of a recording: the dictionary of `evical inspect --json --checksum`. "

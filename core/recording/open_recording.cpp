@@ -25,6 +25,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -41,12 +42,52 @@ constexpr const char* kReadable =
     "folder with events.txt and imu.txt (or .csv), or one such file, or a folder of pictures (EuRoC, "
     "Kalibr, DSEC, TUM-VIE, others)";
 
-// Other formats that users may try, by their first bytes.
+// Other formats that users may try, by their first bytes, or bytes from a place on.
 struct OtherFormat {
   std::string_view magic;
   const char *problem, *advice;
+  std::size_t at = 0;
 };
+constexpr const char* kFromVideo =
+    "Videos have no times of single frames: record pictures, or a bag or MCAP of sensor_msgs/Image. For "
+    "intrinsics only, "
+    "write the frames as pictures into a folder";
+constexpr const char* kFromPicture = "Give the folder with all pictures";
+constexpr const char* kFromPage = "Download it again: a server sent an error or a login page";
 constexpr OtherFormat kOtherFormats[] = {
+    {"ftypqt"sv, "this is a video (MOV)", kFromVideo, 4},
+    {"ftyp"sv, "this is a video (MP4)", kFromVideo, 4},
+    {"moov"sv, "this is a video (MOV)", kFromVideo, 4},
+    {"mdat"sv, "this is a video (MOV)", kFromVideo, 4},
+    {"AVI "sv, "this is a video (AVI)", kFromVideo, 8},
+    {"\x1A\x45\xDF\xA3"sv, "this is a video (MKV or WebM)", kFromVideo},
+    {"WEBP"sv, "this is a WebP picture, which cannot be read",
+     "Convert the pictures to PNG, and give their folder", 8},
+    {"GIF8"sv, "this is a GIF picture, which cannot be read",
+     "Convert the pictures to PNG, and give their folder"},
+    {"\x89PNG"sv, "this is one picture (PNG)", kFromPicture},
+    {"\xFF\xD8\xFF"sv, "this is one picture (JPEG)", kFromPicture},
+    {"II*\0"sv, "this is one picture (TIFF)", kFromPicture},
+    {"MM\0*"sv, "this is one picture (TIFF)", kFromPicture},
+    {"\0\0\0\0"sv, "this is one picture (BMP)", kFromPicture, 6},
+    {"P5\n"sv, "this is one picture (PGM)", kFromPicture},
+    {"P6\n"sv, "this is one picture (PPM)", kFromPicture},
+    {"BZh"sv, "this is packed with bzip2", "Unpack it first, with `bunzip2`"},
+    {"\xFD"
+     "7zXZ"sv,
+     "this is packed with xz", "Unpack it first, with `unxz`"},
+    {"ustar"sv, "this is a tar archive", "Unpack it first, with `tar -xf`", 257},
+    {"Rar!\x1A\x07"sv, "this is a RAR archive", "Unpack it first"},
+    {"MATLAB 7.3"sv, "this is a file of MATLAB (.mat)",
+     "Export its tables as CSV, or write HDF5 in DSEC's layout"},
+    {"MATLAB"sv, "this is a file of MATLAB (.mat)", "Export its tables as CSV"},
+    {"<!DOCTYPE"sv, "this is a page of a web site (HTML), not the recording", kFromPage},
+    {"<!doctype"sv, "this is a page of a web site (HTML), not the recording", kFromPage},
+    {"<html"sv, "this is a page of a web site (HTML), not the recording", kFromPage},
+    {"<HTML"sv, "this is a page of a web site (HTML), not the recording", kFromPage},
+    {"%PDF"sv, "this is a PDF document", "Give the recording"},
+    {"/annex/objects/"sv, "this is a pointer of git-annex, not the recording",
+     "Fetch it with `git annex get`"},
     {"version https://git-lfs"sv, "this is a pointer of Git LFS, not the recording",
      "Fetch it with `git lfs pull`"},
     {"PK\3\4"sv, "this is a ZIP archive", "Unpack it first"},
@@ -56,6 +97,32 @@ constexpr OtherFormat kOtherFormats[] = {
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
      "Convert it with jAER or iniVation's DV to 2.0, 3.1 or 4.0"},
 };
+
+const OtherFormat* otherFormat(std::string_view start) {
+  const std::string_view text =
+      start.substr(std::min(start.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), start.size()));
+  for (const OtherFormat& format : kOtherFormats) {
+    const bool bmp = format.at == 6;  // its reserved bytes
+    if (bmp && !start.starts_with("BM")) continue;
+    if (start.substr(std::min(format.at, start.size())).starts_with(format.magic)) return &format;
+    if (format.magic.front() == '<' && text.starts_with(format.magic)) return &format;
+  }
+  return nullptr;
+}
+
+// Formats that only their name shows, since their header is missing.
+void refuseByName(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".raw")
+    throw badInput(path.string(), "this RAW file has no header: it does not begin with \"% \"",
+                   "Record it again with its header (lines such as \"% evt 3.0\"), or prepend that of a "
+                   "recording of the "
+                   "same camera");
+  if (extension == ".aedat" || extension == ".aedat2")
+    throw badInput(path.string(), "this AEDAT file has no header: it does not begin with \"#!AER-DAT\"",
+                   "Prepend the lines \"#!AER-DAT2.0\" and \"# AEChip: \" with the name of the chip, as jAER "
+                   "writes them");
+}
 
 std::string firstBytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -75,9 +142,10 @@ bool isRos2File(const std::filesystem::path& path, std::string_view start) {
 }
 
 // libhdf5 writes beyond its memory on some damaged files.
-std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path) {
-  if (!recordingServer().empty()) return std::make_unique<SeparateReader>(path, recordingServer());
-  return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path); });
+std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path, const ColumnNames& names = {}) {
+  if (!recordingServer().empty())
+    return std::make_unique<SeparateReader>(path, recordingServer(), encodeNames(names));
+  return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path, names); });
 }
 
 // Requires files that can be read twice.
@@ -105,16 +173,26 @@ std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> r
   return std::make_unique<JoinedReader>(std::move(parts));
 }
 
+// Of cameras, with times: other pictures next to a table may show anything. The reader of the text has its IMU.
+pictures::PictureFolder picturesBesideText(const std::filesystem::path& path) {
+  pictures::PictureFolder found = pictures::findRpgPictures(path);
+  if (found.lists.empty()) found = pictures::findPictures(path);
+  std::erase_if(found.lists, [](const pictures::PictureList& list) { return !list.timed; });
+  found.imus.clear();
+  found.events.clear();
+  return found;
+}
+
 void requireNoNames(const std::filesystem::path& path, const ColumnNames& names) {
   if (!names.empty())
-    throw badInput(path.string(), "this is not a text table, so its columns cannot be named",
+    throw badInput(path.string(), "this is neither a text table nor HDF5, so its columns cannot be named",
                    "Remove columns from the session");
 }
 
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path, const ColumnNames& names) {
   requireFiles(path);
   if (isTextFolder(path))
-    return withPictures(std::make_unique<TextTableReader>(path, names), pictures::findRpgPictures(path));
+    return withPictures(std::make_unique<TextTableReader>(path, names), picturesBesideText(path));
   if (!names.empty() && hasImuTables(path, names)) return std::make_unique<TextTableReader>(path, names);
   requireNoNames(path, names);
   if (isTumVieFolder(path)) return withPictures(openHdf5(path), pictures::findTumViePictures(path));
@@ -135,7 +213,6 @@ std::unique_ptr<RecordingReader> openBinary(const std::filesystem::path& path, s
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<RosReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
-  if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return openHdf5(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
   if (start.starts_with(kAedat2Magic)) return openAedat2(path);
   if (start.starts_with(kAedat3Magic)) return std::make_unique<Aedat3Reader>(path);
@@ -147,6 +224,10 @@ std::unique_ptr<RecordingReader> openBinary(const std::filesystem::path& path, s
 std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, const ColumnNames& names) {
   const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) {
+    std::error_code ignored;
+    if (std::filesystem::read_symlink(path, ignored).string().find("annex/objects") != std::string::npos)
+      throw badInput(path.string(), "this is a link of git-annex to a file that is not here",
+                     "Fetch it with `git annex get`");
     throw badInput(path.string(), "does not exist", "Check the path");
   }
   if (std::filesystem::is_directory(status)) return openFolder(path, names);
@@ -155,6 +236,7 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
   }
   const std::string start = firstBytes(path);
   if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
+  if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return openHdf5(path, names);
   // The table header "% time, x, y, p" begins like Prophesee's files.
   if (!start.starts_with("% ") || !isTextTable(path))
     if (std::unique_ptr<RecordingReader> reader = openBinary(path, start)) {
@@ -164,11 +246,11 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path, con
   const bool is_table = isTextTable(path);
   if (isGzip(start) && !is_table)
     throw badInput(path.string(), "this is packed with gzip, but is not a text", "Unpack it first");
-  for (const OtherFormat& format : kOtherFormats) {
-    if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
-  }
+  if (const OtherFormat* other = otherFormat(start))
+    throw badInput(path.string(), other->problem, other->advice);
   if (!names.empty() || is_table) return std::make_unique<TextTableReader>(path, names);
   if (prophesee::isBareDat(start)) return openProphesee(path);
+  refuseByName(path);
   throw badInput(path.string(), "the format is unknown", kReadable);
 }
 

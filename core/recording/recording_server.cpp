@@ -4,6 +4,7 @@
 #include "core/recording/separate_reader.h"
 
 #include <memory>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -20,7 +21,8 @@ std::vector<std::string>& command() {
 }  // namespace
 
 void beRecordingServer(int argc, char** argv) {
-  if (argc == 3 && std::string_view(argv[1]) == kServe) serveRecording(argv[2]);
+  if (argc >= 3 && argc <= 4 && std::string_view(argv[1]) == kServe)
+    serveRecording(argv[2], argc == 4 ? argv[3] : "");
   setRecordingServer({"/proc/self/exe", kServe});
 }
 
@@ -32,8 +34,19 @@ const std::vector<std::string>& recordingServer() {
   return command();
 }
 
-void serveRecording(const std::filesystem::path& path) {
-  serveReader(kServerSocket, [&] { return std::make_unique<Hdf5Reader>(path); });
+// Two lines for each stream.
+std::string encodeNames(const ColumnNames& names) {
+  std::string text;
+  for (const auto& [stream, columns] : names) text += stream + '\n' + columns + '\n';
+  return text;
+}
+
+void serveRecording(const std::filesystem::path& path, const std::string& names) {
+  ColumnNames decoded;
+  std::istringstream lines(names);
+  for (std::string stream, columns; std::getline(lines, stream) && std::getline(lines, columns);)
+    decoded[stream] = columns;
+  serveReader(kServerSocket, [&] { return std::make_unique<Hdf5Reader>(path, decoded); });
 }
 
 }  // namespace evical

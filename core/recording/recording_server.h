@@ -2,6 +2,8 @@
 // program that sets no server forks instead, which is safe only before it starts threads.
 #pragma once
 
+#include "core/recording/recording_reader.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +18,10 @@ void beRecordingServer(int argc, char** argv);
 void setRecordingServer(std::vector<std::string> command);
 const std::vector<std::string>& recordingServer();
 
-[[noreturn]] void serveRecording(const std::filesystem::path& path);
+// `names` as from encodeNames().
+[[noreturn]] void serveRecording(const std::filesystem::path& path, const std::string& names = {});
+
+// Column names as one argument of a command.
+std::string encodeNames(const ColumnNames& names);
 
 }  // namespace evical

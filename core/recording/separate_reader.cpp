@@ -254,9 +254,11 @@ void beQuiet() {
 
 // Starts the server with the socket at the expected descriptor. A fork would inherit locks of other
 // threads; a new process does not.
-pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path, int socket) {
+pid_t spawn(const std::vector<std::string>& command, const std::filesystem::path& path,
+            const std::string& names, int socket) {
   std::vector<std::string> words = command;
   words.push_back(path.string());
+  if (!names.empty()) words.push_back(names);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -331,9 +333,10 @@ SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& op
   });
 }
 
-SeparateReader::SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server)
+SeparateReader::SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server,
+                               const std::string& names)
     : path_(path) {
-  begin([&](int, int other) { return spawn(server, path, other); });
+  begin([&](int, int other) { return spawn(server, path, names, other); });
 }
 
 void SeparateReader::begin(const std::function<pid_t(int own, int other)>& start) {

@@ -43,8 +43,10 @@ class SeparateReader : public RecordingReader {
 
   // Calls `open` in a copy of this process; its exceptions are thrown here. `path`: for messages.
   SeparateReader(const std::filesystem::path& path, const Open& open);
-  // Starts `server`, a command that is given the path, and serves a reader at kServerSocket (recording_server.h).
-  SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server);
+  // Starts `server`, a command that is given the path and, unless it is empty, `names`, and serves a reader at kServerSocket
+  // (recording_server.h).
+  SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server,
+                 const std::string& names = {});
   ~SeparateReader() override;
   SeparateReader(const SeparateReader&) = delete;
   SeparateReader& operator=(const SeparateReader&) = delete;

@@ -94,6 +94,6 @@ if sys.executable and not getattr(sys, "frozen", False):
     _here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     _set_recording_server([
         sys.executable, "-I", "-c",
-        "import sys; sys.path[:] = sys.argv[1].split('\\n'); from evical import _evical; _evical._serve_recording(sys.argv[2])",
+        "import sys; sys.path[:] = sys.argv[1].split('\\n'); from evical import _evical; _evical._serve_recording(*sys.argv[2:])",
         "\n".join([os.path.abspath(folder) for folder in sys.path if folder] + [_here])
     ])

@@ -2,6 +2,7 @@
 #include "core/recording/column_guess.h"
 #include "core/recording/hdf5/ecf_decoder.h"
 #include "core/recording/hdf5/hdf5_tables.h"
+#include "core/recording/plausible_times.h"
 
 #include <fmt/format.h>
 
@@ -37,10 +38,41 @@ void chooseUnit(double first, double last, TimeScale& time) {
   }
 }
 
+// Another unit if the usual one gives a rate that no camera has. `seen` has the pixels.
+std::string correctUnit(double first, double last, std::uint64_t rows, const SeenTimes& seen,
+                        TimeScale& time) {
+  struct Unit {
+    const char* name;
+    double ns;
+  };
+  constexpr std::array<Unit, 4> kUnits{{{"s", 1e9}, {"us", 1e3}, {"ms", 1e6}, {"ns", 1.0}}};
+  const double usual_ns = time.is_real ? time.factor_ns : static_cast<double>(time.unit_ns);
+  const auto isPlausible = [&](double unit_ns) {
+    SeenTimes times = seen;
+    times.add(0);
+    times.add(std::llround(std::min(unit_ns * (last - first), 1e18)), rows - 1);
+    return !whyImplausible(StreamType::Events, times);
+  };
+  if (rows < 2 || !(last > first) || isPlausible(usual_ns)) return {};
+  const auto* const usual = std::ranges::find(kUnits, usual_ns, &Unit::ns);
+  // First units in which the recording is not very short.
+  for (const double shortest_ns : {0.5e9, 0.0}) {
+    for (const Unit& unit : kUnits) {
+      const bool other = unit.ns != usual_ns && (time.is_real || unit.ns <= 1e6);
+      if (!other || unit.ns * (last - first) < shortest_ns || !isPlausible(unit.ns)) continue;
+      time.factor_ns = unit.ns;
+      if (!time.is_real) time.unit_ns = static_cast<std::int64_t>(unit.ns);
+      return fmt::format("Times are read as {}: in {}, the usual unit, no event camera has this rate.",
+                         unit.name, usual == kUnits.end() ? "another" : usual->name);
+    }
+  }
+  return {};
+}
+
 class Columns : public EventTable {
  public:
   Columns(hid_t file, const std::array<DatasetInfo, 4>& columns, std::int64_t offset_us,
-          const std::string& place)
+          const std::string& place, std::optional<std::int64_t> unit_ns)
       : x_(file, columns[0], H5T_NATIVE_INT32, place),
         y_(file, columns[1], H5T_NATIVE_INT32, place),
         p_(file, columns[3], H5T_NATIVE_INT8, place) {
@@ -59,9 +91,18 @@ class Columns : public EventTable {
                              lengths[1], lengths[2], lengths[3], rows_);
     }
     if (rows_ == 0) return;
-    const double first = timeOf(0), last = time_.is_real ? timeOf(rows_ - 1) : first;
+    if (unit_ns) {
+      time_.setUnit(*unit_ns);
+      return;
+    }
+    const double first = timeOf(0), last = timeOf(rows_ - 1);
     chooseUnit(first, last, time_);
     time_.offset_ns = offset_us * 1000;
+    SeenTimes seen;
+    const auto xs = x_.numbersFrom(0), ys = y_.numbersFrom(0);
+    for (std::size_t i = 0; i < std::min({xs.size(), ys.size(), kHeadRows}); ++i)
+      seen.reach({0, pixel(xs[i]), pixel(ys[i]), false});
+    note_ = correctUnit(first, last, rows_, seen, time_);
   }
 
   std::uint64_t rows() const override { return rows_; }
@@ -253,8 +294,9 @@ bool TimeScale::convert(double time, std::int64_t& time_ns) const {
 }
 
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
-                                        std::int64_t offset_us, const std::string& place) {
-  return std::make_unique<Columns>(file, columns, offset_us, place);
+                                        std::int64_t offset_us, const std::string& place,
+                                        std::optional<std::int64_t> unit_ns) {
+  return std::make_unique<Columns>(file, columns, offset_us, place, unit_ns);
 }
 
 std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place) {

@@ -20,7 +20,8 @@ constexpr std::size_t kSamplesForGravity = 1000;
 class ImuDatasets : public ImuTable {
  public:
   ImuDatasets(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
-              const DatasetInfo* accelerations, const std::string& place)
+              const DatasetInfo* accelerations, const std::string& place,
+              std::optional<std::int64_t> unit_ns = {})
       : times_(file, times, time_, place), first_(file, rates, H5T_NATIVE_DOUBLE, place) {
     if (accelerations) second_.emplace(file, *accelerations, H5T_NATIVE_DOUBLE, place);
     const std::array<std::uint64_t, 3> lengths{times_.rows().rows(), first_.rows(),
@@ -30,6 +31,7 @@ class ImuDatasets : public ImuTable {
       problem_ = fmt::format("times and values differ in length; the first {} rows are read", rows_);
     }
     if (!second_) findGravity();
+    if (unit_ns) time_.setUnit(*unit_ns);
   }
 
   void load(std::vector<RawImuSample>& samples) override {
@@ -125,8 +127,9 @@ class ImuText : public ImuTable {
 }  // namespace
 
 std::unique_ptr<ImuTable> openImuColumns(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
-                                         const DatasetInfo& accelerations, const std::string& place) {
-  return std::make_unique<ImuDatasets>(file, times, rates, &accelerations, place);
+                                         const DatasetInfo& accelerations, const std::string& place,
+                                         std::optional<std::int64_t> unit_ns) {
+  return std::make_unique<ImuDatasets>(file, times, rates, &accelerations, place, unit_ns);
 }
 
 std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, const DatasetInfo& rows,

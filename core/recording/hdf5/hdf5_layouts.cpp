@@ -2,21 +2,29 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/base/trimmed.h"
 #include "core/data/recording.h"
+#include "core/recording/column_names.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <unordered_map>
 
 namespace evical::hdf5 {
 namespace {
 
 constexpr std::size_t kMostNamedTables = 12;
+constexpr const char* kNamedColumns =
+    "Name the datasets in the session, as columns: \"t_us=DATASET,x=DATASET,y=DATASET,p=DATASET\" of a "
+    "camera, or "
+    "\"t_us=DATASET,gyro=DATASET,accel=DATASET\" of an IMU";
 
 std::string withoutSlash(std::string folder) {
   if (!folder.empty()) folder.pop_back();
@@ -77,6 +85,18 @@ Resolution parseGeometry(const std::string& text) {
   return good ? size_px : Resolution{};
 }
 
+// Names of the columns of events in one folder.
+constexpr std::initializer_list<const char*> kXNames = {"x", "xs", "col", "cols", "x_pos"};
+constexpr std::initializer_list<const char*> kYNames = {"y", "ys", "row", "rows", "y_pos"};
+constexpr std::initializer_list<const char*> kTimeNames = {"t",    "ts",    "timestamp",
+                                                           "time", "times", "timestamps"};
+constexpr std::initializer_list<const char*> kPolarityNames = {"p",        "ps",         "pol",
+                                                               "polarity", "polarities", "on"};
+
+bool isOneOf(const std::string& name, std::initializer_list<const char*> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 class TableLayoutFinder {
  public:
   TableLayoutFinder(hid_t file, const std::string& place)
@@ -84,7 +104,8 @@ class TableLayoutFinder {
     for (const DatasetInfo& dataset : datasets_) by_path_[dataset.path] = &dataset;
   }
 
-  FoundStreams run() {
+  FoundStreams run(const ColumnNames& names) {
+    for (const auto& [stream, columns] : names) addNamed(stream, columns);
     for (const DatasetInfo& dataset : datasets_) {
       const std::size_t rank = dataset.extent.size();
       if (dataset.type_class == H5T_COMPOUND) addCompound(dataset);
@@ -103,6 +124,11 @@ class TableLayoutFinder {
       return stream.events || stream.imu || stream.frames;
     };
     if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
+    // The session's columns replace those of a layout.
+    const auto first_found = found_.begin() + static_cast<std::ptrdiff_t>(names.size());
+    found_.erase(std::remove_if(first_found, found_.end(),
+                                [&](const FoundStream& stream) { return names.contains(stream.info.name); }),
+                 found_.end());
     for (const std::string& folder : incomplete_)
       problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
                                      folder.empty() ? "The root" : withoutSlash(folder)));
@@ -128,8 +154,8 @@ class TableLayoutFinder {
     const std::string folder = dataset.folder(), name = dataset.name();
     const auto has = [&](std::initializer_list<const char*> names) { return find(folder, names) ? 1 : 0; };
     if (name == "omega" || name == "accel") return has({"ts"}) + has({"omega"}) + has({"accel"}) < 3;
-    const bool is_column = name == "x" || name == "xs" || name == "y" || name == "ys";
-    const int columns = has({"x", "xs"}) + has({"y", "ys"}) + has({"t", "ts"}) + has({"p", "ps"});
+    const bool is_column = isOneOf(name, kXNames) || isOneOf(name, kYNames);
+    const int columns = has(kXNames) + has(kYNames) + has(kTimeNames) + has(kPolarityNames);
     return is_column && columns == 3;
   }
 
@@ -147,14 +173,60 @@ class TableLayoutFinder {
     return found_.back();
   }
 
+  const DatasetInfo& named(const std::string& path, std::size_t rank) const {
+    const DatasetInfo* dataset = find("", {path.c_str() + (path.starts_with('/') ? 1 : 0)});
+    if (!dataset || dataset->extent.size() != rank)
+      throw badInput(
+          place_,
+          fmt::format("the session's columns name {}, which is not a {} in this file; its datasets: {}", path,
+                      rank == 1 ? "list" : "table of three columns", datasetNames()),
+          kNamedColumns);
+    return *dataset;
+  }
+
+  void addNamed(const std::string& name, const std::string& columns) {
+    std::map<std::string, std::string> paths;
+    std::optional<std::int64_t> unit_ns;
+    for (std::string_view rest = columns; !rest.empty();) {
+      const std::size_t end = std::min(rest.find(','), rest.size());
+      const std::string_view part = rest.substr(0, end);
+      const std::size_t equals = std::min(part.find('='), part.size());
+      std::string key(trimmed(part.substr(0, equals)));
+      if (key.starts_with("t_")) unit_ns = timeUnitNamed(key.substr(2));
+      if (unit_ns) key = key.starts_with("t_") ? "t" : key;
+      paths[key] = trimmed(part.substr(std::min(equals + 1, part.size())));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    const auto has = [&](std::initializer_list<const char*> keys) {
+      return std::all_of(keys.begin(), keys.end(), [&](const char* key) { return paths.contains(key); });
+    };
+    if (has({"t", "x", "y", "p"})) {
+      FoundStream& stream = add(name, StreamType::Events, "named columns");
+      stream.events = openColumns(
+          file_, {named(paths["x"], 1), named(paths["y"], 1), named(paths["t"], 1), named(paths["p"], 1)}, 0,
+          place_, unit_ns);
+      finishEvents(named(paths["x"], 1).folder(), stream);
+    } else if (has({"t", "gyro", "accel"})) {
+      const DatasetInfo& times = named(paths["t"], 1);
+      FoundStream& stream = add(name, StreamType::Imu, "named columns");
+      stream.imu =
+          openImuColumns(file_, times, named(paths["gyro"], 2), named(paths["accel"], 2), place_, unit_ns);
+      finishImu(times, stream);
+    } else {
+      throw badInput(place_,
+                     fmt::format("the columns \"{}\" of {} do not identify its datasets", columns, name),
+                     kNamedColumns);
+    }
+  }
+
   // `dataset` may be the x of a camera's x, y, t, p, or the times of an IMU.
   void addColumns(const DatasetInfo& dataset) {
     const std::string folder = dataset.folder();
     if (dataset.name() == "ts") addImuColumns(dataset);
-    if (dataset.name() != "x" && dataset.name() != "xs") return;
-    const DatasetInfo* y = findList(folder, {"y", "ys"});
-    const DatasetInfo* t = findList(folder, {"t", "ts"});
-    const DatasetInfo* p = findList(folder, {"p", "ps"});
+    if (!isOneOf(dataset.name(), kXNames)) return;
+    const DatasetInfo* y = findList(folder, kYNames);
+    const DatasetInfo* t = findList(folder, kTimeNames);
+    const DatasetInfo* p = findList(folder, kPolarityNames);
     if (!y || !t || !p) return;
     // DSEC's offset belongs to its only camera.
     const bool is_dsec = folder == "events/";
@@ -268,20 +340,25 @@ class TableLayoutFinder {
     info.readable = false;
   }
 
-  [[noreturn]] void failWithNames() const {
+  std::string datasetNames() const {
     std::vector<std::string> names;
     for (const DatasetInfo& dataset : datasets_)
       if (names.size() < kMostNamedTables) names.push_back(dataset.path);
+    return joined(names) + (datasets_.size() > kMostNamedTables ? ", ..." : "");
+  }
+
+  [[noreturn]] void failWithNames() const {
     const std::string why =
         problems_.empty() ? "" : ". " + problems_.front().substr(0, problems_.front().size() - 1);
     throw badInput(
         place_,
-        names.empty()
+        datasets_.empty()
             ? "the HDF5 file has no datasets" + (why.empty() ? "; was the recording finished?" : why)
             : fmt::format("the HDF5 file has no events and no IMU in a known layout; its datasets: {}{}",
-                          joined(names), datasets_.size() > kMostNamedTables ? ", ..." : "") +
-                  why,
-        "Convert it to one of DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
+                          datasetNames(), why),
+        std::string(
+            "Convert it to one of DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision. Or: ") +
+            kNamedColumns);
   }
 
   hid_t file_;
@@ -296,8 +373,8 @@ class TableLayoutFinder {
 
 }  // namespace
 
-FoundStreams findStreams(hid_t file, const std::string& place) {
-  return TableLayoutFinder(file, place).run();
+FoundStreams findStreams(hid_t file, const std::string& place, const ColumnNames& names) {
+  return TableLayoutFinder(file, place).run(names);
 }
 
 }  // namespace evical::hdf5

@@ -54,7 +54,7 @@ bool hasTumVieImu(const std::filesystem::path& folder) {
   return std::filesystem::is_regular_file(folder / kImuText);
 }
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) {
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path, ColumnNames names) : names_(std::move(names)) {
   const hdf5::Quiet quiet;
   if (!std::filesystem::is_directory(path)) {
     addFile(path, "");
@@ -68,7 +68,7 @@ Hdf5Reader::~Hdf5Reader() = default;
 
 void Hdf5Reader::addFile(const std::filesystem::path& path, const std::string& camera) {
   const hdf5::Handle file = hdf5::openFile(path);
-  hdf5::FoundStreams all = hdf5::findStreams(file, path.string());
+  hdf5::FoundStreams all = hdf5::findStreams(file, path.string(), names_);
   for (const std::string& problem : all.problems) addFault("", FaultKind::Corrupt, problem);
   for (hdf5::FoundStream& found : all.streams) {
     auto source = std::make_unique<Source>();
@@ -84,6 +84,8 @@ void Hdf5Reader::addFile(const std::filesystem::path& path, const std::string& c
                                 : source->frames ? source->frames->takeProblem()
                                                  : std::string();
     noteProblem(*source, problem);
+    if (source->events && !source->events->note().empty())
+      addFault(streams_.back().name, FaultKind::Guess, source->events->note());
     sources_.push_back(std::move(source));
   }
 }

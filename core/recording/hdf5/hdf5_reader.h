@@ -15,7 +15,7 @@ namespace evical {
 
 class Hdf5Reader : public RecordingReader {
  public:
-  explicit Hdf5Reader(const std::filesystem::path& path);
+  explicit Hdf5Reader(const std::filesystem::path& path, ColumnNames names = {});
   ~Hdf5Reader() override;
 
   const std::vector<StreamInfo>& streams() const override { return streams_; }
@@ -37,6 +37,7 @@ class Hdf5Reader : public RecordingReader {
   void noteOrder(const Source& source);
   void addFault(const std::string& stream, FaultKind kind, std::string text);
 
+  ColumnNames names_;  // datasets of streams in other layouts
   std::vector<StreamInfo> streams_;
   std::vector<std::unique_ptr<Source>> sources_;  // one per stream
   std::vector<RecordingFault> faults_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,6 +19,11 @@ namespace evical::hdf5 {
 // Scale of a file's numbers to ns: whole numbers are us (ns if they are too large for that), others seconds
 // (us if the span would be days).
 struct TimeScale {
+  void setUnit(std::int64_t stated_ns) {
+    factor_ns = static_cast<double>(stated_ns);
+    unit_ns = is_real ? 1 : stated_ns;
+  }
+
   double factor_ns = 1e9;       // of real numbers
   std::int64_t unit_ns = 1000;  // of whole ones
   std::int64_t offset_ns = 0;
@@ -37,12 +43,13 @@ class EventTable {
 
   const TimeScale& timeScale() const { return time_; }
   std::string takeProblem() { return std::exchange(problem_, {}); }
+  const std::string& note() const { return note_; }  // on the interpretation; empty if it is clear
 
  protected:
   void sayUnpolarised(std::size_t count, std::uint64_t row);
 
   TimeScale time_;
-  std::string problem_;
+  std::string problem_, note_;
 };
 
 class ImuTable {
@@ -62,7 +69,8 @@ class ImuTable {
 
 // Lists x, y, t, p of equal length (the shortest counts), in this order.
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
-                                        std::int64_t offset_us, const std::string& place);
+                                        std::int64_t offset_us, const std::string& place,
+                                        std::optional<std::int64_t> unit_ns = {});
 // Error: the four columns cannot be identified.
 class UnknownColumns : public std::runtime_error {
  public:
@@ -77,7 +85,8 @@ std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, co
 
 // t; angular rate (rad/s) and acceleration (m/s^2) as rows of three.
 std::unique_ptr<ImuTable> openImuColumns(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
-                                         const DatasetInfo& accelerations, const std::string& place);
+                                         const DatasetInfo& accelerations, const std::string& place,
+                                         std::optional<std::int64_t> unit_ns = {});
 // t; rows of six. Gravity determines which three are the acceleration.
 std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, const DatasetInfo& rows,
                                       const std::string& place);

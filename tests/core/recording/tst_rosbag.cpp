@@ -59,6 +59,9 @@ class TestRosbag : public QObject {
   void lyingLengths_areRefused();
   void unreadableFiles_areNamed_data();
   void unreadableFiles_areNamed();
+  void filesWithoutHeader_areNamedByTheirName_data();
+  void filesWithoutHeader_areNamedByTheirName();
+  void linkOfGitAnnex_isNamed();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -267,6 +270,52 @@ void TestRosbag::unreadableFiles_areNamed_data() {
   QTest::newRow("old bag") << QByteArray("#ROSBAG V1.2\n") << QByteArray("old format");
   QTest::newRow("lfs") << QByteArray("version https://git-lfs.github.com/spec/v1\n")
                        << QByteArray("git lfs pull");
+  const auto row = [](const char* name, const QByteArray& content, const char* expected) {
+    QTest::newRow(name) << content << QByteArray(expected);
+  };
+  const QByteArray zeros(300, '\0');
+  row("mp4",
+      QByteArray("\0\0\0\x20"
+                 "ftypisom",
+                 12) +
+          zeros,
+      "video (MP4)");
+  row("mov",
+      QByteArray("\0\0\0\x14"
+                 "ftypqt  ",
+                 12) +
+          zeros,
+      "video (MOV)");
+  row("avi",
+      QByteArray("RIFF\x10\0\0\0"
+                 "AVI LIST",
+                 16) +
+          zeros,
+      "video (AVI)");
+  row("mkv", QByteArray("\x1A\x45\xDF\xA3") + zeros, "video (MKV");
+  row("webp",
+      QByteArray("RIFF\x10\0\0\0"
+                 "WEBPVP8 ",
+                 16) +
+          zeros,
+      "WebP");
+  row("gif", QByteArray("GIF89a") + zeros, "GIF");
+  row("png", QByteArray("\x89PNG\r\n\x1A\n") + zeros, "folder with all pictures");
+  row("jpeg", QByteArray("\xFF\xD8\xFF\xE0") + zeros, "folder with all pictures");
+  row("bmp", QByteArray("BM\x46\x10\0\0\0\0\0\0", 10) + zeros, "folder with all pictures");
+  row("tiff", QByteArray("II*\0", 4) + zeros, "folder with all pictures");
+  row("bz2", QByteArray("BZh91AY&SY") + zeros, "bzip2");
+  row("xz",
+      QByteArray("\xFD"
+                 "7zXZ") +
+          zeros,
+      "xz");
+  row("tar", QByteArray("name") + zeros.left(253) + QByteArray("ustar") + zeros, "tar archive");
+  row("rar", QByteArray("Rar!\x1A\x07\0", 7) + zeros, "RAR");
+  row("mat", QByteArray("MATLAB 5.0 MAT-file, Platform: GLNXA64") + zeros, "MATLAB");
+  row("html", QByteArray("\n<!DOCTYPE html>\n<html><head><title>Sign in</title></head></html>\n"),
+      "web site");
+  row("git-annex", QByteArray("/annex/objects/MD5E-s1024--0123.bag\n"), "git annex get");
   QTest::newRow("unknown") << QByteArray("hello world\n") << QByteArray("Use a ROS 1 bag");
 }
 
@@ -282,6 +331,39 @@ void TestRosbag::unreadableFiles_areNamed() {
     QVERIFY2(QByteArray(error.what()).contains(expected), error.what());
   }
   QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(path("missing")));
+}
+
+void TestRosbag::filesWithoutHeader_areNamedByTheirName_data() {
+  QTest::addColumn<QString>("file");
+  QTest::addColumn<QString>("expected");
+  QTest::newRow("RAW") << "events.raw"
+                       << "RAW file has no header";
+  QTest::newRow("AEDAT") << "events.aedat"
+                         << "AEDAT file has no header";
+}
+
+void TestRosbag::filesWithoutHeader_areNamedByTheirName() {
+  QFETCH(QString, file);
+  QFETCH(QString, expected);
+  std::string content(4096, '\0');
+  for (std::size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * 97 + 13);
+  writeFile(path(qPrintable(file)), content);
+  try {
+    openRecording(path(qPrintable(file)));
+    QFAIL("no error");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains(expected), error.what());
+  }
+}
+
+void TestRosbag::linkOfGitAnnex_isNamed() {
+  std::filesystem::create_symlink(".git/annex/objects/aa/bb/MD5E-s1--0/MD5E-s1--0.bag", path("annexed.bag"));
+  try {
+    openRecording(path("annexed.bag"));
+    QFAIL("no error");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains("git annex get"), error.what());
+  }
 }
 
 EVICAL_TEST(TestRosbag)

@@ -84,6 +84,10 @@ class TestHdf5 : public QObject {
   void dsecWriter_refusesWhatTheLayoutCannotHold();
   void layouts_areFound_data();
   void layouts_areFound();
+  void timesInOtherUnits_areRecognised_data();
+  void timesInOtherUnits_areRecognised();
+  void wrappedCounters_areContinued();
+  void namedColumns_areRead();
   void columnsThatAreNoEvents_areRefused();
   void tumVieFolder_isOneRecording();
   void lengthsThatDiffer_areStated();
@@ -254,6 +258,81 @@ void TestHdf5::layouts_areFound() {
 
 // No sensor has 54045 pixels in a row: impossible coordinates are refused, and with other values of p it is
 // not an event table.
+void TestHdf5::timesInOtherUnits_areRecognised_data() {
+  QTest::addColumn<QString>("times");  // of 3000 events in 3 s
+  QTest::addColumn<QString>("said");
+  QTest::newRow("us") << "1000 * i"
+                      << "";
+  QTest::newRow("s") << "0.001 * i"
+                     << "";
+  QTest::newRow("ns of the day") << "1700000000000000000 + 1000000 * i"
+                                 << "";
+  QTest::newRow("ns since the start") << "1000000 * i"
+                                      << "read as ns";
+  QTest::newRow("ms as real numbers") << "1.0 * i"
+                                      << "read as ms";
+}
+
+void TestHdf5::timesInOtherUnits_areRecognised() {
+  if (!hasH5py()) QSKIP("h5py is not installed");
+  QFETCH(QString, times);
+  QFETCH(QString, said);
+  const std::string script = std::string(kArrays) + "t = " + times.toStdString() +
+                             "\nwith h5py.File('unit.h5', 'w') as f:\n"
+                             "    for k, v in dict(x=x, y=y, p=p, t=t).items(): f['events/' + k] = v\n"
+                             "print('done')\n";
+  QVERIFY(!runPython(script, folder_.path()).isEmpty());
+  const Contents contents = readAll(folder_ / "unit.h5");
+  const std::vector<Event>& events = contents.events.at(0);
+  QCOMPARE(events.size(), std::size_t{3000});
+  QCOMPARE(qint64(events[2999].time_ns - events[0].time_ns), qint64(2'999'000'000));
+  QCOMPARE(contents.faults.size(), std::size_t{said.isEmpty() ? 0U : 1U});
+  if (!said.isEmpty())
+    QVERIFY2(contents.faults[0].text.find(said.toStdString()) != std::string::npos,
+             contents.faults[0].text.c_str());
+}
+
+void TestHdf5::wrappedCounters_areContinued() {
+  if (!hasH5py()) QSKIP("h5py is not installed");
+  const std::string script = std::string(kArrays) +
+                             "t = ((2**32 - 1000000 + 1000 * i) % 2**32).astype('u4')\n"
+                             "with h5py.File('wrap.h5', 'w') as f:\n"
+                             "    for k, v in dict(x=x, y=y, p=p, t=t).items(): f['events/' + k] = v\n"
+                             "print('done')\n";
+  QVERIFY(!runPython(script, folder_.path()).isEmpty());
+  const Contents contents = readAll(folder_ / "wrap.h5");
+  const std::vector<Event>& events = contents.events.at(0);
+  QCOMPARE(qint64(events[2999].time_ns - events[0].time_ns), qint64(2'999'000'000));
+  QVERIFY(contents.hasFault(FaultKind::TimeWrap));
+}
+
+void TestHdf5::namedColumns_areRead() {
+  if (!hasH5py()) QSKIP("h5py is not installed");
+  const std::string script =
+      std::string(kArrays) +
+      "with h5py.File('named.h5', 'w') as f:\n"
+      "    for k, v in dict(u=x, v=y, sign=p, when=t, it=ts, w=w, a=a).items(): f['rec/' + k] = v\n"
+      "print('done')\n";
+  QVERIFY(!runPython(script, folder_.path()).isEmpty());
+  try {
+    openRecording(folder_ / "named.h5");
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(QString(error.what()).contains("columns:"), error.what());
+  }
+  const ColumnNames names = {{"camera", "t_us=rec/when, x=rec/u, y=/rec/v, p=rec/sign"},
+                             {"imu", "t_us=rec/it,gyro=rec/w,accel=rec/a"}};
+  const Contents contents = readAll(*openRecording(folder_ / "named.h5", names));
+  QCOMPARE(contents.streams.size(), std::size_t{2});
+  QCOMPARE(contents.streams[0].name, std::string("camera"));
+  compareWithArrays(contents.events.at(0));
+  QCOMPARE(contents.imu.at(1).size(), std::size_t{50});
+  QVERIFY((contents.imu.at(1)[0].specific_force_m_s2 == Eigen::Vector3d(4.0, 5.0, 7.5)));
+  QCOMPARE(qint64(contents.imu.at(1)[1].time_ns), qint64(1'100'000));
+  for (const char* wrong : {"t_us=rec/when,x=rec/u,y=rec/nothing,p=rec/sign", "t_us=rec/when,x=rec/u"})
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, openRecording(folder_ / "named.h5", {{"camera", wrong}}));
+}
+
 void TestHdf5::columnsThatAreNoEvents_areRefused() {
   if (!hasH5py()) QSKIP("python3-h5py is not installed");
   QVERIFY(!runPython(kArrays + std::string(R"(
