@@ -113,7 +113,7 @@ class ExtentJudge {
     return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }
 
-  // Discs of the background also lie on a line now and then. So most of the line must be in view, and there must be
+  // Discs of the background are on one line by chance now and then. So most of the line must be in view, and there must be
   // three circles of it, if it has as many.
   LineState beyond(const Line& line) const {
     constexpr double kMost = 0.75;

@@ -278,7 +278,8 @@ PictureFolder findByNames(const fs::path& folder) {
   found.lists = listPictures(folder, "pictures");
   if (!found.lists.empty()) return found;
   for (const std::string& name : folderNames(folder))
-    for (PictureList& list : listPictures(folder / name, visible(name))) found.lists.push_back(std::move(list));
+    for (PictureList& list : listPictures(folder / name, visible(name)))
+      found.lists.push_back(std::move(list));
   for (int i = 0; i < 10 && !found.lists.empty(); ++i) {
     const std::string name = fmt::format("imu{}", i);
     addImuTable(name, folder / (name + ".csv"), found);
