@@ -307,7 +307,7 @@ class TestLensFiles : public QObject {
     row("too few", opencv("d", "262.4, 0., 171.8, 0., 262.9, 131.2, 0., 0."), "has 8 numbers, 9 are needed");
     row("not finite", opencv("d", "262.4, 0., .Inf, 0., 262.9, 131.2, 0., 0., 1."), "is not a finite number");
     row("text", opencv("d", "262.4, 0., x, 0., 262.9, 131.2, 0., 0., 1."), "is not a number");
-    row("twice", opencv("d", kGood, "D1: 3\n"), "D1 .line 14.: occurs twice, first in line 10");
+    row("twice", opencv("d", kGood, "D1: 3\n"), "D1 .line 11.: occurs twice, first in line 10");
     row("empty key", opencv("d", kGood, ": [ 1. ]\n"), "a key that is not a plain word");
     row("second camera without distortion",
         opencv("d", kGood, "K2: [ 262.4, 0, 170, 0, 262.9, 131, 0, 0, 1 ]\n"),
