@@ -180,12 +180,12 @@ def test_a_guess_is_not_calibrated_until_its_board_and_noise_are_given(bag, sess
 
     with pytest.raises(evical.InputError):
         guessed.board.points_m
-    for name in ("cols", "rows", "spacing_m", "radius_m"):
-        refused("board")
-        setattr(guessed.board, name, getattr(session.board, name))
     for name in ("accelerometer_noise_density", "gyroscope_noise_density"):
         refused(name)
         setattr(imu, name, getattr(session.imus["left_imu"], name))
+    for name in ("cols", "rows", "spacing_m", "radius_m"):
+        refused("board")
+        setattr(guessed.board, name, getattr(session.board, name))
     [camera] = guessed.cameras.values()
     camera.intrinsics = session.cameras["left"].intrinsics
     guessed.set("report.split_half_check", False)
