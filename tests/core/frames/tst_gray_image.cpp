@@ -69,6 +69,8 @@ class TestGrayImage : public QObject {
   void colours_areWeighedByTheirNames();
   void bayer_beginsWithTheNamedColour_data();
   void bayer_beginsWithTheNamedColour();
+  void bayerOfSixteenBits_isInterpolatedBeforeItIsScaled_data();
+  void bayerOfSixteenBits_isInterpolatedBeforeItIsScaled();
   void rowsWithGaps_areReadWithoutThem();
   void sixteenBits_areScaledByTheirBrightest_data();
   void sixteenBits_areScaledByTheirBrightest();
@@ -113,10 +115,6 @@ void TestGrayImage::bayer_beginsWithTheNamedColour_data() {
   QTest::newRow("bggr") << FrameFormat::BayerBggr8 << 1 << 1;
   QTest::newRow("gbrg") << FrameFormat::BayerGbrg8 << 0 << 1;
   QTest::newRow("grbg") << FrameFormat::BayerGrbg8 << 1 << 0;
-  QTest::newRow("rggb of 16 bit") << FrameFormat::BayerRggb16 << 0 << 0;
-  QTest::newRow("bggr of 16 bit") << FrameFormat::BayerBggr16 << 1 << 1;
-  QTest::newRow("gbrg of 16 bit") << FrameFormat::BayerGbrg16 << 0 << 1;
-  QTest::newRow("grbg of 16 bit") << FrameFormat::BayerGrbg16 << 1 << 0;
 }
 
 void TestGrayImage::bayer_beginsWithTheNamedColour() {
@@ -130,6 +128,40 @@ void TestGrayImage::bayer_beginsWithTheNamedColour() {
   for (int y = 2; y < 6; ++y)
     for (int x = 2; x < 6; ++x)
       QVERIFY(std::abs(image.pixels[static_cast<std::size_t>(8 * y + x)] - 76) <= 2);
+}
+
+void TestGrayImage::bayerOfSixteenBits_isInterpolatedBeforeItIsScaled_data() {
+  QTest::addColumn<FrameFormat>("format");
+  QTest::addColumn<int>("red_x");
+  QTest::addColumn<int>("red_y");
+  QTest::newRow("rggb of 16 bit") << FrameFormat::BayerRggb16 << 0 << 0;
+  QTest::newRow("bggr of 16 bit") << FrameFormat::BayerBggr16 << 1 << 1;
+  QTest::newRow("gbrg of 16 bit") << FrameFormat::BayerGbrg16 << 0 << 1;
+  QTest::newRow("grbg of 16 bit") << FrameFormat::BayerGrbg16 << 1 << 0;
+}
+
+// Red on the left, white on the right, which determines the scale.
+void TestGrayImage::bayerOfSixteenBits_isInterpolatedBeforeItIsScaled() {
+  QFETCH(const FrameFormat, format);
+  QFETCH(const int, red_x);
+  QFETCH(const int, red_y);
+  for (const bool big_endian : {false, true}) {
+    Bytes bytes;
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) {
+        const std::uint16_t value = x >= 4 || (x % 2 == red_x && y % 2 == red_y) ? 4095 : 0;
+        const std::uint8_t low = value & 0xFF, high = value >> 8;
+        bytes.push_back(big_endian ? high : low);
+        bytes.push_back(big_endian ? low : high);
+      }
+    Frame frame = rawFrame(format, {8, 8}, bytes);
+    frame.big_endian = big_endian;
+    const GrayImage image = decodeFrame(frame, "");
+    for (int y = 2; y < 6; ++y) {
+      QVERIFY(std::abs(image.pixels[static_cast<std::size_t>(8 * y + 2)] - 76) <= 2);
+      QVERIFY(image.pixels[static_cast<std::size_t>(8 * y + 6)] >= 253);
+    }
+  }
 }
 
 void TestGrayImage::rowsWithGaps_areReadWithoutThem() {

@@ -374,9 +374,10 @@ void TestSessionRecording::clockInAnotherUnit_isNamed() {
 }
 
 void TestSessionRecording::wrongTimesOfAnImu_areRefusedWithTheUnit() {
-  for (ImuSample& sample : written_.imu_samples) sample.time_ns /= 1000;
-  for (Event& event : written_.events) event.time_ns /= 1000;
-  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), written_);
+  Recording wrong = written_;
+  for (ImuSample& sample : wrong.imu_samples) sample.time_ns /= 1000;
+  for (Event& event : wrong.events) event.time_ns /= 1000;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), wrong);
   SessionRecording recording(session_);
   SensorPacket packet;
   try {
