@@ -25,8 +25,8 @@ constexpr double kMinute_s = 60.0, kDay_s = 24.0 * 60.0 * kMinute_s;
 constexpr std::array<Rates, 4> kRates{{
     {StreamType::Events, "events", "event camera", 0.002, 1000.0, 0.02, 200.0, 1000, 0.01, 7.0 * kDay_s},
     {StreamType::Imu, "samples", "IMU", 0.5, 40'000.0, 20.0, 8000.0, 10, 0.0, 30.0 * kDay_s},
-    {StreamType::Frames, "frames", "camera", 0.01, 10'000.0, 1.0, 200.0, 4, 0.0, 30.0 * kDay_s},
-    {StreamType::Points, "views", "camera", 0.01, 10'000.0, 1.0, 200.0, 4, 0.0, 30.0 * kDay_s},
+    {StreamType::Frames, "frames", "camera", 0.01, 10'000.0, 1.0, 200.0, 6, 0.0, 30.0 * kDay_s},
+    {StreamType::Points, "views", "camera", 0.01, 10'000.0, 1.0, 200.0, 6, 0.0, 30.0 * kDay_s},
 }};
 
 struct Factor {

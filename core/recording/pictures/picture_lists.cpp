@@ -55,7 +55,7 @@ std::vector<std::int64_t> timesOf(const PictureList& list) {
 }
 
 bool hasPlausibleTimes(const PictureList& list) {
-  constexpr std::size_t kFewest = 4;  // fewer may be anything
+  constexpr std::size_t kFewest = 6;  // fewer may be anything
   return list.pictures.size() < kFewest || areTimesOfPictures(timesOf(list));
 }
 
