@@ -43,7 +43,8 @@ std::string vinsFusionCameraFile(const Rig& rig, const RigCamera& camera, Export
                                  omni     ? "MEI"
                                  : radtan ? "PINHOLE"
                                           : "KANNALA_BRANDT",
-                                 camera.file_name, own.resolution_px.width_px, own.resolution_px.height_px);
+                                 stringIn(Language::Yaml, camera.file_name), own.resolution_px.width_px,
+                                 own.resolution_px.height_px);
   if (omni) return text + omniText(own);
   if (!radtan)
     return text + fmt::format(
