@@ -19,11 +19,12 @@ struct Rates {
   std::uint64_t fewest;                  // items; fewer show no rate
   double shortest_s, longest_s;          // recordings
 };
+constexpr double kSmallestSensor = 128.0 * 128.0;  // pixels; events may reach only some
 constexpr double kMinute_s = 60.0, kDay_s = 24.0 * 60.0 * kMinute_s;
 // Calm scenes give few events per pixel, and a read-out limits their number. Cameras exist up to some kHz, and people take
 // pictures by hand every minute. IMUs reach 32 kHz.
 constexpr std::array<Rates, 4> kRates{{
-    {StreamType::Events, "events", "event camera", 0.002, 1000.0, 0.02, 200.0, 1000, 0.01, 7.0 * kDay_s},
+    {StreamType::Events, "events", "event camera", 0.002, 1000.0, 0.02, 200.0, 1000, 0.005, 7.0 * kDay_s},
     {StreamType::Imu, "samples", "IMU", 0.5, 40'000.0, 20.0, 8000.0, 10, 0.0, 30.0 * kDay_s},
     {StreamType::Frames, "frames", "camera", 0.01, 10'000.0, 1.0, 200.0, 6, 0.0, 30.0 * kDay_s},
     {StreamType::Points, "views", "camera", 0.01, 10'000.0, 1.0, 200.0, 6, 0.0, 30.0 * kDay_s},
@@ -61,7 +62,7 @@ struct Judged {
 // Strays and gaps change the mean, bursts the median.
 Judged judge(const SeenTimes& seen, const Rates& rates) {
   Judged out;
-  if (rates.type == StreamType::Events) out.share = std::max(seen.pixels(), 1.0);
+  if (rates.type == StreamType::Events) out.share = std::max(seen.pixels(), kSmallestSensor);
   const double mean_hz = 1.0 / seen.mean_s() / out.share;
   const double median_hz = seen.median_s() > 0.0 ? 1.0 / seen.median_s() / out.share : mean_hz;
   out.too_high = mean_hz > rates.most_hz;
