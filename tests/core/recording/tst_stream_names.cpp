@@ -135,7 +135,7 @@ void TestStreamNames::namesWithControlCharacters_areListedVisibly_andNotRead() {
     const std::string format = path.extension().string().substr(1);
     writeSome(*createRecording(path, format, streams), streams);
     const std::unique_ptr<RecordingReader> reader = openRecording(path);
-    const Contents contents = readAll(*reader);
+    const Contents contents = test::readAll(*reader);
     std::size_t hostile = 0;
     for (std::size_t i = 0; i < contents.streams.size(); ++i) {
       const StreamInfo& each = contents.streams[i];
@@ -156,7 +156,7 @@ void TestStreamNames::namesWithControlCharacters_areListedVisibly_andNotRead() {
 void TestStreamNames::fileWithALineBreakInItsName_isRead() {
   const auto path =
       scratch_.write("a\nb.csv", "t_s,ax,ay,az,gx,gy,gz\n0,0,0,9.8,0,0,0\n0.01,0,0,9.8,0,0,0\n");
-  const Contents contents = readAll(path);
+  const Contents contents = test::readAll(path);
   QCOMPARE(contents.streams.at(0).name, std::string("a\\x0ab.csv"));
   QCOMPARE(contents.sampleCount(), std::size_t{2});
 }
