@@ -3,8 +3,6 @@
 
 #include "core/base/error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -32,11 +30,11 @@ class UnpackingLimit {
   void add(std::uint64_t bytes) {
     unpacked_bytes_ += bytes;
     if (unpacked_bytes_ <= most_bytes_) return;
-    throw badInput(
-        file_,
-        fmt::format("unpacks to more than {} MB, although it has only {} kB: it is not a recording",
-                    unpacked_bytes_ >> 20, (file_bytes_ >> 10) + 1),
-        "If it is one, unpack it with the program that recorded it");
+    throw badInput(file_,
+                   "unpacks to more than " + std::to_string(unpacked_bytes_ >> 20) +
+                       " MB, although it has only " + std::to_string((file_bytes_ >> 10) + 1) +
+                       " kB: it is not a recording",
+                   "If it is one, unpack it with the program that recorded it");
   }
   void restart() { unpacked_bytes_ = 0; }
 
