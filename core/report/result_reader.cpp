@@ -201,9 +201,13 @@ std::vector<QuantityAddress> readColumns(const YamlNode& list, const NamedResult
   std::vector<QuantityAddress> columns;
   for (const YamlNode& item : list.items()) {
     std::string keys;
-    for (const char* const key : {"camera", "imu", "board", "quantity", "component"})
-      if (const auto node = item.find(key))
-        keys += fmt::format("{}{}: {}", keys.empty() ? "" : ", ", key, yamlText(node->text()));
+    const auto append = [&](const char* key, const std::string& text) {
+      keys += fmt::format("{}{}: {}", keys.empty() ? "" : ", ", key, text);
+    };
+    for (const char* const key : {"camera", "imu", "board"})
+      if (const auto node = item.find(key)) append(key, yamlText(node->text()));
+    for (const char* const key : {"quantity", "component"})
+      if (const auto node = item.find(key)) append(key, node->text());
     if (!known.contains(keys))
       throw item.error(fmt::format("{} is not among the numbers of this result", keys));
     columns.push_back(known[keys]);
