@@ -17,7 +17,8 @@
 namespace evical {
 namespace {
 
-void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSample>& si,
+// `alone`: the recording has no other IMU stream.
+void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSample>& si, bool alone,
                const InspectionOptions& options, StreamSummary& summary) {
   summary.count = samples.size();
   if (samples.empty()) return;
@@ -36,9 +37,10 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
     summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
   }
-  // A driver marks the covariance as unknown by the number that means: without this sensor.
-  if (summary.without_rate == samples.size() && 2 * rates > samples.size()) summary.without_rate = 0;
-  if (summary.without_force == samples.size() && 2 * forces > samples.size()) summary.without_force = 0;
+  // A driver marks the covariance as unknown by the number that means: without this sensor. Then no other stream has it.
+  const bool whole = alone && 2 * std::min(rates, forces) > samples.size();
+  if (whole && summary.without_rate == samples.size()) summary.without_rate = 0;
+  if (whole && summary.without_force == samples.size()) summary.without_force = 0;
   std::vector<std::int64_t> times_ns;
   for (const RawImuSample& sample : samples) times_ns.push_back(sample.time_ns);
   const double span_s = secondsSince(summary.first_ns, summary.last_ns);
@@ -204,7 +206,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
     std::vector<ImuSample> timed = samples;
     if (std::ranges::is_sorted(timed, {}, &ImuSample::time_ns)) reconstructStamps(timed);
-    summarise(imu_samples[i], timed, options, summary);
+    summarise(imu_samples[i], timed, imu_samples.size() == 1, options, summary);
     setMeasuredBy(imu_samples[i], imuStreamKind(summary), samples);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
