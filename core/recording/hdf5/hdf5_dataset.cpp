@@ -54,11 +54,11 @@ Described describe(hid_t file, const char* path, DatasetInfo& info) {
 // HDF5 1.12 gave the names of these functions to others.
 #if H5_VERSION_GE(1, 12, 0)
 using LinkInfo = H5L_info1_t;
-const auto iterateLinks = H5Literate1;
+const auto kIterateLinks = H5Literate1;
 using ObjectInfo = H5O_info1_t;
 #else
 using LinkInfo = H5L_info_t;
-const auto iterateLinks = H5Literate;
+const auto kIterateLinks = H5Literate;
 using ObjectInfo = H5O_info_t;
 #endif
 
@@ -82,7 +82,7 @@ class Walk {
     }
     ++depth_;
     const std::string above = std::exchange(folder_, folder);
-    const bool good = iterateLinks(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, this) >= 0;
+    const bool good = kIterateLinks(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, this) >= 0;
     folder_ = above;
     --depth_;
     return good;
