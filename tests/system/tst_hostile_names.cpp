@@ -49,10 +49,11 @@ class TestHostileNames : public QObject {
                    outcome.output.contains("/davis_left/ev\\\\x1b[2J"),
                qPrintable(outcome.output + outcome.errors));
     }
-    // A session has no such name.
+    // The recording has no other events, so there is nothing to calibrate.
     const Outcome init = runProgram({"init", bag, "-o", folder.filePath("session.yaml")});
+    VERIFY_OUTCOME(init, 2);
     QVERIFY2(!hasEscapes(init.output + init.errors), qPrintable(init.errors));
-    QVERIFY(!hasEscapes(QString::fromUtf8(readFile(folder.filePath("session.yaml")))));
+    QVERIFY(!QFile::exists(folder.filePath("session.yaml")));
   }
 
   void messages_showEscapes() {
