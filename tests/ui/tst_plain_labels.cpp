@@ -11,9 +11,7 @@
 #include "ui/window/session_files.h"
 
 #include <QHelpEvent>
-#include <QImage>
 #include <QLabel>
-#include <QTextDocument>
 #include <QTextEdit>
 #include <QToolTip>
 
@@ -98,18 +96,6 @@ class TestPlainLabels : public QObject {
       QCOMPARE(toolTip()->textFormat(), Qt::RichText);
     }
     QToolTip::hideText();
-  }
-
-  void richText_opensNoFile() {
-    QImage(300, 200, QImage::Format_RGB32).save(scratch_.filePath("picture.png"));
-    QTextDocument document;
-    document.setHtml(QString("<img src='%1'>").arg(scratch_.filePath("picture.png")));
-    QVERIFY(document.size().height() < 100);
-    for (const QString& name :
-         {scratch_.filePath("picture.png"), "file://" + scratch_.filePath("picture.png")}) {
-      const auto image = document.resource(QTextDocument::ImageResource, QUrl(name)).value<QImage>();
-      QCOMPARE(image.size(), QSize(1, 1));
-    }
   }
 
   void namesOfSensors_areShownAsText() {

@@ -3,11 +3,8 @@
 
 #include <QApplication>
 #include <QEvent>
-#include <QImage>
 #include <QLabel>
 #include <QPointer>
-#include <QTextDocument>
-#include <QUrl>
 #include <QVariant>
 #include <QWidget>
 
@@ -45,12 +42,6 @@ class PlainLabels : public QObject {
   bool rich_ = false;
 };
 
-// Qt opens the file itself if it gets no image.
-QVariant resourceOf(const QUrl& url) {
-  if (url.scheme() == "qrc" || url.scheme() == "data") return {};
-  return QImage(1, 1, QImage::Format_ARGB32);
-}
-
 }  // namespace
 
 void showTextAsPlain(QApplication& application) {
@@ -59,7 +50,6 @@ void showTextAsPlain(QApplication& application) {
   auto* const filter = new PlainLabels(&application);
   filter->setObjectName(name);
   application.installEventFilter(filter);
-  QTextDocument::setDefaultResourceProvider(resourceOf);
 }
 
 void useRichToolTip(QWidget& widget) {

@@ -9,7 +9,7 @@ class QWidget;
 namespace evical::ui {
 
 // Makes plain text the default of all labels and tool tips, also of Qt's own dialogs: a label has rich text only if its
-// format is set to that. Rich text opens no files but those of the program.
+// format is set to that.
 void showTextAsPlain(QApplication& application);
 
 // The tool tip of this widget is rich text of our own, with names escaped.
