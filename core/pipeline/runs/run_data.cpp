@@ -119,8 +119,10 @@ namespace {
 constexpr std::string_view kMagic = "evical run data\n";
 constexpr const char* kChecksum = "result_yaml_checksum";  // the first part
 constexpr const char* kForeign =
-    "run.data is not used: it belongs to another run than result.yaml, or result.yaml was changed later. "
-    "Trajectory, convergence and residuals are missing. Calibrate again to get them, or restore result.yaml";
+    "run.data is not used: it belongs to another run than result.yaml, result.yaml was changed later, or "
+    "run.data is damaged. "
+    "Its trajectory, convergence and residuals are missing. Calibrate again to get them, or restore "
+    "result.yaml";
 
 unsigned long sumOf(std::string_view bytes) {
   return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());

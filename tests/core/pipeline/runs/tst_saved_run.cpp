@@ -269,7 +269,7 @@ class TestSavedRun : public QObject {
     QCOMPARE(saved.run->result.state.cameras[0].time_offset_s, 0.5);
     QVERIFY(saved.run->result.state.imu_in_world_m.control_points.empty());
     QVERIFY2(missingIn(saved).contains("result.yaml was changed later"), qPrintable(missingIn(saved)));
-    QVERIFY(missingIn(saved).contains("Trajectory, convergence and residuals are missing"));
+    QVERIFY(missingIn(saved).contains("Its trajectory, convergence and residuals are missing"));
     QVERIFY(whyRunDataIsForeign(folder / "result.yaml").value_or("").find("changed later") !=
             std::string::npos);
     QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());  // of the tables
