@@ -2,6 +2,7 @@
 
 #include "core/frontend/circle_measurement.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -31,9 +32,23 @@ Line columnOf(const BoardScene& scene, int col) {
   return line;
 }
 
+// Column before the first or after the last one. Asymmetric boards end with a straight one of every second row: turned by half
+// a turn, a larger board has only these circles beyond a part of it.
+Line columnBeyond(const BoardScene& scene, bool first) {
+  const Board& board = scene.board;
+  if (board.type != BoardType::AsymmetricCircles) return columnOf(scene, first ? -1 : board.cols);
+  const int first_row = first ? 1 : 0;
+  Line line{scene, {(first ? -1 : 2 * board.cols) * board.spacing_m, first_row * board.spacing_m}};
+  line.scene.board.type = BoardType::SymmetricCircles;
+  line.scene.board.cols = 1;
+  line.scene.board.rows = (board.rows + 1 - first_row) / 2;
+  line.scene.board.spacing_m = 2.0 * board.spacing_m;
+  return line;
+}
+
 enum class LineState { OutOfView, Absent, Unclear, Present };
 
-// How far a measured circle is from its place in the board's fit, and from its size there.
+// Difference of a measured circle from its place in the board's fit, and from its size there.
 struct Deviation {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   double radius_px = 0.0;
@@ -50,12 +65,19 @@ class ExtentJudge {
  public:
   ExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
               const FrontEndOptions& options)
-      : window_(window), trace_(trace), scene_(scene), options_(options) {
+      : window_(window),
+        trace_(trace),
+        scene_(scene),
+        options_(options),
+        centre_sigma_px_(options.extent.least_sigma_px),
+        radius_sigma_px_(options.extent.least_sigma_px) {
     double centres_px2 = 0.0, radii_px2 = 0.0, radii_px = 0.0, count = 0.0;
     for (const CircleObservation& circle : trace.circles) {
       const auto place = imageOfCircle(trace.motion->ideal_from_board, scene, circle.circle);
       if (!place) continue;
       const Deviation deviation = deviationOf(circle, *place, *trace.motion, trace.report.time_s);
+      const PlaneFlowBasis basis = trace.motion->frame.basis(place->centre_px);
+      information_ += basis.transpose() * basis;
       centres_px2 += 0.5 * deviation.centre_px.squaredNorm();
       radii_px2 += deviation.radius_px * deviation.radius_px;
       radii_px += deviation.radius_px;
@@ -63,8 +85,8 @@ class ExtentJudge {
     }
     if (count == 0.0) return;
     radius_px_ = radii_px / count;
-    radius_sigma_px_ = std::max(kLeast_px, std::sqrt(radii_px2 / count - radius_px_ * radius_px_));
-    centre_sigma_px_ = std::max(kLeast_px, std::sqrt(centres_px2 / count));
+    radius_sigma_px_ = std::max(radius_sigma_px_, std::sqrt(radii_px2 / count - radius_px_ * radius_px_));
+    centre_sigma_px_ = std::max(centre_sigma_px_, std::sqrt(centres_px2 / count));
   }
 
   void judgeRows(LatticeEnds& ends) const {
@@ -74,7 +96,7 @@ class ExtentJudge {
   }
   void judgeColumns(LatticeEnds& ends) const {
     const int cols = scene_.board.cols;
-    count({beyond(columnOf(scene_, -1)), beyond(columnOf(scene_, cols))},
+    count({beyond(columnBeyond(scene_, true)), beyond(columnBeyond(scene_, false))},
           {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
   }
 
@@ -89,9 +111,16 @@ class ExtentJudge {
     return motion;
   }
 
+  // Of a circle's place by the board's fit, per axis: beyond the board, errors of the fit are larger than those of its circles.
+  double placeSigma_px(const Eigen::Vector2d& pixel) const {
+    const PlaneFlowBasis basis = trace_.motion->frame.basis(pixel);
+    const double fit = (basis * information_.ldlt().solve(basis.transpose())).trace();
+    return centre_sigma_px_ * std::sqrt(1.0 + 0.5 * fit);
+  }
+
   // Circles that are where the board's lattice continues, and of the size of its circles, as precisely as its own ones.
   int alike(const Line& line, const BoardMotion& motion) const {
-    constexpr double kSame_sigmas = 4.0;
+    const double sigmas = options_.extent.alike_sigmas;
     int count = 0;
     for (const CircleObservation& circle :
          measureCircles(window_, motion, line.scene, {halfSlot_s()}, options_.tracking)) {
@@ -99,33 +128,32 @@ class ExtentJudge {
       if (!place) continue;
       const Deviation deviation =
           deviationOf(circle, *place, motion, 1e-9 * static_cast<double>(motion.time_ns));
-      count += deviation.centre_px.norm() < kSame_sigmas * centre_sigma_px_ &&
-               std::abs(deviation.radius_px - radius_px_) < kSame_sigmas * radius_sigma_px_;
+      count += deviation.centre_px.norm() < sigmas * placeSigma_px(place->centre_px) &&
+               std::abs(deviation.radius_px - radius_px_) < sigmas * radius_sigma_px_;
     }
     return count;
   }
 
   LineState stateOf(const Line& line, int seen) const {
-    const int expected = expectedCircles(motionOf(line), line.scene, halfSlot_s());
-    const double least = options_.extent.least_line;
-    if (expected < std::max(2.0, least * line.scene.board.pointCount())) return LineState::OutOfView;
-    if (seen >= std::max(2.0, least * expected)) return LineState::Present;
-    return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
+    return stateOf(line, motionOf(line), seen, options_.extent.least_line, 2);
+  }
+  LineState stateOf(const Line& line, const BoardMotion& motion, int seen, double least_share,
+                    int least_circles) const {
+    const int expected = expectedCircles(motion, line.scene, halfSlot_s());
+    const double least = least_circles;
+    if (expected < std::max(least, least_share * line.scene.board.pointCount())) return LineState::OutOfView;
+    if (seen >= std::max(least, least_share * expected)) return LineState::Present;
+    return seen <= (1.0 - options_.extent.least_line) * 0.5 * expected ? LineState::Absent
+                                                                       : LineState::Unclear;
   }
 
   // Discs of the background are on one line by chance now and then. So most of the line must be in view, and there must be
   // three circles of it, if it has as many.
   LineState beyond(const Line& line) const {
-    constexpr double kMost = 0.75;
     const BoardMotion motion = motionOf(line);
-    const int count = line.scene.board.pointCount();
-    const int expected = expectedCircles(motion, line.scene, halfSlot_s());
-    const double least = std::min(3, count), most = kMost * count;
-    if (expected < std::max(least, most)) return LineState::OutOfView;
-    const int seen = alike(line, motion);
-    if (seen >= std::max(least, kMost * expected)) return LineState::Present;
-    const LineState state = stateOf(line, seen);
-    return state == LineState::Present ? LineState::Unclear : state;
+    const ExtentOptions& extent = options_.extent;
+    return stateOf(line, motion, alike(line, motion), extent.least_line_beyond,
+                   std::min(extent.least_circles_beyond, line.scene.board.pointCount()));
   }
 
   // First line of the board in the image, from an edge inwards.
@@ -158,9 +186,9 @@ class ExtentJudge {
   const WindowTrace& trace_;
   const BoardScene& scene_;
   const FrontEndOptions& options_;
-  static constexpr double kLeast_px = 0.1;
-  double centre_sigma_px_ = kLeast_px, radius_sigma_px_ = kLeast_px,
-         radius_px_ = 0.0;  // of the board's own circles
+  double centre_sigma_px_, radius_sigma_px_, radius_px_ = 0.0;  // of the board's own circles
+  Eigen::Matrix<double, 8, 8> information_ =
+      1e-6 * Eigen::Matrix<double, 8, 8>::Identity();  // of the board's fit, in squares of a circle's sigma
 };
 
 }  // namespace

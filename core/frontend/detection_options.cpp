@@ -164,6 +164,16 @@ constexpr std::tuple kExtentFields{
         "least_line", &ExtentOptions::least_line, 0.6, within(0.3, 1.0), "",
         "Smallest share of a row or column in the image for a check, and smallest share of detected circles "
         "in it."},
+    Field{"least_line_beyond", &ExtentOptions::least_line_beyond, 0.75, within(0.3, 1.0), "",
+          "The same shares of a row or column beyond the board: discs of the background can look like a part "
+          "of one."},
+    Field{"least_circles_beyond", &ExtentOptions::least_circles_beyond, 3, within(2, 100), "",
+          "Smallest number of circles of such a line, if it has as many."},
+    Field{"alike_sigmas", &ExtentOptions::alike_sigmas, 4.0, within(1.0, 100.0), "sigma",
+          "Largest deviation of such a circle from its place and size, in units of the spread of the board's "
+          "own circles."},
+    Field{"least_sigma_px", &ExtentOptions::least_sigma_px, 0.1, within(0.0, 10.0), "px",
+          "Smallest value of that spread."},
     Field{"least_views", &ExtentOptions::least_views, 15, within(1, 100000), "",
           "Smallest number of checked views for a report."},
     Field{"largest_share", &ExtentOptions::largest_share, 0.25, within(0.0, 1.0), "",

@@ -128,6 +128,10 @@ struct TrackingOptions {
 struct ExtentOptions {
   int every_windows;
   double least_line;
+  double least_line_beyond;
+  int least_circles_beyond;
+  double alike_sigmas;
+  double least_sigma_px;
   int least_views;
   double largest_share;
 

@@ -14,9 +14,10 @@ using namespace evical::test;
 
 constexpr double kBoardExtentHalfWindow_s = 0.02;
 
-// The session's extent of the existing board: that many rows and columns, from this row and column on.
+// The session's extent of the existing board: that many rows and columns, from this row and column on, or backwards.
 struct Claim {
   int rows, cols, first_row = 0, first_col = 0;
+  bool half_turn = false;
 };
 
 BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0,
@@ -32,6 +33,7 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   claimed.cols = claim.cols;
   Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
   shift.topRightCorner<2, 1>() = moving.board.point_m(claim.first_row, claim.first_col);
+  if (claim.half_turn) shift.diagonal().head<2>().setConstant(-1.0);
   BoardMotion motion = moving.motionAt(0.0);
   motion.ideal_from_board = motion.ideal_from_board * shift;
   motion.ideal_from_board /= motion.ideal_from_board(2, 2);
@@ -85,6 +87,7 @@ class TestBoardExtent : public QObject {
   void lattice_isHeldAgainstTheClaim_data();
   void lattice_isHeldAgainstTheClaim();
   void largerBoards_areLarger();
+  void boardTurnedByHalfATurn_isLarger();
   void symmetricBoard_isJudgedAlike();
   void clutter_isNoLine();
   void discsOfTheBackground_areNoLine();
@@ -139,6 +142,15 @@ void TestBoardExtent::largerBoards_areLarger() {
         QCOMPARE(extent.rows.beyond_seen, rows > 9 ? 1 : 0);
         QCOMPARE(extent.cols.beyond_seen, cols > 4 ? 1 : 0);
       }
+}
+
+// Half of the circles of a column are then beyond one end, and half beyond the other one.
+void TestBoardExtent::boardTurnedByHalfATurn_isLarger() {
+  QCOMPARE(describe(judge(MovingBoard{}, {11, 3, 10, 3, true}).cols), "beyond 1 of 1, missing 0 of 1");
+  QCOMPARE(describe(judge(MovingBoard{}, {9, 3, 10, 3, true}).cols), "beyond 1 of 1, missing 0 of 1");
+  MovingBoard larger;
+  larger.board.cols = 5;
+  QCOMPARE(describe(judge(larger, {11, 4, 10, 4, true}).cols), "beyond 1 of 1, missing 0 of 1");
 }
 
 void TestBoardExtent::symmetricBoard_isJudgedAlike() {
