@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/number.h"
 #include "core/base/plain_text.h"
 #include "core/base/shell_word.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -69,9 +69,8 @@ std::string scriptText(const Batch& batch, const SlurmRequest& request,
                             inScript(ScriptReader::Shell, request.folder.string()));
 }
 
-std::string contentOf(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+std::string trimmedContent(const std::filesystem::path& file) {
+  std::string text = contentOfFile(file);
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
   return text;
 }
@@ -82,7 +81,7 @@ std::optional<std::string> askSlurm(std::vector<std::string> command, const std:
   const std::filesystem::path file = folder / "jobs" / (command.front() + ".txt");
   ChildProcess process({std::move(command), file, 0, -1});
   const ProcessEnd end = process.wait();
-  std::string text = contentOf(file);
+  std::string text = trimmedContent(file);
   if (said != nullptr) *said = text;
   return end.exit_code == 0 ? std::optional(std::move(text)) : std::nullopt;
 }

@@ -9,8 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -24,11 +22,6 @@ bool hasSensorsOf(const CalibrationResult& numbers, const NamedResult& named) {
          numbers.state.further_boards.size() + 1 == named.boards.size();
 }
 
-std::string contentOf(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 constexpr std::string_view kResultHead = "evical_result: 1\n", kTruthHead = "evical_truth: 1\n";
 
 // Adds the parts of run.data that result.yaml does not contain.
@@ -38,7 +31,7 @@ void addRunData(const std::filesystem::path& yaml, Result& result) {
     result.missing.push_back("the trajectory: there is no run.data next to result.yaml");
     return;
   }
-  ReadRunData data = readRunData(file, contentOf(yaml));
+  ReadRunData data = readRunData(file, contentOfFile(yaml));
   result.missing = std::move(data.missing);
   if (!data.has_result) return;
   if (!hasSensorsOf(data.run.result, result.named)) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 
 namespace evical {
@@ -19,6 +21,17 @@ int whyNoPlace(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (std::filesystem::is_directory(status)) return EISDIR;
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? EEXIST : 0;
+}
+
+std::string contentOfFile(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return {};
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::string bytes(error ? 0 : std::min(size, most_bytes), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 }  // namespace evical

@@ -1,9 +1,12 @@
-// Checks of output paths, and their error messages.
+// Checks of paths and their error messages, and the content of files.
 #pragma once
 
 #include "core/base/error.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <string>
 
 namespace evical {
 
@@ -18,5 +21,9 @@ inline bool isThere(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);
 }
+
+// Content of a file, or its first bytes; empty if it cannot be read. A pipe or device has none: opening it could wait forever.
+std::string contentOfFile(const std::filesystem::path& file,
+                          std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 }  // namespace evical

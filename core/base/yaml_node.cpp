@@ -1,5 +1,6 @@
 #include "core/base/yaml_node.h"
 
+#include "core/base/file_places.h"
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/base/option_table.h"
@@ -11,8 +12,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <sstream>
 #include <unordered_map>
@@ -105,11 +104,10 @@ void requirePlain(const YAML::Node& node, const std::string& place) {
 
 YamlNode YamlNode::load(const std::filesystem::path& file) {
   requireText(file);
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  if (!stream || !(content << stream.rdbuf()))
+  const std::string text = contentOfFile(file);
+  if (text.empty())
     throw badInput(file.string(), "is empty or cannot be read", "Check the file and its permissions");
-  return parse(content.str(), file.string());
+  return parse(text, file.string());
 }
 
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {

@@ -231,10 +231,8 @@ std::vector<double> OpencvNode::matrixNumbers() const {
 }
 
 int OpencvNode::side_px() const {
-  constexpr double kLargest_px = 100'000.0;
   const double side_px = number();
-  if (!(side_px >= 1.0 && side_px <= kLargest_px) || side_px != std::floor(side_px))
-    fail("must be a whole number of pixels above 0");
+  if (!isSide_px(side_px)) fail("must be a whole number of pixels above 0");
   return static_cast<int>(side_px);
 }
 

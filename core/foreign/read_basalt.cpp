@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -29,9 +28,8 @@ RigidTransform basaltPoseOf(const JsonNode& node, double unit) {
 }
 
 int sideOf(const JsonNode& node) {
-  constexpr std::int64_t kLargest_px = 100'000;
-  const std::int64_t side_px = node.integer();
-  if (side_px < 1 || side_px > kLargest_px) node.fail("must be a whole number of pixels above 0");
+  const auto side_px = static_cast<double>(node.integer());
+  if (!isSide_px(side_px)) node.fail("must be a whole number of pixels above 0");
   return static_cast<int>(side_px);
 }
 

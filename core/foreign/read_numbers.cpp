@@ -1,13 +1,13 @@
 #include "core/foreign/read_numbers.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <cmath>
 #include <system_error>
 
 namespace evical {
@@ -19,10 +19,9 @@ std::string textOf(const std::filesystem::path& file) {
     throw badInput(file.string(), "does not exist, or is not a file");
   if (std::filesystem::file_size(file, error) > kLargest_bytes || error)
     throw badInput(file.string(), "is too large for a calibration file");
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  if (!stream || !(content << stream.rdbuf())) throw badInput(file.string(), "cannot be read, or is empty");
-  return content.str();
+  std::string text = contentOfFile(file);
+  if (text.empty()) throw badInput(file.string(), "cannot be read, or is empty");
+  return text;
 }
 
 std::vector<std::filesystem::path> filesLike(const std::filesystem::path& folder,
@@ -66,6 +65,11 @@ Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols) {
   node["rows"].integer(rows, rows);
   node["cols"].integer(cols, cols);
   return matrixFrom(node["data"].reals(static_cast<std::size_t>(rows * cols)), rows, cols);
+}
+
+bool isSide_px(double side_px) {
+  constexpr double kLargest_px = 100'000.0;
+  return side_px >= 1.0 && side_px <= kLargest_px && side_px == std::floor(side_px);
 }
 
 CameraIntrinsics lensFrom(CameraModel model, const std::vector<double>& fx_fy_cx_cy,

@@ -32,6 +32,9 @@ Eigen::MatrixXd rowsOf(const YamlNode& node, std::size_t rows, std::size_t cols)
 // A map of rows, cols and data, as in ROS and SVO; throws if it has another shape.
 Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols);
 
+// True for a whole number of pixels that an image may have.
+bool isSide_px(double side_px);
+
 // fx fy cx cy, and distortion in the order of CameraIntrinsics.
 CameraIntrinsics lensFrom(CameraModel model, const std::vector<double>& fx_fy_cx_cy,
                           const std::vector<double>& distortion, Resolution resolution_px);

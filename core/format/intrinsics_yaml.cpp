@@ -1,5 +1,6 @@
 #include "core/format/intrinsics_yaml.h"
 
+#include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
 #include "core/base/trimmed.h"
 #include "core/data/intrinsics_result.h"
@@ -12,8 +13,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -423,13 +422,8 @@ CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std
 
 YamlNode loadIntrinsics(const std::filesystem::path& file) {
   constexpr std::uintmax_t kLargest_bytes = 1 << 16;
-  std::error_code ignored;
-  std::string text;
-  if (std::filesystem::is_regular_file(file, ignored) &&  // opening a pipe waits for its other end
-      std::filesystem::file_size(file, ignored) < kLargest_bytes) {
-    std::ifstream stream(file);
-    text.assign(std::istreambuf_iterator<char>(stream), {});
-  }
+  std::string text = contentOfFile(file, kLargest_bytes);
+  if (text.size() == kLargest_bytes) text.clear();
   const bool ost =
       text.find("[image]") != std::string::npos && text.find("camera matrix") != std::string::npos;
   return ost ? YamlNode::parse(cameraInfoOf(text), file.string()) : YamlNode::load(file);

@@ -1,5 +1,6 @@
 #include "core/pipeline/runs/run_data.h"
 
+#include "core/base/file_places.h"
 #include "core/base/time.h"
 #include "core/data/quantity.h"
 #include "core/pipeline/runs/columns.h"
@@ -9,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -295,19 +294,6 @@ void addParts(const CalibrationRun& run, const TextSink& sink) {
   addPart("observations", run.pass, sink);
 }
 
-constexpr std::uintmax_t kWhole = std::numeric_limits<std::uintmax_t>::max();
-
-std::string bytesOf(const std::filesystem::path& file, std::uintmax_t most) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return {};  // opening a pipe waits for its other end
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::string bytes(error ? 0 : std::min(size, most), '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;
-}
-
 // True for files without a checksum, which older versions wrote. Reads only the first part.
 bool isTiedTo(const std::string& result_yaml, std::string_view content) {
   if (!content.starts_with(kMagic)) return true;
@@ -338,7 +324,7 @@ std::string runData(const CalibrationRun& run) {
 
 ReadRunData readRunData(const std::filesystem::path& file, const std::optional<std::string>& result_yaml) {
   ReadRunData read;
-  const std::string content = bytesOf(file, kWhole);
+  const std::string content = contentOfFile(file);
   if (!content.empty() && result_yaml && !isTiedTo(*result_yaml, content)) {
     read.missing.emplace_back(kForeign);
     return read;
@@ -351,8 +337,8 @@ ReadRunData readRunData(const std::filesystem::path& file, const std::optional<s
 
 std::optional<std::string> whyRunDataIsForeign(const std::filesystem::path& result_file) {
   constexpr std::size_t kFirstParts = std::size_t{1} << 16;
-  const std::string begin = bytesOf(result_file.parent_path() / "run.data", kFirstParts);
-  if (begin.empty() || isTiedTo(bytesOf(result_file, kWhole), begin)) return std::nullopt;
+  const std::string begin = contentOfFile(result_file.parent_path() / "run.data", kFirstParts);
+  if (begin.empty() || isTiedTo(contentOfFile(result_file), begin)) return std::nullopt;
   return kForeign;
 }
 

@@ -12,8 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -22,13 +20,6 @@ namespace evical {
 namespace {
 
 constexpr const char *kRun = "run.yaml", *kData = "run.data", *kLog = "log.txt";
-
-std::string contentOf(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return {};  // opening a pipe waits for its other end
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 // Paths of recordings relative to the folder, which may be moved together with them.
 std::string placesYaml(const std::filesystem::path& folder, const Session& session) {
@@ -150,7 +141,7 @@ class FolderReader {
   explicit FolderReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   SavedRun read() {
-    saved_.log = contentOf(folder_ / kLog);
+    saved_.log = contentOfFile(folder_ / kLog);
     readResult();
     readData();
     readSession();
@@ -178,8 +169,8 @@ class FolderReader {
   }
 
   void readData() {
-    ReadRunData data =
-        readRunData(folder_ / kData, named_ ? std::optional(contentOf(folder_ / kResultFile)) : std::nullopt);
+    ReadRunData data = readRunData(
+        folder_ / kData, named_ ? std::optional(contentOfFile(folder_ / kResultFile)) : std::nullopt);
     if (!data.has_result && !named_) throw CalibrationError(*result_error_);
     if (data.has_result) run_.result = std::move(data.run.result);
     run_.intrinsics = std::move(data.run.intrinsics);

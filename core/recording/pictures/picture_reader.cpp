@@ -1,11 +1,11 @@
 #include "core/recording/pictures/picture_reader.h"
 
+#include "core/base/file_places.h"
 #include "core/format/picture_header.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -14,19 +14,6 @@ namespace {
 
 constexpr std::uintmax_t kLargestPicture_bytes = std::uintmax_t{1} << 28;
 
-std::string fileContent(const std::filesystem::path& path, std::uintmax_t most) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(static_cast<std::size_t>(most), '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
-}
-
-// False for a name in a table that leads to another folder: the table can come from anybody.
-bool isBelow(const std::filesystem::path& name) {
-  return name.is_relative() && std::find(name.begin(), name.end(), "..") == name.end();
-}
-
 // Size of the first existing picture.
 Resolution firstPictureSize(const pictures::PictureList& list) {
   constexpr std::size_t kMostTried = 10;
@@ -34,8 +21,8 @@ Resolution firstPictureSize(const pictures::PictureList& list) {
   for (std::size_t i = 0; i < std::min(list.pictures.size(), kMostTried); ++i) {
     const std::filesystem::path path = list.folder / list.pictures[i].name;
     std::error_code ignored;
-    if (!isBelow(list.pictures[i].name) || !std::filesystem::is_regular_file(path, ignored)) continue;
-    const Resolution size_px = pictureSize(fileContent(path, kHead_bytes));
+    if (!std::filesystem::is_regular_file(path, ignored)) continue;
+    const Resolution size_px = pictureSize(contentOfFile(path, kHead_bytes));
     if (size_px.known()) return size_px;
   }
   return {};
@@ -80,11 +67,6 @@ bool PictureReader::read(Packet& packet) {
 }
 
 bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, Frame& frame) {
-  if (!isBelow(picture.name)) {
-    addFault(stream, FaultKind::Unreadable,
-             fmt::format("{} is outside of the folder; it is left out.", picture.name));
-    return false;
-  }
   const std::filesystem::path path = sources_[stream].list.folder / picture.name;
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
@@ -100,7 +82,7 @@ bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, F
                                      : fmt::format("has {} bytes, too many for a picture", size)));
     return false;
   }
-  const std::string bytes = fileContent(path, size);
+  const std::string bytes = contentOfFile(path, size);
   if (pictureKind(bytes) == PictureKind::None) {
     addFault(stream, bytes.empty() ? FaultKind::Unreadable : FaultKind::Corrupt,
              fmt::format("{} {}; it is left out.", picture.name,
