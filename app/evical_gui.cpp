@@ -49,7 +49,7 @@ struct Arguments {
 };
 
 // Qt aborts if it cannot open the display.
-void sayWhyThereIsNoWindow(QtMsgType type, const QMessageLogContext&, const QString& text) {
+void reportMissingDisplay(QtMsgType type, const QMessageLogContext&, const QString& text) {
   if (type != QtFatalMsg) {
     QTextStream(stderr) << text << '\n';
     return;
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   evical::keepFreedMemory();
   const bool without_display = doWithoutDisplay(argc, argv);
   std::signal(SIGCHLD, SIG_DFL);  // as in the command line program: the exit codes of jobs are needed
-  const QtMessageHandler usual = qInstallMessageHandler(sayWhyThereIsNoWindow);
+  const QtMessageHandler usual = qInstallMessageHandler(reportMissingDisplay);
   QApplication application(argc, argv);
   qInstallMessageHandler(usual);
   std::setlocale(LC_NUMERIC, "C");  // files have decimal points in any locale

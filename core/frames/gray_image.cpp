@@ -108,10 +108,11 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
                    "Copy the recording again, or remove the truncated picture");
   if (layout.to_gray >= 0 && CV_MAT_CN(layout.type) == 1 && (width < 3 || height < 3))
     throw badInput(place, "is too small for a Bayer pattern", "Remove this picture");
-  cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step).clone();
-  // Before the pattern is interpolated.
-  if (layout.type == CV_16UC1 && frame.big_endian != (std::endian::native == std::endian::big))
-    swapBytes(seen);
+  cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step);
+  const bool swapped =
+      layout.type == CV_16UC1 && frame.big_endian != (std::endian::native == std::endian::big);
+  if (swapped || layout.to_gray < 0) seen = seen.clone();
+  if (swapped) swapBytes(seen);  // before the pattern is interpolated
   if (layout.to_gray < 0) return seen;
   cv::Mat gray;
   cv::cvtColor(seen, gray, layout.to_gray);

@@ -134,6 +134,8 @@ constexpr std::tuple kInitialisationFields{
           "Smallest drift of a time offset, in sigmas of its prior, that is a clock's wrong rate."},
     Field{"wrong_clock_sigmas", &InitialisationOptions::wrong_clock_sigmas, 5.0, within(1.0, 1e6), "",
           "Smallest significance of such a drift."},
+    Field{"wrong_clock_share", &InitialisationOptions::wrong_clock_share, 0.3, within(0.01, 1.0), "",
+          "Smallest share of a drift's information by which it is divided, to remove the pull of its prior."},
     Field{"gravity_rate_tolerance", &InitialisationOptions::gravity_rate_tolerance, 0.1, within(0.001, 1.0),
           "", "Largest relative difference of the rates' norm from gravity's if both sensors are exchanged."},
     Field{"exchanged_force_share", &InitialisationOptions::exchanged_force_share, 0.5, within(0.01, 1.0), "",

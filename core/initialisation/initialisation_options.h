@@ -57,6 +57,7 @@ struct InitialisationOptions {
   double noise_unit_ratio;
   double wrong_clock_prior_sigmas;
   double wrong_clock_sigmas;
+  double wrong_clock_share;
   double gravity_rate_tolerance;
   double exchanged_force_share;
   double least_imu_coverage;

@@ -1,4 +1,4 @@
-// How much a packed file may unpack to: a small one could take all memory, or an hour.
+// Limit of what a packed file may unpack to: a small one could take all memory, or an hour.
 #pragma once
 
 #include "core/base/error.h"
@@ -20,7 +20,7 @@ class UnpackingLimit {
     return {std::move(file), file_bytes, std::uint64_t{1} << 28, 100};
   }
 
-  // Of one part in memory: a chunk, a packet or a message.
+  // Limit of one part in memory: a chunk, a packet or a message.
   static std::uint64_t ofPart(std::uint64_t packed_bytes) {
     constexpr std::uint64_t kAlways_bytes = std::uint64_t{1} << 27, kTimes = 100;
     return std::max(kAlways_bytes, kTimes * packed_bytes);

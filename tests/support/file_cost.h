@@ -1,4 +1,4 @@
-// What it costs to read a file from a stranger, in a separate process: a bomb cannot harm the test.
+// Time and memory needed to read a file from a stranger, in a separate process: a bomb cannot harm the test.
 #pragma once
 
 #include <sys/resource.h>
@@ -17,7 +17,7 @@ struct FileCost {
   double processor_s = 0.0, peak_mb = 0.0;
   QString said;  // by the reader, or the message of what it threw
 
-  // Of any file that is refused or read within these limits.
+  // True for a file that is refused or read within these limits.
   bool isBearable() const { return processor_s < 10.0 && peak_mb < 512.0; }
   QString text() const {
     return QStringLiteral("%1 s, %2 MB: %3").arg(processor_s, 0, 'f', 2).arg(peak_mb, 0, 'f', 0).arg(said);

@@ -45,7 +45,7 @@ class MergedStreams {
     StampFilter<Frame> frames{kSampleStamps};
     StampFilter<MeasuredPoint> points{kPointStamps};
     std::optional<std::int64_t> first_ns = {};  // in its own clock; fixed point of clock_scale
-    // Of frames or points whose times cannot be true: their number so far, in place of times, and the last recorded one.
+    // Number of frames or views so far, in place of times that cannot be true, and the last recorded time.
     std::optional<std::int64_t> numbered = {};
     std::int64_t recorded_ns = 0;
     std::uint64_t immeasurable = 0;

@@ -259,12 +259,11 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
 // Drift without the pull of its prior around 0, which is strong where a wrong clock makes the other errors large.
 // `as_weighed`: of the solution, so without what the errors add to the reported variance.
 double driftByData_ppm(double drift_ppm, const QuantityAddress& number,
-                       const UncertaintyEstimate& uncertainty, double prior_ppm) {
-  constexpr double kLeastShare = 0.3;  // of the information that the data hold: less is hardly a measurement
+                       const UncertaintyEstimate& uncertainty, double prior_ppm, double least_share) {
   const std::optional<Eigen::Index> column = columnOf(number, uncertainty.report.columns);
   if (!column) return drift_ppm;
   const double of_prior = uncertainty.as_weighed(*column, *column) / (prior_ppm * prior_ppm);
-  return drift_ppm / std::max(kLeastShare, 1.0 - of_prior);
+  return drift_ppm / std::max(least_share, 1.0 - of_prior);
 }
 
 // Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
@@ -281,7 +280,8 @@ std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const Ca
     const double least_ppm =
         std::max(options.wrong_clock_prior_sigmas * prior_ppm, options.wrong_clock_sigmas * sigma_ppm);
     if (wrong || data.prior.time_offset_drift || !(std::abs(estimated_ppm) > least_ppm)) return;
-    const double drift_ppm = driftByData_ppm(estimated_ppm, number, uncertainty, prior_ppm);
+    const double drift_ppm =
+        driftByData_ppm(estimated_ppm, number, uncertainty, prior_ppm, options.wrong_clock_share);
     const double pace = 1.0 + 1e-6 * drift_ppm;
     wrong = QualityWarning{
         fmt::format("the clocks of {} and {} differ by {:.2g} % in their rates, others by less than "

@@ -41,11 +41,8 @@ void chooseUnit(double first, double last, TimeScale& time) {
 // Another unit if the usual one gives a rate that no camera has. `seen` has the pixels.
 std::string correctUnit(double first, double last, std::uint64_t rows, const SeenTimes& seen,
                         TimeScale& time) {
-  struct Unit {
-    const char* name;
-    double ns;
-  };
-  constexpr std::array<Unit, 4> kUnits{{{"s", 1e9}, {"us", 1e3}, {"ms", 1e6}, {"ns", 1.0}}};
+  constexpr std::array kUnits_ns = {1e9, 1e3, 1e6, 1.0};
+  const auto nameOf = [](double unit_ns) { return timeUnitName(std::llround(unit_ns)); };
   const double usual_ns = time.is_real ? time.factor_ns : static_cast<double>(time.unit_ns);
   const auto isPlausible = [&](double unit_ns) {
     SeenTimes times = seen;
@@ -54,16 +51,15 @@ std::string correctUnit(double first, double last, std::uint64_t rows, const See
     return !whyImplausible(StreamType::Events, times);
   };
   if (rows < 2 || !(last > first) || isPlausible(usual_ns)) return {};
-  const auto* const usual = std::ranges::find(kUnits, usual_ns, &Unit::ns);
   // First units in which the recording is not very short.
   for (const double shortest_ns : {0.5e9, 0.0}) {
-    for (const Unit& unit : kUnits) {
-      const bool other = unit.ns != usual_ns && (time.is_real || unit.ns <= 1e6);
-      if (!other || unit.ns * (last - first) < shortest_ns || !isPlausible(unit.ns)) continue;
-      time.factor_ns = unit.ns;
-      if (!time.is_real) time.unit_ns = static_cast<std::int64_t>(unit.ns);
+    for (const double unit_ns : kUnits_ns) {
+      const bool other = unit_ns != usual_ns && (time.is_real || unit_ns <= 1e6);
+      if (!other || unit_ns * (last - first) < shortest_ns || !isPlausible(unit_ns)) continue;
+      time.factor_ns = unit_ns;
+      if (!time.is_real) time.unit_ns = static_cast<std::int64_t>(unit_ns);
       return fmt::format("Times are read as {}: in {}, the usual unit, no event camera has this rate.",
-                         unit.name, usual == kUnits.end() ? "another" : usual->name);
+                         nameOf(unit_ns), nameOf(usual_ns));
     }
   }
   return {};

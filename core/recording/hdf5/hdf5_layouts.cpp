@@ -114,12 +114,11 @@ class TableLayoutFinder {
       if (rank >= 3) addFrames(dataset);
       if (isPartOfAStream(dataset)) incomplete_.insert(dataset.folder());
     }
-    std::vector<std::string>& problems = problems_;
     for (const std::string& path : list_.elsewhere)
-      problems.push_back(
+      problems_.push_back(
           fmt::format("The content of {} is in another file, which is not opened; it is left out.", path));
     for (const std::string& path : list_.damaged)
-      problems.push_back(fmt::format("{} is damaged; its content is left out.", path));
+      problems_.push_back(fmt::format("{} is damaged; its content is left out.", path));
     const auto isReadable = [](const FoundStream& stream) {
       return stream.events || stream.imu || stream.frames;
     };
@@ -130,8 +129,8 @@ class TableLayoutFinder {
                                 [&](const FoundStream& stream) { return names.contains(stream.info.name); }),
                  found_.end());
     for (const std::string& folder : incomplete_)
-      problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
-                                     folder.empty() ? "The root" : withoutSlash(folder)));
+      problems_.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
+                                      folder.empty() ? "The root" : withoutSlash(folder)));
     return {std::move(found_), std::move(problems_)};
   }
 

@@ -18,7 +18,7 @@ using namespace evical::test;
 
 namespace {
 
-// What a language would run if the text became code: each creates the file `canary`.
+// Code that a language would run if the text became code: each creates the file `canary`.
 const std::string kPython = "open('canary','w')", kShell = "touch canary",
                   kOctave = "fclose(fopen('canary','w'))";
 
@@ -207,7 +207,7 @@ class TestExportTexts : public QObject {
     QVERIFY(!QFile::exists(folder.filePath("canary")) && !QFile::exists(folder.path() + "/../canary"));
   }
 
-  // The text reads back as it was, as far as its characters are visible.
+  // The text reads back unchanged, as far as its characters are visible.
   void quotes_keepTheText() {
     for (const auto& [what, text] : kTexts)
       for (const Language language : {Language::Yaml, Language::Json}) {

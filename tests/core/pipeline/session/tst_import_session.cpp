@@ -234,7 +234,7 @@ class TestImportSession : public QObject {
     QVERIFY_THROWS_EXCEPTION(CalibrationError, readIntrinsicsFile(file, "left", ""));
   }
 
-  // Of each layout that is read as YAML; those of others are rows of tst_lens_files.
+  // Files of each layout that is read as YAML; those of others are rows of tst_lens_files.
   void implausibleLenses_areRefused_data() {
     QTest::addColumn<QString>("content");
     const char* const kRos =
