@@ -77,6 +77,26 @@ class TestCheckCommand : public QObject {
              qPrintable(outcome.output));
   }
 
+  // result.yaml was changed after run.data was written. The check of a recording with itself ends early.
+  void resultOfAnotherRun_isNamedByAllWhoReadIt() {
+    QDir().mkpath(path("edited"));
+    QVERIFY(QFile::copy(result() + "/run.data", path("edited/run.data")));
+    writeFile(path("edited/result.yaml"), readFile(result() + "/result.yaml") + "# by hand\n");
+    const auto errorsOf = [&](const QStringList& arguments) { return runProgram(arguments).errors; };
+    for (const QString& folder : {path("edited"), result()}) {
+      const bool edited = folder != result();
+      const QString named = edited ? "warning: " + folder + "/result.yaml: run.data is not used: it belongs"
+                                   : QString("run.data is not used");
+      for (const QStringList& arguments :
+           {QStringList{"check", folder, recording()} + kCoarse,
+            QStringList{"compare", folder, simulated("short") + "/truth.yaml"},
+            QStringList{"export", folder, "--to", "kalibr", "-o", path("exported")}}) {
+        const QString errors = errorsOf(arguments);
+        QVERIFY2(errors.contains(named) == edited, qPrintable(arguments.join(' ') + ": " + errors));
+      }
+    }
+  }
+
   void cannotTell_endsWith4AndSaysWhatToDo() {
     const Outcome outcome = runProgram({"check", result(), simulated("second") + "/session.yaml", "--set",
                                         "check.matters_translation_mm=0.5"});

@@ -247,7 +247,7 @@ void BagSource::separatePublishers() {
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     const Topic& topic = topics_[i].topic;
     const bool read = contentOf(topic.type, topic.md5, topic.definition) != Content::Other;
-    if (read && !publishers_[i].empty()) nodes[topic.name + ' ' + topic.type].insert(publishers_[i]);
+    if (read) nodes[topic.name + ' ' + topic.type].insert(publishers_[i]);
   }
   std::erase_if(nodes, [](const auto& of_topic) { return of_topic.second.size() < 2; });
   if (nodes.empty()) return;
@@ -279,7 +279,8 @@ void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::
   topics_.push_back({{std::string(topic), std::string(data.type), std::string(data.md5),
                       std::string(data.definition), Serialization::Ros1},
                      0});
-  publishers_.emplace_back(data.publisher);
+  publishers_.emplace_back(data.publisher.empty() ? fmt::format("connection {}", header.connection)
+                                                  : std::string(data.publisher));
 }
 
 // u32 connection, u32 messages, ...

@@ -201,17 +201,21 @@ void TestRosbagReader::twoConnectionsOfATopic_areOneStream() {
 
 void TestRosbagReader::publishersInTurn_areTwoStreams_data() {
   QTest::addColumn<bool>("in_turn");
-  QTest::newRow("in turn") << true;
-  QTest::newRow("restarted") << false;
+  QTest::addColumn<bool>("named");
+  QTest::newRow("in turn") << true << true;
+  QTest::newRow("restarted") << false << true;
+  QTest::newRow("in turn, without names") << true << false;
+  QTest::newRow("restarted, without names") << false << false;
 }
 
 void TestRosbagReader::publishersInTurn_areTwoStreams() {
   QFETCH(bool, in_turn);
+  QFETCH(bool, named);
   constexpr int kMessages = 12;
   BagBuilder bag;
   const std::uint32_t nodes[] = {bag.addEvents("/events"), bag.addEvents("/events")};
-  bag.setPublisher(nodes[0], "/left");
-  bag.setPublisher(nodes[1], "/right");
+  if (named) bag.setPublisher(nodes[0], "/left");
+  if (named) bag.setPublisher(nodes[1], "/right");
   for (int i = 0; i < kMessages; ++i) {
     const std::int64_t time_ns = kRosbagReaderStart_ns + i * std::int64_t{1'000'000};
     bag.message(nodes[in_turn ? i % 2 : i / (kMessages / 2)], time_ns,
@@ -220,7 +224,9 @@ void TestRosbagReader::publishersInTurn_areTwoStreams() {
   const Contents contents = readAll(folder_.write("publishers.bag", bag.finished()));
   QCOMPARE(contents.streams.size(), std::size_t{in_turn ? 2U : 1U});
   QCOMPARE(contents.eventCount(), std::size_t{48});
-  QCOMPARE(contents.streams[0].name, std::string(in_turn ? "/events of /left" : "/events"));
+  QCOMPARE(contents.streams[0].name, std::string(!in_turn ? "/events"
+                                                 : named  ? "/events of /left"
+                                                          : "/events of connection 0"));
   QCOMPARE(contents.hasFault(FaultKind::Metadata), in_turn);
 }
 
