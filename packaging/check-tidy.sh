@@ -3,8 +3,10 @@
 #   packaging/check-tidy.sh                    all sources
 #   packaging/check-tidy.sh SOURCE...          these sources
 #   packaging/check-tidy.sh --changed [BASE]   sources that differ from commit BASE, or include a header that differs
-# BASE is by default $EVICAL_BASE, or the branch's merge base with its upstream; on a plain clone of main, the state one day before
-# the last commit. EVICAL_TIDY_TIMES=1 prints the time of each unit.
+#   packaging/check-tidy.sh --recent           the same from the state one day before the last commit, for 6 minutes: those that
+#                                              differ come first
+# BASE is by default $EVICAL_BASE, or the branch's merge base with its upstream. packaging/nightly.sh checks all sources.
+# EVICAL_TIDY_TIMES=1 prints the time of each unit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -16,27 +18,26 @@ if [ "$version" != 14 ]; then
 fi
 
 default_base() {
-  local base newest
   if [ -n "${EVICAL_BASE:-}" ] && git rev-parse -q --verify "$EVICAL_BASE^{commit}" >/dev/null; then
     echo "$EVICAL_BASE"
-    return
+  else
+    git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD
   fi
-  base=$(git merge-base HEAD '@{upstream}' 2>/dev/null) || base=
-  if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ]; then
-    newest=$(git log -1 --format=%ct)
-    base=$(git rev-list -1 --before=$((newest - 86400)) HEAD)
-  fi
-  echo "$base"
 }
 
 cmake --fresh --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
-if [ "${1:-}" = --changed ]; then
-  base=${2:-$(default_base)}
-  if [ -n "$base" ]; then
-    echo "clang-tidy: sources that differ from $(git log -1 --format='%h of %cs' "$base")"
-    set -- --changed "$base"
-  else
-    shift "$#"
-  fi
+limit=()
+case "${1:-}" in
+  --changed) base=${2:-$(default_base)} ;;
+  --recent)
+    base=$(git rev-list -1 --before=$(($(git log -1 --format=%ct) - 86400)) HEAD)
+    limit=(--limit 360)
+    ;;
+esac
+if [ -n "${base:-}" ]; then
+  echo "clang-tidy: sources that differ from $(git log -1 --format='%h of %cs' "$base")"
+  set -- --changed "$base" "${limit[@]}"
+elif [ "${1:-}" = --recent ]; then # the history is shorter
+  set -- "${limit[@]}"
 fi
 exec python3 packaging/tidy_groups.py build/tidy "$@"

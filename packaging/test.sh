@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
-# clang-tidy on changed sources, and the tests, with --all also those of tests/slow_tests.txt, like CI. At the end it prints
-# wall time and processor time of each step. Fails if a build without hits in ccache needed much more processor time than its budget.
+# clang-tidy on the sources that differ from the upstream branch, and the tests. With --all, like CI: clang-tidy on recently changed
+# sources, and also the tests of tests/slow_tests.txt. At the end it prints wall time and processor time of each step. Fails if a build without hits in ccache needed much more processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case "${1:-}" in
@@ -100,7 +100,7 @@ rm -f build/ccache.log
 CCACHE_STATSLOG=$PWD/build/ccache.log step build cmake --build --preset ci
 build_cs=$last_processor_cs
 step "build budget" check_build_budget
-step clang-tidy packaging/check-tidy.sh --changed
+step clang-tidy packaging/check-tidy.sh "$([ "$all" = --all ] && echo --recent || echo --changed)"
 step tests run_tests
 step "real-time tests" packaging/realtime-tests.sh
 # Processor time of a calibration's stages.

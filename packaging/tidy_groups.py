@@ -1,7 +1,8 @@
-"""Runs clang-tidy over core, app, ui and python: python3 packaging/tidy_groups.py BUILD [SOURCE...] [--changed BASE].
+"""Runs clang-tidy over core, app, ui and python: python3 packaging/tidy_groups.py BUILD [SOURCE...] [--changed BASE] [--limit S].
 
 BUILD is a folder that CMake has configured with EVICAL_UNITY=OFF, so that it lists every source. Nothing needs to be compiled in it.
---changed checks the sources that differ from commit BASE, and those that include a header that differs.
+--changed checks the sources that differ from commit BASE, then those that include a header that differs. After S seconds,
+no further sources are begun.
 
 Most of clang-tidy's time goes into the headers of Eigen, Ceres, Qt and VTK, which it reads again for every source. Therefore the
 sources of a folder are checked as one unit that includes them. A source that does not compile in its unit is checked alone. GCC's
@@ -70,10 +71,11 @@ def git(*arguments):
 
 
 def changed_since(base, sources):
-    """The sources that differ from a commit in the working tree, or include a header that differs."""
+    """The sources that differ from a commit in the working tree, and those that only include a header that differs."""
     changed = set(git("diff", "--name-only", base)) | set(git("ls-files", "--others", "--exclude-standard"))
+    own = [source for source in sources if os.path.relpath(source, ROOT) in changed]
     if changed & set(ALL_CHANGE):
-        return sources
+        return own, sorted(set(sources) - set(own))
     files = git("ls-files", "--cached", "--others", "--exclude-standard", "--", *FOLDERS)
     includers = collections.defaultdict(set)
     for file in files:
@@ -86,7 +88,7 @@ def changed_since(base, sources):
         if file not in reached:
             reached.add(file)
             open_ends.extend(includers[file])
-    return [source for source in sources if os.path.relpath(source, ROOT) in reached]
+    return own, [source for source in sources if os.path.relpath(source, ROOT) in reached - changed]
 
 
 class Checker:
@@ -139,6 +141,7 @@ def main():
     parser.add_argument("build", type=Path)
     parser.add_argument("sources", nargs="*")
     parser.add_argument("--changed", metavar="BASE")
+    parser.add_argument("--limit", metavar="S", type=float, default=float("inf"))
     asked = parser.parse_args()
     entries = [entry for entry in json.loads((asked.build / "compile_commands.json").read_text())
                if entry["file"].startswith(CHECKED) and entry["file"].endswith(".cpp") and "_autogen" not in entry["file"]]
@@ -155,17 +158,23 @@ def main():
         if unknown:
             parser.error(f"not built: {', '.join(sorted(unknown))}")
         sources = sorted(wanted)
-    elif asked.changed:
-        sources = changed_since(asked.changed, sources)
     units = units_of(sources)
+    if asked.changed and not asked.sources:
+        units = [unit for part in changed_since(asked.changed, sources) for unit in units_of(part)]
     checker = Checker(asked.build.resolve() / "tidy", flags)
     begin = time.monotonic()
+
+    def check(at):
+        late = time.monotonic() - begin > asked.limit
+        return None if late else checker.check(f"unit_{at}", units[at])
+
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        content = list(pool.map(lambda at: checker.check(f"unit_{at}", units[at]), range(len(units))))
+        content = list(pool.map(check, range(len(units))))
     spent = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"clang-tidy: {len(sources)} sources in {len(units)} units, {time.monotonic() - begin:.0f} s "
+    checked = sum(len(unit) for unit, result in zip(units, content) if result is not None)
+    print(f"clang-tidy: {checked} sources of {sum(map(len, units))} in {len(units)} units, {time.monotonic() - begin:.0f} s "
           f"({spent.ru_utime + spent.ru_stime:.0f} s of CPU), {len(checker.problems)} problems.")
-    return 0 if all(content) else 1
+    return 1 if False in content else 0
 
 
 if __name__ == "__main__":
