@@ -69,12 +69,13 @@ Bridges bridges(const std::vector<MovingPose>& reference_views, const std::vecto
     found.reference_from_camera.push_back(inverse(of_reference.after(half_gap_s)) *
                                           of_camera.after(-half_gap_s));
     const double middle_s = of_reference.time_s + half_gap_s, camera_middle_s = middle_s - time_offset_s;
-    const auto before = viewsBetween(reference_views, middle_s - longest_s, middle_s) -
-                        viewsBetween(camera_views, camera_middle_s - longest_s, camera_middle_s),
-               after = viewsBetween(reference_views, middle_s, middle_s + longest_s) -
-                       viewsBetween(camera_views, camera_middle_s, camera_middle_s + longest_s);
-    found.to_camera += before > 0 && after < 0;
-    found.to_reference += before < 0 && after > 0;
+    // Views of the reference less those of the camera, on both sides of the gap.
+    const auto surplus_before = viewsBetween(reference_views, middle_s - longest_s, middle_s) -
+                                viewsBetween(camera_views, camera_middle_s - longest_s, camera_middle_s),
+               surplus_after = viewsBetween(reference_views, middle_s, middle_s + longest_s) -
+                               viewsBetween(camera_views, camera_middle_s, camera_middle_s + longest_s);
+    found.to_camera += surplus_before > 0 && surplus_after < 0;
+    found.to_reference += surplus_before < 0 && surplus_after > 0;
   };
   auto reference = reference_views.begin(), camera = camera_views.begin();  // the next of each
   bool was_of_camera = false;

@@ -176,18 +176,19 @@ void Batch::solveStage(ParameterStages stage, int index, const SolverLimits& lim
     context_.throwIfStopped();
     problem_.build(stage, weights_);
     tellReleased(reporter);
-    const SolverEnd end =
+    const SolverSummary summary =
         solveNormalEquations(problem_, limits, context_.stop, memory_,
                              [&](const SolverIteration& iteration) { return reporter.report(iteration); });
-    if (!end.failure.empty()) {
-      throw calibrationFailed("optimisation", "the batch could not be solved: " + end.failure,
+    if (!summary.failure.empty()) {
+      throw calibrationFailed("optimisation", "the batch could not be solved: " + summary.failure,
                               "Check the noise densities, the board's size and the camera's intrinsics");
     }
-    context_.progress.log(LogLevel::Debug,
-                          fmt::format("stage {} round {}: {} iterations, cost {:.6e} to {:.6e}", index + 1,
-                                      round + 1, end.iterations, end.first_cost, end.last_cost));
+    context_.progress.log(
+        LogLevel::Debug,
+        fmt::format("stage {} round {}: {} iterations, cost {:.6e} to {:.6e}", index + 1, round + 1,
+                    summary.iterations, summary.initial_cost, summary.final_cost));
     if (problem_.segmentDrift_knots() <= options_.segment_drift) {
-      solution_.converged = end.converged;
+      solution_.converged = summary.converged;
       return;
     }
   }

@@ -34,7 +34,7 @@ class Solver {
     equations_.resize(columns_);
   }
 
-  SolverEnd run(const std::function<bool(const SolverIteration&)>& after);
+  SolverSummary run(const std::function<bool(const SolverIteration&)>& callback);
 
  private:
   enum class Outcome { Taken, Rejected, Invalid, Converged };
@@ -152,29 +152,29 @@ Solver::Outcome Solver::step(SolverIteration& iteration) {
   return Outcome::Rejected;
 }
 
-SolverEnd Solver::run(const std::function<bool(const SolverIteration&)>& after) {
-  SolverEnd end;
+SolverSummary Solver::run(const std::function<bool(const SolverIteration&)>& callback) {
+  SolverSummary summary;
   assembleHere();
   scaleColumns();
-  end.first_cost = equations_.cost;
+  summary.initial_cost = equations_.cost;
   SolverIteration iteration{equations_.cost, gradientMaxNorm(), 0.0};
   int invalid_steps = 0;
   while (true) {
-    end.last_cost = equations_.cost;
-    if (!std::isfinite(equations_.cost)) end.failure = "the cost is not a number";
-    if (invalid_steps > kMostInvalidSteps) end.failure = "no damping makes the normal equations solvable";
-    if (!end.failure.empty() || !after(iteration)) return end;
-    if (end.iterations >= limits_.most_iterations) return end;
-    end.converged = iteration.gradient_max_norm <= kGradientTolerance || radius_ <= kLeastRadius;
-    if (end.converged) return end;
-    ++end.iterations;
+    summary.final_cost = equations_.cost;
+    if (!std::isfinite(equations_.cost)) summary.failure = "the cost is not a number";
+    if (invalid_steps > kMostInvalidSteps) summary.failure = "no damping makes the normal equations solvable";
+    if (!summary.failure.empty() || !callback(iteration)) return summary;
+    if (summary.iterations >= limits_.max_iterations) return summary;
+    summary.converged = iteration.gradient_max_norm <= kGradientTolerance || radius_ <= kLeastRadius;
+    if (summary.converged) return summary;
+    ++summary.iterations;
     iteration.step_norm = 0.0;
     const Outcome outcome = step(iteration);
-    end.converged = outcome == Outcome::Converged;
-    if (end.converged) {
-      end.last_cost = iteration.cost;
-      after(iteration);
-      return end;
+    summary.converged = outcome == Outcome::Converged;
+    if (summary.converged) {
+      summary.final_cost = iteration.cost;
+      callback(iteration);
+      return summary;
     }
     invalid_steps = outcome == Outcome::Invalid ? invalid_steps + 1 : 0;
     if (outcome == Outcome::Taken) iteration.gradient_max_norm = gradientMaxNorm();
@@ -184,10 +184,10 @@ SolverEnd Solver::run(const std::function<bool(const SolverIteration&)>& after) 
 
 }  // namespace
 
-SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
-                               const std::stop_token& stop, SolverMemory& memory,
-                               const std::function<bool(const SolverIteration&)>& after) {
-  return Solver(problem, limits, stop, memory).run(after);
+SolverSummary solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
+                                   const std::stop_token& stop, SolverMemory& memory,
+                                   const std::function<bool(const SolverIteration&)>& callback) {
+  return Solver(problem, limits, stop, memory).run(callback);
 }
 
 }  // namespace evical

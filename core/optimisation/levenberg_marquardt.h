@@ -22,17 +22,17 @@ struct SolverIteration {
 
 // It ends with a step of at most this length, or with a change of the cost of at most this share.
 struct SolverLimits {
-  int most_iterations = 0;
+  int max_iterations = 0;
   double step_sigmas = 0.0;  // of all unknowns together, so that each is nearer to the optimum
   double cost_change = 0.0;
   int threads = 1;
 };
 
-struct SolverEnd {
+struct SolverSummary {
   bool converged = false;
   std::string failure;  // empty on success
   int iterations = 0;
-  double first_cost = 0.0, last_cost = 0.0;
+  double initial_cost = 0.0, final_cost = 0.0;
 };
 
 // Memory of successive solutions: tens of megabytes, which take long to get from the system.
@@ -41,10 +41,10 @@ struct SolverMemory {
   BandCholesky factor{0, 0};
 };
 
-// Optimises the unknowns of a built problem. `after` is called with the state at the start and after each
+// Optimises the unknowns of a built problem. `callback` is called with the state at the start and after each
 // step, accepted or not; it ends the solution by returning false. Throws Cancelled when asked to stop.
-SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
-                               const std::stop_token& stop, SolverMemory& memory,
-                               const std::function<bool(const SolverIteration&)>& after);
+SolverSummary solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
+                                   const std::stop_token& stop, SolverMemory& memory,
+                                   const std::function<bool(const SolverIteration&)>& callback);
 
 }  // namespace evical

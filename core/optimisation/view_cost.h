@@ -1,25 +1,37 @@
-// Zero when the measured ellipse centres of one view are those of the projected circles, displaced by the edge localisation
-// bias along their image motion (docs/maths.md, 9.1):
-//   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_localisation_bias.h) - measured ],
-//   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
-//     + exposure_share (exposure - mean exposure),
-//   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
-// L the Cholesky factor of the centre's covariance, ideal pixels. The residuals of the view are then whitened
-// for the displacement field of its circles (displacement_field.h), and each circle's residual is
-// shortened so that its square is Huber's loss.
+// Cost of the measured ellipse centres of one view: two residuals for each circle (docs/maths.md, 9.1; eKalibr-Inertial,
+// arXiv 2509.05923). Corners are circles of radius 0.
 //
-// With free intrinsics, the prediction is that of free_intrinsics.h.
+//   r_i = L_i^-1 [ centre(camera_from_world(t_i), circle i) + lead_i - measured_i ]
+//   t_i = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
+//         + exposure_share (exposure - mean exposure)
+//   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1
 //
-// Blocks: rotation control points (x y z w) and position control points [m] of the view's segments, then
-// reference_from_camera rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge
-// localisation bias [px] and that of slow edges [px], the board's scale, stretch, two curvatures and twist
-// [1/m] (BoardState; its circles keep the radius that was given and the plane's normal, which changes their
-// centres by far less than could be seen), the exposure's share, world_from_board's rotation (x y z w) and
-// translation [m]; where intrinsics are free also those, fx fy cx cy d0..d4. Without unit. Quaternion blocks
-// as in so3_manifold.h.
+// L_i is the Cholesky factor of the centre's covariance in ideal pixels; lead_i is the edge localisation bias along the image motion
+// (edge_localisation_bias.h), from the measured velocity, so that it is linear in its parameters. The residuals of the view are
+// whitened for the displacement field of its circles (displacement_field.h). Then each circle's residual is shortened, so that
+// its square is Huber's loss. With free intrinsics, the prediction is that of free_intrinsics.h.
 //
-// v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
-// the lead linear.
+// Parameter blocks, in this order; quaternions are x y z w, with the tangent space of so3_manifold.h:
+//   size  unit  parameter
+//   4     -     rotation control points of the view's segments, one block each
+//   3     m     position control points of the view's segments, one block each
+//   4     -     reference_from_camera, rotation
+//   3     m     reference_from_camera, translation
+//   1     s     time offset
+//   1     ppm   time offset drift
+//   1     us    line delay
+//   1     px    edge localisation bias
+//   1     px    additional bias of slow edges
+//   1     -     board: scale
+//   1     -     board: stretch
+//   1     1/m   board: curvature of rows
+//   1     1/m   board: curvature of columns
+//   1     1/m   board: twist
+//   1     -     share of the exposure
+//   4     -     world_from_board, rotation
+//   3     m     world_from_board, translation
+//   9     -     fx fy cx cy [px], d0 ... d4, if intrinsics are free
+// Bending moves the circles. Their radius and the plane's normal stay, since the change of the centres by these is negligible.
 //
 // Control points and the camera's pose in the rig move the circles only through the camera's pose at their times. So the
 // derivatives are by that pose at one to three times (core/geometry/pose_times.h), and the products of all circles go to the
@@ -42,25 +54,29 @@
 
 namespace evical {
 
+// One measured circle. Its time is on the camera's clock; the next three numbers are the derivatives of the time on the
+// reference's clock by the drift, the line delay and the share of the exposure.
 struct CircleMeasurement {
-  double time_s = 0.0;         // camera clock
-  double by_drift_s = 0.0;     // how far each ppm of its drift moves that
-  double by_line_s = 0.0;      // and each microsecond of line delay
-  double by_exposure_s = 0.0;  // and all of what the frame was exposed longer than others
-  Eigen::Vector2d on_board_m, centre_px;
+  double time_s = 0.0;
+  double by_drift_s = 0.0;       // per ppm
+  double by_line_s = 0.0;        // per us
+  double by_exposure_s = 0.0;    // exposure of the frame less the mean one
+  Eigen::Vector2d on_board_m;    // centre on the board
+  Eigen::Vector2d centre_px;     // measured, ideal pixels
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLocalisationBiasEffect lead;
   Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
   double rho = 0.0;                                          // of DisplacementField
-  int point = 0, place = 0;  // index on the board; cell of the image (placeOf)
+  int point = 0;                                             // index on the board
+  int place = 0;                                             // cell of the image (placeOf)
 };
 
 // Data that all circles of one camera share.
 struct CircleModel {
-  CameraIntrinsics camera;  // that was seen with
-  double radius_m = 0.0;
-  double huber_sigma = 0.0;
-  FieldModes modes;  // of the displacement; none without one
+  CameraIntrinsics camera;   // those of the detection, to which ideal pixels refer
+  double radius_m = 0.0;     // 0 for corners
+  double huber_sigma = 0.0;  // threshold of the loss
+  FieldModes modes;          // of the displacement field; none without one
   bool free_intrinsics = false;
 };
 

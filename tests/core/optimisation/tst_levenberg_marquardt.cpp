@@ -84,7 +84,7 @@ Solved byCeres(CalibrationProblem& problem, const SolverLimits& limits) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // without additional threads
-  options.max_num_iterations = limits.most_iterations;
+  options.max_num_iterations = limits.max_iterations;
   options.function_tolerance = limits.cost_change;
   options.gradient_tolerance = options.parameter_tolerance = 1e-12;
   options.max_num_consecutive_invalid_steps = 20;
@@ -100,12 +100,12 @@ Solved byCeres(CalibrationProblem& problem, const SolverLimits& limits) {
 Solved byOurs(CalibrationProblem& problem, const SolverLimits& limits) {
   Solved solved;
   SolverMemory memory;
-  const SolverEnd end =
+  const SolverSummary summary =
       solveNormalEquations(problem, limits, {}, memory, [&](const SolverIteration& iteration) {
         solved.costs.push_back(iteration.cost);
         return true;
       });
-  solved.converged = end.converged && end.failure.empty();
+  solved.converged = summary.converged && summary.failure.empty();
   return solved;
 }
 
@@ -234,10 +234,10 @@ class TestLevenbergMarquardt : public QObject {
     problem.build(lastStage(test.options), givenWeights(test.rig.input));
     SolverMemory memory;
     int iterations = 0;
-    const SolverEnd end = solveNormalEquations(problem, {30, 0.0, 1e-10, 1}, {}, memory,
-                                               [&](const SolverIteration&) { return ++iterations < 2; });
+    const SolverSummary summary = solveNormalEquations(
+        problem, {30, 0.0, 1e-10, 1}, {}, memory, [&](const SolverIteration&) { return ++iterations < 2; });
     QCOMPARE(iterations, 2);
-    QVERIFY(!end.converged && end.failure.empty() && end.last_cost < end.first_cost);
+    QVERIFY(!summary.converged && summary.failure.empty() && summary.final_cost < summary.initial_cost);
   }
 };
 
