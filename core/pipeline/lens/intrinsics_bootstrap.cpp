@@ -24,7 +24,7 @@ constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
 
 // Generic equidistant lenses of one parameter: wide, which suits most boards; no distortion; fisheye; and one
 // still wider if a wide model is requested.
-std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px, bool wide_model) {
+std::vector<CameraIntrinsics> genericLenses(Resolution resolution_px, bool wide_model) {
   const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
   CameraIntrinsics lens;
   lens.resolution_px = resolution_px;
@@ -45,7 +45,7 @@ bool isPlane(const CameraIntrinsics& lens) {
 }
 
 // Detections in a slice with one lens.
-struct Look {
+struct SliceDetections {
   std::vector<SensorView> views;
   std::size_t circles() const {
     std::size_t count = 0;
@@ -54,9 +54,9 @@ struct Look {
   }
 };
 
-class Pilot {
+class IntrinsicsBootstrap {
  public:
-  Pilot(const Session& session, const RunContext& context)
+  IntrinsicsBootstrap(const Session& session, const RunContext& context)
       : session_(session),
         context_(context),
         options_(*session.options.intrinsics),
@@ -64,7 +64,7 @@ class Pilot {
         period_ns_(nanosecondsFrom(options_.first_look_period_s)),
         recording_(session),
         resolution_px_(recording_.resolution_px(0)),
-        lenses_(plainLenses(resolution_px_, options_.model >= IntrinsicsModel::DoubleSphere)) {
+        lenses_(genericLenses(resolution_px_, options_.model >= IntrinsicsModel::DoubleSphere)) {
     const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
     slice_begin_ns_ = recording_.start_ns() + nanosecondsFrom(begin_s);
     if (session.time_range_s) end_ns_ = recording_.start_ns() + nanosecondsFrom(session.time_range_s->back());
@@ -82,7 +82,7 @@ class Pilot {
         consume(event);
       }
     }
-    lookAtSlice();
+    detectInSlice();
     solve();
     return result();
   }
@@ -90,12 +90,12 @@ class Pilot {
  private:
   bool enough() const {
     return slices_ >= options_.first_look_slices ||
-           (rough_ && rough_->sigma_px < options_.first_look_projection_px);
+           (estimate_ && estimate_->sigma_px < options_.first_look_projection_px);
   }
 
   void consume(const Event& event) {
     if (event.time_ns >= slice_begin_ns_ + length_ns_) {
-      lookAtSlice();
+      detectInSlice();
       while (slice_begin_ns_ + length_ns_ <= event.time_ns) slice_begin_ns_ += period_ns_;
     }
     const bool outside = event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
@@ -104,47 +104,47 @@ class Pilot {
     slice_.push_back(event);
   }
 
-  void lookAtSlice() {
+  void detectInSlice() {
     if (slice_.empty() || enough()) return;
     std::vector<EdgeCrossing> bursts;
     BurstExtractor extractor(resolution_px_, session_.options.front_end->bursts);
     extractor.add(slice_, bursts);
     extractor.finish(bursts);
     slice_.clear();
-    Look look;
-    if (rough_) look = through(rough_->intrinsics, bursts);
-    if (look.views.empty()) {
-      look = throughPlainLenses(bursts);
-      if (look.views.empty()) return;
-      rough_.reset();  // it does not show the board that they show
+    SliceDetections detections;
+    if (estimate_) detections = detectWith(estimate_->intrinsics, bursts);
+    if (detections.views.empty()) {
+      detections = detectWithGenericLenses(bursts);
+      if (detections.views.empty()) return;
+      estimate_.reset();  // it does not show the board that they show
     }
     ++slices_;
-    views_.insert(views_.end(), look.views.begin(), look.views.end());
-    if (!rough_ || slices_ % kSolveEvery == 0) solve();
+    views_.insert(views_.end(), detections.views.begin(), detections.views.end());
+    if (!estimate_ || slices_ % kSolveEvery == 0) solve();
   }
 
   // Tries first the lens that showed most in the last slice, and no others if it shows almost the whole
   // board: failing searches take longest.
-  Look throughPlainLenses(const std::vector<EdgeCrossing>& bursts) {
+  SliceDetections detectWithGenericLenses(const std::vector<EdgeCrossing>& bursts) {
     constexpr double kNearlyAll = 0.75;
-    Look best = through(lenses_.front(), bursts);
+    SliceDetections best = detectWith(lenses_.front(), bursts);
     const double all = static_cast<double>(best.views.size()) * session_.board.pointCount();
     if (!best.views.empty() && static_cast<double>(best.circles()) >= kNearlyAll * all) return best;
-    std::vector<std::future<Look>> looks;
+    std::vector<std::future<SliceDetections>> others;
     for (std::size_t k = 1; k < lenses_.size(); ++k)
-      looks.push_back(std::async(std::launch::async, [&, k] { return through(lenses_[k], bursts); }));
-    std::size_t of_best = 0;
+      others.push_back(std::async(std::launch::async, [&, k] { return detectWith(lenses_[k], bursts); }));
+    std::size_t best_lens = 0;
     for (std::size_t k = 1; k < lenses_.size(); ++k) {
-      Look look = looks[k - 1].get();
-      if (look.circles() <= best.circles()) continue;
-      best = std::move(look);
-      of_best = k;
+      SliceDetections detections = others[k - 1].get();
+      if (detections.circles() <= best.circles()) continue;
+      best = std::move(detections);
+      best_lens = k;
     }
-    std::swap(lenses_.front(), lenses_[of_best]);
+    std::swap(lenses_.front(), lenses_[best_lens]);
     return best;
   }
 
-  Look through(const CameraIntrinsics& lens, const std::vector<EdgeCrossing>& bursts) const {
+  SliceDetections detectWith(const CameraIntrinsics& lens, const std::vector<EdgeCrossing>& bursts) const {
     context_.throwIfStopped();
     const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
     FrontEndOptions options = *session_.options.front_end;
@@ -159,18 +159,19 @@ class Pilot {
     constexpr int kLeastSlices = 3;  // views of one slice are similar
     if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
     solved_views_ = views_.size();
-    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(), options_,
-                             context_);
-    if (rough) rough_ = std::move(rough);
+    auto estimate = roughCamera(views_, session_.board, estimate_ ? estimate_->intrinsics : lenses_.front(),
+                                options_, context_);
+    if (estimate) estimate_ = std::move(estimate);
   }
 
   // A lens that shows the board, or parts of it; absent if none did.
   std::optional<CameraIntrinsics> result() const {
-    context_.progress.log(LogLevel::Debug,
-                          fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
-                                      rough_ ? fmt::format(", projection sigma {:.2f} px", rough_->sigma_px)
-                                             : std::string(", not enough for a camera model")));
-    if (rough_) return rough_->intrinsics;
+    context_.progress.log(
+        LogLevel::Debug,
+        fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
+                    estimate_ ? fmt::format(", projection sigma {:.2f} px", estimate_->sigma_px)
+                              : std::string(", not enough for a camera model")));
+    if (estimate_) return estimate_->intrinsics;
     return isPlane(lenses_.front()) ? std::nullopt : std::optional(lenses_.front());
   }
 
@@ -181,7 +182,7 @@ class Pilot {
   SessionRecording recording_;
   Resolution resolution_px_;
   std::vector<CameraIntrinsics> lenses_;  // generic ones, first the one that showed most in the last slice
-  std::optional<RoughCamera> rough_;
+  std::optional<RoughCamera> estimate_;
   std::vector<SensorView> views_;
   std::size_t solved_views_ = 0;
   std::vector<Event> slice_;
@@ -191,8 +192,8 @@ class Pilot {
 
 }  // namespace
 
-std::optional<CameraIntrinsics> lookThroughPlainLenses(const Session& session, const RunContext& context) {
-  return Pilot(session, context).run();
+std::optional<CameraIntrinsics> bootstrapIntrinsics(const Session& session, const RunContext& context) {
+  return IntrinsicsBootstrap(session, context).run();
 }
 
 }  // namespace evical

@@ -13,6 +13,6 @@ namespace evical {
 
 // Initial intrinsics of the session's first camera. Reads only as much as needed. If the slices do not give a
 // camera model: the generic lens that showed most, or none if no lens showed the board.
-std::optional<CameraIntrinsics> lookThroughPlainLenses(const Session& session, const RunContext& context);
+std::optional<CameraIntrinsics> bootstrapIntrinsics(const Session& session, const RunContext& context);
 
 }  // namespace evical

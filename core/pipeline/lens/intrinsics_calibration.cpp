@@ -127,7 +127,7 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
 IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
   CameraLens lens;
-  lens.detection_intrinsics = lookThroughPlainLenses(alone, context);
+  lens.detection_intrinsics = bootstrapIntrinsics(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics->most_passes; ++pass) {

@@ -17,10 +17,10 @@
 namespace evical {
 namespace {
 
-// Copies the sigmas of a lens that the batch did not refine.
-void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
-  const IntrinsicsVector sigmas = found.standardDeviations();
-  std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
+// True if this camera's lens was calibrated alone. Cameras that share a sensor have the lens of the first one.
+bool isCalibratedAlone(const Session& session, const CalibrationRun& run, std::size_t camera) {
+  return session.sensorOf(camera) == camera && camera < run.intrinsics.size() &&
+         run.intrinsics[camera].has_value();
 }
 
 }  // namespace
@@ -32,19 +32,27 @@ std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrins
   if (turn_deg < noted_deg) return {};
   return fmt::format(
       "the principal point is {:.1f} px from the given one, which turns the camera by {:.2f} deg. If you "
-      "trust the given lens, "
-      "compare with optimisation.model.camera_intrinsics: fixed",
+      "trust the given lens, compare with optimisation.model.camera_intrinsics: fixed",
       moved_px.norm(), turn_deg);
 }
 
-void tellLenses(const Session& session, CalibrationRun& run) {
+void setLensSigmas(const Session& session, CalibrationRun& run) {
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (!isCalibratedAlone(session, run, k) || run.result.state.cameras[k].lens.solved) continue;
+    const IntrinsicsVector sigmas = run.intrinsics[k]->standardDeviations();
+    std::copy(sigmas.begin(), sigmas.end(),
+              run.result.uncertainty.cameras[k].intrinsics_std.emplace().begin());
+  }
+}
+
+void addLensNotes(const Session& session, CalibrationRun& run) {
   std::vector<std::string> notes;
   std::string doubt;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     if (session.sensorOf(k) != k) continue;
     const std::string name = "intrinsics of " + session.cameras[k].name;
     const CameraLens& lens = run.result.state.cameras[k].lens;
-    if (k < run.intrinsics.size() && run.intrinsics[k]) {
+    if (isCalibratedAlone(session, run, k)) {
       const IntrinsicsResult found =
           lens.solved ? jointIntrinsics(*run.intrinsics[k], k, *lens.solved, run.result.uncertainty,
                                         *session.options.intrinsics)
@@ -53,7 +61,6 @@ void tellLenses(const Session& session, CalibrationRun& run) {
                                   counted(static_cast<std::uint64_t>(found.views_used), "view"),
                                   found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
-      if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
       if (found.status != CalibrationStatus::Ok && doubt.empty())
         doubt = fmt::format("{}: {}", name, found.reason);
     }

@@ -12,7 +12,10 @@ namespace evical {
 std::string adviceOnMovedLens(const CameraIntrinsics& given, const CameraIntrinsics& solved,
                               double noted_deg);
 
-// Adds notes, sigmas and warnings to the result.
-void tellLenses(const Session& session, CalibrationRun& run);
+// Copies the sigmas of lenses that were calibrated alone and not refined by the batch into the result.
+void setLensSigmas(const Session& session, CalibrationRun& run);
+
+// Adds notes on calibrated and refined lenses to the result, and its doubt about the first of them.
+void addLensNotes(const Session& session, CalibrationRun& run);
 
 }  // namespace evical

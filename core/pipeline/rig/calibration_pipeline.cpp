@@ -524,7 +524,8 @@ class Calibration {
     timing.detect_s = run_.pass.detect_s;
     timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
-    tellLenses(session_, run_);
+    setLensSigmas(session_, run_);
+    addLensNotes(session_, run_);
     rank();
   }
 

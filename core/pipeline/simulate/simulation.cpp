@@ -114,28 +114,28 @@ void writeFrames(const Scenario& scenario, std::int64_t start_ns, const std::fil
 
 // Temporary folder for all files until they are complete; inside the target folder, so that they can be
 // moved.
-class Workshop {
+class TransactionalFolder {
  public:
-  explicit Workshop(const std::filesystem::path& folder) {
-    removeLitterOf(folder / kName);
-    std::string path = (folder / kName).string() + ".part.XXXXXX";
+  explicit TransactionalFolder(const std::filesystem::path& folder) {
+    removeLitterOf(folder / kPrefix);
+    std::string path = (folder / kPrefix).string() + ".part.XXXXXX";
     if (::mkdtemp(path.data()) == nullptr)
       throw calibrationFailed(folder.string(), fmt::format("cannot be written to: {}", std::strerror(errno)),
                               "Check the folder, its permissions and the space on the disk");
     folder_ = path;
   }
-  ~Workshop() {
+  ~TransactionalFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
+  TransactionalFolder(const TransactionalFolder&) = delete;
+  TransactionalFolder& operator=(const TransactionalFolder&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
 
   // Moves all files to `folder`, these two last.
-  void deliver(const std::filesystem::path& folder, const std::string& truth,
-               const std::string& session) const {
+  void moveTo(const std::filesystem::path& folder, const std::string& truth,
+              const std::string& session) const {
     std::vector<FileMove> moves;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       const std::filesystem::path name = entry.path().filename();
@@ -147,7 +147,7 @@ class Workshop {
   }
 
  private:
-  static constexpr const char* kName = ".simulation";
+  static constexpr const char* kPrefix = ".simulation";
   std::filesystem::path folder_;
 };
 
@@ -205,10 +205,10 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   const bool text = scenario.format == SimulatedFormat::Text;
   const RecordingFormat& format = recordingFormat(!format_name.empty() ? format_name : text ? "text" : "bag");
   const NewFolder new_folder(folder);
-  const Workshop workshop(folder);
+  const TransactionalFolder made_in(folder);
   SimulationSummary summary;
   const std::string file = format.isFolder() ? "." : std::string("recording") + format.extension;
-  const std::filesystem::path made = format.isFolder() ? workshop.folder() : workshop.folder() / file;
+  const std::filesystem::path made = format.isFolder() ? made_in.folder() : made_in.folder() / file;
   summary.recording = format.isFolder() ? folder : folder / file;
   summary.session = folder / "session.yaml";
   summary.truth = folder / "truth.yaml";
@@ -226,12 +226,12 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
     writeRecording(scenario, *writer, *writer, summary, context);
     takeNames(writer->streamNames(), named);
   }
-  writeFrames(scenario, named.start_ns, workshop.folder(), summary, context);
-  writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
-  writeFileWhole(workshop.folder() / "session.yaml",
+  writeFrames(scenario, named.start_ns, made_in.folder(), summary, context);
+  writeFileWhole(made_in.folder() / "truth.yaml", truthYaml(scenario));
+  writeFileWhole(made_in.folder() / "session.yaml",
                  sessionYaml(named, streams.empty() ? kFramesFolder : file,
                              format.one_camera && !streams.empty() ? "imu.csv" : ""));
-  workshop.deliver(folder, "truth.yaml", "session.yaml");
+  made_in.moveTo(folder, "truth.yaml", "session.yaml");
   return summary;
 }
 
