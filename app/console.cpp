@@ -70,7 +70,7 @@ void Console::log(LogLevel level, std::string_view text) {
 void Console::announceReplacement(const std::filesystem::path& folder,
                                   std::initializer_list<const char*> names) {
   for (const char* const name : names)
-    if (isThere(folder / name))
+    if (pathExists(folder / name))
       log(LogLevel::Warning,
           fmt::format(
               "{} exists: this run replaces it when it has a new one. To keep it, give another output",

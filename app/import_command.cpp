@@ -28,7 +28,7 @@ int run(const ImportArguments& arguments) {
   if (stop.stop_requested()) throw Cancelled{};
   // Entries of the user in a session must not be lost.
   for (const FileContent& session : imported.files)
-    if (session.content.starts_with("evical_session") && isThere(session.path))
+    if (session.content.starts_with("evical_session") && pathExists(session.path))
       throw badInput(session.path.string(), "exists already", "Choose another name, or remove the file");
   writeFilesWhole(imported.files);
   for (const FileContent& written : imported.files) print("{}\n", written.path.string());

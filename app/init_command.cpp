@@ -38,7 +38,7 @@ std::vector<InspectedRecording> inspectAll(const InitArguments& arguments, const
 
 int run(const InitArguments& arguments) {
   // Entries of the user must not be lost.
-  if (isThere(arguments.output))
+  if (pathExists(arguments.output))
     throw badInput(arguments.output.string(), "exists already", "Choose another name, or remove the file");
   Console console(arguments.quiet);
   const std::vector<InspectedRecording> recordings = inspectAll(arguments, {console, stopOnSignals()});

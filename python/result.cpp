@@ -27,7 +27,7 @@ constexpr std::string_view kResultHead = "evical_result: 1\n", kTruthHead = "evi
 // Adds the parts of run.data that result.yaml does not contain.
 void addRunData(const std::filesystem::path& yaml, Result& result) {
   const std::filesystem::path file = yaml.parent_path() / "run.data";
-  if (!isThere(file)) {
+  if (!pathExists(file)) {
     result.missing.push_back("the trajectory: there is no run.data next to result.yaml");
     return;
   }

@@ -17,7 +17,7 @@ CalibrationError writeError(const std::filesystem::path& path, int error);
 int whyNoPlace(const std::filesystem::path& path);
 
 // True if the path exists, false if it does not or cannot be examined.
-inline bool isThere(const std::filesystem::path& path) {
+inline bool pathExists(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);
 }

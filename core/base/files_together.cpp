@@ -70,7 +70,7 @@ FilesTogether::~FilesTogether() {
 }
 
 void FilesTogether::makeFolder(const std::filesystem::path& folder) {
-  for (auto missing = folder; !missing.empty() && !isThere(missing); missing = missing.parent_path())
+  for (auto missing = folder; !missing.empty() && !pathExists(missing); missing = missing.parent_path())
     made_.push_back(missing);
   makeOutputFolder(folder);
 }

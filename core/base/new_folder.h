@@ -12,7 +12,7 @@ namespace evical {
 class NewFolder {
  public:
   // Throws CalibrationError (BadInput) if it cannot be created or written to.
-  explicit NewFolder(const std::filesystem::path& folder) : folder_(folder), was_there_(isThere(folder)) {
+  explicit NewFolder(const std::filesystem::path& folder) : folder_(folder), was_there_(pathExists(folder)) {
     makeOutputFolder(folder);
   }
   ~NewFolder() {

@@ -15,7 +15,7 @@ enum class Verdict { Unchanged, Changed, CannotTell };
 struct ValueWithSigma {
   double value = std::numeric_limits<double>::quiet_NaN(), sigma = 0.0;
 
-  bool isThere() const { return !std::isnan(value); }
+  bool isKnown() const { return !std::isnan(value); }
 };
 
 // One number of a quantity, in shown units.

@@ -321,7 +321,7 @@ std::vector<std::string> commentProblems(const NamedResult& result, const Export
   std::vector<std::string> problems;
   for (const FileContent& own : target.write(result).files) {
     const std::set<std::string> wanted = commentsIn(own.path, contentOf(own));
-    if (wanted.empty() || !isThere(folder / own.path)) continue;
+    if (wanted.empty() || !pathExists(folder / own.path)) continue;
     const std::string text = textOf(folder / own.path);
     const std::set<std::string> found = commentsIn(own.path, text);
     for (const std::string& line : wanted)

@@ -63,7 +63,7 @@ RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>&
 }
 
 // True if the estimate differs significantly from 0.
-bool isThere(double value, double sigma) {
+bool isSignificant(double value, double sigma) {
   constexpr double kChance_sigmas = 3.0;
   return value != 0.0 && std::abs(value) >= kChance_sigmas * sigma;
 }
@@ -71,7 +71,7 @@ bool isThere(double value, double sigma) {
 template <class State, class Uncertainty>
 void remarkDrift(const std::string& name, const State& state, const Uncertainty& sigma,
                  std::vector<std::string>& remarks) {
-  if (!isThere(state.time_offset_drift_ppm, sigma.time_offset_drift_std_ppm)) return;
+  if (!isSignificant(state.time_offset_drift_ppm, sigma.time_offset_drift_std_ppm)) return;
   remarks.push_back(fmt::format(
       "{}: its clock drifts by {:.3g} ppm relative to the reference's; the time offset is that at {:.2f} "
       "s of its clock, other stamps need the drift, too",
@@ -80,7 +80,7 @@ void remarkDrift(const std::string& name, const State& state, const Uncertainty&
 
 void remarkDelay(const std::string& name, const ImuState& state, const ImuUncertainty& sigma,
                  std::vector<std::string>& remarks) {
-  if (!isThere(state.accelerometer_delay_s, sigma.accelerometer_delay_std_s)) return;
+  if (!isSignificant(state.accelerometer_delay_s, sigma.accelerometer_delay_std_s)) return;
   remarks.push_back(
       fmt::format("{}: the accelerometer's samples are {:.3g} ms later than the gyroscope's of the "
                   "same stamp; subtract this from their stamps first",
@@ -89,7 +89,7 @@ void remarkDelay(const std::string& name, const ImuState& state, const ImuUncert
 
 void remarkRollingShutter(const std::string& name, const CameraState& state, const CameraUncertainty& sigma,
                           std::vector<std::string>& remarks) {
-  if (!isThere(state.line_delay_us, sigma.line_delay_std_us)) return;
+  if (!isSignificant(state.line_delay_us, sigma.line_delay_std_us)) return;
   remarks.push_back(
       fmt::format("{}: rolling shutter, {:.4g} us from row to row; the time offset is that of "
                   "the middle row",

@@ -112,7 +112,7 @@ ReadFile readDsoCameraFile(const std::filesystem::path& path) {
 ReadBack readDmVio(const std::filesystem::path& folder) {
   ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};
   // DSO without DM-VIO reads only the camera.
-  if (!isThere(folder / "camchain.yaml") && !isThere(folder / "noise.yaml")) return read;
+  if (!pathExists(folder / "camchain.yaml") && !pathExists(folder / "noise.yaml")) return read;
   read.files.push_back(readCamchain(folder / "camchain.yaml"));
   read.files.push_back(readNoise(folder / "noise.yaml"));
   return read;

@@ -158,7 +158,7 @@ ReadImu kalibrImuOf(const YamlNode& node) {
 ReadBack readKalibr(const std::filesystem::path& folder) {
   ReadBack read;
   read.files.push_back(readKalibrChain(folder / "camchain.yaml", false));
-  if (!isThere(folder / "imu.yaml")) return read;
+  if (!pathExists(folder / "imu.yaml")) return read;
   read.files.push_back(readKalibrChain(folder / "camchain-imucam.yaml", true));
   ReadFile imus{folder / "imu.yaml"};
   const YamlNode root = YamlNode::load(imus.path);

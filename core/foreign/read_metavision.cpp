@@ -31,9 +31,9 @@ ReadBack readMetavision(const std::filesystem::path& folder) {
   const std::string kFile = "intrinsics.json";
   ReadBack read;
   read.most_imus = 0;
-  if (isThere(folder / kFile)) read.files.push_back(readMetavisionCamera(folder / kFile, ""));
+  if (pathExists(folder / kFile)) read.files.push_back(readMetavisionCamera(folder / kFile, ""));
   for (const std::filesystem::path& below : filesLike(folder, "", ""))
-    if (isThere(below / kFile))
+    if (pathExists(below / kFile))
       read.files.push_back(readMetavisionCamera(below / kFile, below.filename().string()));
   if (read.files.empty()) throw badInput(folder.string(), "has no " + kFile);
   return read;

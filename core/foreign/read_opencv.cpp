@@ -205,7 +205,7 @@ ReadBack readOpenCv(const std::filesystem::path& folder) {
     cameras.insert(cameras.end(), one.cameras.begin(), one.cameras.end());
     read.files.push_back(std::move(one));
   }
-  if (isThere(folder / "intrinsics.yml") || isThere(folder / "extrinsics.yml"))
+  if (pathExists(folder / "intrinsics.yml") || pathExists(folder / "extrinsics.yml"))
     read.files.push_back(pairAmong(cameras, readOpencvPair(folder), folder / "extrinsics.yml"));
   return read;
 }

@@ -235,7 +235,7 @@ ReadBack readRos(const std::filesystem::path& folder) {
   ReadBack read;
   for (const std::filesystem::path& path : filesLike(folder, "", ".yaml"))
     read.files.push_back(readCameraInfo(path));
-  if (read.files.size() == 1 && !isThere(folder / "rig.urdf")) return read;
+  if (read.files.size() == 1 && !pathExists(folder / "rig.urdf")) return read;
   read.files.push_back(readTransforms(folder / "static_transforms.sh"));
   read.files.push_back(readLaunch(folder / "static_transforms.launch"));
   read.files.push_back(readPythonLaunch(folder / "static_transforms.launch.py"));

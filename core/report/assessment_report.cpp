@@ -81,7 +81,7 @@ Json listOf(const List& list, const Function& jsonOf) {
 Json comparedNumberJson(const ComparedNumber& number) {
   Json json = {{"name", number.name}, {"unit", number.unit}};
   const auto add = [&](const std::string& key, const ValueWithSigma& value) {
-    if (!value.isThere()) return;
+    if (!value.isKnown()) return;
     json[key] = value.value;
     json[key + "_std"] = value.sigma;
   };
@@ -238,7 +238,7 @@ std::string withUnit(const std::string& name, const std::string& unit) {
 }
 
 std::string shown(const ValueWithSigma& number) {
-  return number.isThere() ? withSigma(number.value, number.sigma) : "";
+  return number.isKnown() ? withSigma(number.value, number.sigma) : "";
 }
 
 std::string size(double value, const std::string& unit) {
@@ -268,7 +268,7 @@ std::string numberRow(const Finding& finding, const ComparedNumber& number) {
   const std::string name = ofSensor(finding.sensor, finding.against) + "." + number.name;
   std::string row = fmt::format("{:<52}{:>26}{:>26}", withUnit(name, shownUnit(number.unit)),
                                 shown(number.before), shown(number.now));
-  if (number.joint.isThere()) row += fmt::format("{:>26}", shown(number.joint));
+  if (number.joint.isKnown()) row += fmt::format("{:>26}", shown(number.joint));
   return row + "\n";
 }
 
@@ -276,7 +276,7 @@ std::string numberRow(const Finding& finding, const ComparedNumber& number) {
 std::string findingsTable(const std::vector<Finding>& findings) {
   if (findings.empty()) return {};
   const auto& first = findings.front().numbers;
-  const bool joint = !first.empty() && first.front().joint.isThere();
+  const bool joint = !first.empty() && first.front().joint.isKnown();
   std::string text = fmt::format("{:<52}{:>26}{:>26}{}\n", "number", "before", "now, alone",
                                  joint ? fmt::format("{:>26}", "both jointly") : "");
   for (const Finding& finding : findings)

@@ -43,7 +43,7 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
     return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
   };
   findOwnLight();
-  if (scenario.room.isThere()) room_ = std::make_unique<RoomRenderer>(scenario, camera);
+  if (scenario.room.exists()) room_ = std::make_unique<RoomRenderer>(scenario, camera);
   for (Pixel& pixel : pixels_) {
     pixel.threshold_on = static_cast<float>(model_.threshold_on * factor());
     pixel.threshold_off = static_cast<float>(model_.threshold_off * factor());

@@ -96,7 +96,7 @@ void readRoom(const YamlNode& map, RoomModel& room) {
 }
 
 void validateRoom(const Scenario& scenario, const std::string& file) {
-  if (!scenario.room.isThere()) return;
+  if (!scenario.room.exists()) return;
   const auto refuse = [&](const char* key, const std::string& problem, const std::string& advice) {
     throw badInput(fmt::format("{}: {}", file, key), problem, advice);
   };

@@ -218,7 +218,7 @@ struct RoomModel {
   double free_radius_m = 1.0;                         // no box within it around the room's middle
   double texel_m = 0.003;                             // of the picture, whose finest structure is twice that
   double tone = 0.4;                                  // sigma of the sides' own log reflectance
-  bool isThere() const { return size_m.minCoeff() > 0.0; }
+  bool exists() const { return size_m.minCoeff() > 0.0; }
 };
 
 // Errors of the session, relative to the truth.

@@ -26,7 +26,7 @@ class GermanLocale {
   GermanLocale(const GermanLocale&) = delete;
   GermanLocale& operator=(const GermanLocale&) = delete;
 
-  bool isThere() const { return there_; }
+  bool isInstalled() const { return there_; }
 
  private:
   QTemporaryDir folder_;

@@ -311,7 +311,7 @@ QString DetectionScreen::missingRecording() const {
   if (!session_ || camera_ >= session_->cameras.size()) return {};
   const std::filesystem::path& own = session_->cameras[camera_].recording;
   const std::filesystem::path& path = own.empty() ? session_->recording : own;
-  return isThere(path) ? QString() : QString::fromStdString(path.string());
+  return pathExists(path) ? QString() : QString::fromStdString(path.string());
 }
 
 void DetectionScreen::showMarksAlone() {

@@ -276,7 +276,7 @@ bool CalibrationDocument::runIsOutdated() const {
 std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {
   std::vector<SessionProblem> problems;
   if (session.recording.empty()) return {{"recording", QObject::tr("Open a recording first")}};
-  if (!isThere(session.recording)) {
+  if (!pathExists(session.recording)) {
     problems.push_back({"recording", QObject::tr("%1 is missing. Find the recording or restore it")
                                          .arg(QString::fromStdString(session.recording.string()))});
   }

@@ -80,7 +80,7 @@ void setLens(const CameraState& before, SessionCamera& camera, CheckInput& input
 
 Session sessionFor(const CheckPaths& paths) {
   if (isSessionFile(paths.recording)) return readSession(paths.recording);
-  if (!isThere(paths.recording))
+  if (!pathExists(paths.recording))
     throw badInput(paths.recording.string(), "does not exist", "Give the new recording, or a session of it");
   Session session;
   if (!paths.session.empty()) {

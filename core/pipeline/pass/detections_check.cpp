@@ -105,7 +105,7 @@ void logOptions(const YamlNode& map, const Session& session, const RunContext& c
 
 YamlNode loadDetections(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "detections.yaml";
-  if (!isThere(file))
+  if (!pathExists(file))
     throw badInput(file.string(), "does not exist",
                    "Give the result folder of a calibration or a detection. Detect again if an earlier "
                    "version wrote it");

@@ -21,7 +21,7 @@ constexpr const char* kRepeat = "repeat.yaml";
 }  // namespace
 
 void checkRepeatFolder(const std::filesystem::path& folder) {
-  if (isThere(folder / kResultFile) && !isThere(folder / kRepeat))
+  if (pathExists(folder / kResultFile) && !pathExists(folder / kRepeat))
     throw badInput(folder.string(), "contains the result of a calibration, which the repeat would overwrite",
                    "Choose another folder");
 }

@@ -87,9 +87,9 @@ void findRecordings(const YamlNode& places, const std::filesystem::path& folder,
   std::size_t next = 0;
   forEachRecording(session, [&](std::filesystem::path& recording) {
     const std::size_t place = next++;
-    if (place >= items.size() || isThere(recording)) return;
+    if (place >= items.size() || pathExists(recording)) return;
     const auto moved = (folder / items[place].anyText()).lexically_normal();
-    if (isThere(moved)) recording = moved;
+    if (pathExists(moved)) recording = moved;
   });
 }
 
@@ -187,13 +187,13 @@ class FolderReader {
       findRecordings(root["recordings_from_here"], folder_, saved_.session);
     } catch (const CalibrationError& error) {
       saved_.summary = summaryOf(saved_.session, run_.result);
-      if (isThere(folder_ / kRun)) note("its name and date", error);
+      if (pathExists(folder_ / kRun)) note("its name and date", error);
     }
   }
 
   void readSession() {
     try {
-      if (!isThere(folder_ / kSessionFile))
+      if (!pathExists(folder_ / kSessionFile))
         throw badInput(kSessionFile, "is missing",
                        "Choose the recording again: earlier versions did not write this file");
       saved_.session = readSessionOfRun(folder_ / kSessionFile);
@@ -285,7 +285,7 @@ std::filesystem::path resultFileOf(const std::filesystem::path& path, const char
 
 NamedResult readOldResult(const std::filesystem::path& path, const std::string& what) {
   const std::filesystem::path file = resultFileOf(path);
-  if (!isThere(file))
+  if (!pathExists(file))
     throw badInput(file.string(), "does not exist", "Give the folder of a calibration, or its result.yaml");
   NamedResult named = readResultYaml(file);
   if (named.result->status == CalibrationStatus::Failed)
@@ -296,7 +296,7 @@ NamedResult readOldResult(const std::filesystem::path& path, const std::string& 
 
 std::optional<Session> sessionOfOldResult(const std::filesystem::path& path) {
   const std::filesystem::path kept = resultFileOf(path).parent_path() / kSessionFile;
-  return isThere(kept) ? std::optional(readSessionOfRun(kept)) : std::nullopt;
+  return pathExists(kept) ? std::optional(readSessionOfRun(kept)) : std::nullopt;
 }
 
 std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Session& session,
@@ -323,8 +323,8 @@ void keepRun(const std::filesystem::path& folder, const Session& session,
 
 bool isSavedRun(const std::filesystem::path& path) {
   const std::filesystem::path name = path.filename();
-  if (name == kResultFile || name == kRun) return isThere(path);
-  return isThere(path / kResultFile) || isThere(path / kRun);
+  if (name == kResultFile || name == kRun) return pathExists(path);
+  return pathExists(path / kResultFile) || pathExists(path / kRun);
 }
 
 SavedRun readSavedRun(const std::filesystem::path& path) {
@@ -350,7 +350,7 @@ std::vector<RunSummary> listRuns(const std::filesystem::path& folder) {
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!isThere(entry->path() / kRun)) continue;
+    if (!pathExists(entry->path() / kRun)) continue;
     try {
       runs.push_back(readRunSummary(entry->path()));
     } catch (const CalibrationError&) {

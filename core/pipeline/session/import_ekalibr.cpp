@@ -38,7 +38,7 @@ void readCamera(const ImportSource& source, const YamlNode& entry, ImportedSessi
   const auto intrinsics = value.find("Intrinsics");
   if (intrinsics && !intrinsics->isNull() && !intrinsics->text().empty()) {
     const std::filesystem::path file = besideSource(source, intrinsics->text());
-    if (isThere(file)) {
+    if (pathExists(file)) {
       camera.intrinsics = readIntrinsicsFile(file, camera.name, camera.stream);
     } else {
       imported.notes.push_back(fmt::format("{}: intrinsics file {} does not exist: they will be calibrated",

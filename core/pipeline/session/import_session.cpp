@@ -49,7 +49,7 @@ void setRecording(const ImportRequest& request, ImportedSession& imported) {
   if (session.recording.empty())
     throw badInput("recording", "none of the files names a recording",
                    "Give it with " + howTo(HowTo::Option, {"recording FILE"}));
-  if (isThere(session.recording)) return;
+  if (pathExists(session.recording)) return;
   if (!request.recording.empty())
     throw badInput(session.recording.string(), "does not exist",
                    "Check the path after " + howTo(HowTo::Option, {"recording"}));

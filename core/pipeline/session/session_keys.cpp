@@ -124,7 +124,7 @@ std::filesystem::path pathFrom(const YamlNode& node) {
 
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / pathFrom(node);
-  if (!isThere(path))
+  if (!pathExists(path))
     throw node.error(fmt::format("'{}' does not exist", path.string()),
                      "Paths are relative to the session file");
   return path;

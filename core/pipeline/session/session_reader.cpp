@@ -378,7 +378,8 @@ std::filesystem::path folderOfSession(const std::filesystem::path& file, const Y
   auto node = root.find("recording");
   if (!node) node = root.find("recordings");
   if (node && node->isSequence() && !node->items().empty()) node = node->items().front();
-  if (!node || !node->isScalar() || isThere(file.parent_path() / node->anyText())) return file.parent_path();
+  if (!node || !node->isScalar() || pathExists(file.parent_path() / node->anyText()))
+    return file.parent_path();
   const std::filesystem::path own = std::filesystem::canonical(file, error);
   return error ? file.parent_path() : own.parent_path();
 }

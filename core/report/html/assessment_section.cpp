@@ -30,7 +30,7 @@ std::string verdictHtml(const Finding& finding) {
 }
 
 std::string valueHtml(const ValueWithSigma& number) {
-  return number.isThere() ? withSigma(number.value, number.sigma) : "";
+  return number.isKnown() ? withSigma(number.value, number.sigma) : "";
 }
 
 // Table without the columns that are empty in all rows.

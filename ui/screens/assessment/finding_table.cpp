@@ -22,7 +22,7 @@ QString sizeText(double value, const std::string& unit) {
 }
 
 QString valueText(const ValueWithSigma& number) {
-  return number.isThere() ? withSigma(number.value, number.sigma) : QString();
+  return number.isKnown() ? withSigma(number.value, number.sigma) : QString();
 }
 
 QString titleOf(const Finding& finding) {
@@ -52,7 +52,7 @@ QTreeWidgetItem* itemOf(const ComparedNumber& number) {
   auto* const item = new QTreeWidgetItem({unit.isEmpty() ? name : QString("%1 [%2]").arg(name, unit)});
   item->setText(FindingTable::kBefore, valueText(number.before));
   item->setText(FindingTable::kNow, valueText(number.now));
-  if (number.joint.isThere())
+  if (number.joint.isKnown())
     item->setToolTip(FindingTable::kNow,
                      QObject::tr("With the old result as prior: %1").arg(valueText(number.joint)));
   return item;
