@@ -10,7 +10,6 @@
 #include <vector>
 
 namespace evical {
-
 // Rotation about the IMU's axes, time offset, bias, scale.
 inline constexpr int kAlignmentNumbers = 8;
 using AlignmentVector = Eigen::Matrix<double, kAlignmentNumbers, 1>;
@@ -71,5 +70,13 @@ class AlignmentFit {
   double median_error_rad_s_ = 0.0;
   std::vector<double> squares_;
 };
+
+// Starting points of the alignment: offsets at which camera and gyroscope rotate equally fast, each with the
+// best rotation. Internal to this folder.
+
+// `start` first, then the others in order of correlation.
+std::vector<AlignmentState> alignmentStarts(const std::vector<const WindowMotion*>& windows,
+                                            const AlignmentFit& fit, const SummedRates& rates,
+                                            const AlignmentState& start, double search_s);
 
 }  // namespace evical

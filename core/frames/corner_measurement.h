@@ -1,17 +1,32 @@
 // Measurement of corners near their expected places.
 #pragma once
 
-#include "core/frames/corner_pattern.h"
 #include "core/frames/found_point.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/gray_image.h"
 #include "core/frames/line_curvature.h"
 #include "core/frames/plane_map.h"
+#include "core/geometry/board.h"
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace evical {
+
+// Surroundings of the corners of a board without circles.
+
+// Around each corner, two diagonal fields are dark, and the other two are bright.
+struct CornerPattern {
+  double plain_m = 0.0;          // within this distance along both axes, the corner is the only feature
+  std::vector<bool> dark_ahead;  // by point: true if the fields towards +x +y and -x -y are dark
+};
+
+// The square before point 0 of a checkerboard, towards -x -y, is dark.
+CornerPattern checkerboardCorners(const Board& board);
+CornerPattern tagGridCorners(const Board& board, int border_bits);
+// The board's top left square is dark, unless `first_is_bright`.
+CornerPattern charucoCorners(const Board& board, bool first_is_bright);
 
 struct MeasuredCorner {
   Eigen::Vector2d at_px = Eigen::Vector2d::Zero();

@@ -3,14 +3,36 @@
 #pragma once
 
 #include "core/frames/flash_counts.h"
-#include "core/frames/half_periods.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <vector>
 
 namespace evical {
+
+// Detection of a blinking light's half periods: they begin when ON events start to outweigh OFF events, or
+// the other way round.
+
+class HalfPeriods {
+ public:
+  static constexpr int kBinsPerPeriod = 16;
+  static constexpr int kTurn_bins = 3;
+
+  // Number of ON minus OFF events of the next bin, a sixteenth of a period. True if the light has turned,
+  // kTurn_bins before this bin's end: the events since then are the first of the new half period.
+  bool add(double balance);
+
+ private:
+  static constexpr std::size_t kSmoothed = 5;  // bins
+
+  std::array<double, kSmoothed> last_{};
+  std::array<double, 2 * kBinsPerPeriod> heights_{};  // of two periods
+  std::size_t count_ = 0;
+  int sign_ = 0;
+};
 
 // Consecutive half periods; for a fast blink, several are summed in one element.
 using FlashSlot = std::vector<FlashCounts>;

@@ -2,15 +2,46 @@
 // (docs/maths.md, 5.2; R. Benosman et al., "Event-based visual flow", TNNLS 2014).
 #pragma once
 
-#include "core/frontend/active_event_surface.h"
+#include "core/frontend/burst_window.h"
 #include "core/frontend/normal_flow_options.h"
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace evical {
+
+// Surface of active events (docs/maths.md, 5.2): for each pixel and polarity, the time at which the last edge
+// of a window passed.
+
+struct ActivePixel {
+  std::uint16_t x_px, y_px;
+  bool leading;  // passed by a circle's leading edge, according to the polarity
+};
+
+class ActiveEventSurface {
+ public:
+  static constexpr float kNever_s = -1e9f;
+  static bool active(float time_s) { return time_s > kNever_s; }
+
+  // Neighbours up to border_px away can be read at every pixel of the image.
+  ActiveEventSurface(const BurstWindow& window, int border_px);
+
+  const std::vector<ActivePixel>& pixels() const { return pixels_; }
+  int stride() const { return stride_; }
+
+  // Time since the window's middle, or kNever_s; the neighbour (dx, dy) is at dy * stride() + dx.
+  const float* at(bool leading, int x_px, int y_px) const {
+    return times_s_[leading].data() + (y_px + border_px_) * stride_ + x_px + border_px_;
+  }
+
+ private:
+  int border_px_, stride_;
+  std::array<std::vector<float>, 2> times_s_;
+  std::vector<ActivePixel> pixels_;
+};
 
 struct NormalFlow {
   std::uint16_t x_px, y_px;

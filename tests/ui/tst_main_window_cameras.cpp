@@ -19,7 +19,6 @@
 #include "ui/screens/recording/stream_table.h"
 #include "ui/screens/result/result_screen.h"
 #include "ui/window/session_files.h"
-#include "ui/window/step_row.h"
 #include "ui/window/steps_panel.h"
 
 #include <QComboBox>

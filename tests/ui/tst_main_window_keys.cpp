@@ -8,9 +8,9 @@
 #include "ui/detection/timeline.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
-#include "ui/screens/recording/shown_motion.h"
-#include "ui/window/guide_pictures.h"
+#include "ui/screens/recording/motion_picture.h"
 #include "ui/window/session_files.h"
+#include "ui/window/user_guide.h"
 
 #include <QCheckBox>
 #include <QComboBox>

@@ -8,7 +8,6 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "ui/forms/option_editor.h"
-#include "ui/forms/option_slider.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>

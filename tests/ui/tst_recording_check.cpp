@@ -6,7 +6,6 @@
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/screens/recording/check_card.h"
-#include "ui/screens/recording/light_mark.h"
 #include "ui/screens/recording/recording_screen.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"

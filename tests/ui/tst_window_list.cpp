@@ -8,7 +8,6 @@
 #include "tests/ui/screenshots.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
-#include "ui/detection/window_row_painter.h"
 #include "ui/theme/theme.h"
 
 #include <QApplication>

@@ -7,6 +7,8 @@
 #include "ui/detection/window_pictures.h"
 #include "ui/jobs/latest_job.h"
 
+#include <QSize>
+#include <QStyledItemDelegate>
 #include <QTimer>
 #include <QWidget>
 
@@ -89,6 +91,25 @@ class WindowList : public QWidget {
   QLabel *note_ = nullptr, *count_ = nullptr, *pending_ = nullptr;
   QPushButton *reject_ = nullptr, *keep_ = nullptr;
   LatestJob job_{OutdatedWork::Dropped};
+};
+
+// Paints a row of the list of windows: the picture, the state with its colour and shape of the timeline, and
+// a short reason below it.
+
+inline constexpr QSize kPictureSize_px(64, 48);
+
+class WindowRowPainter : public QStyledItemDelegate {
+  Q_OBJECT
+
+ public:
+  using QStyledItemDelegate::QStyledItemDelegate;
+
+  void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override;
+  QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override;
+
+ private:
+  static void paintPicture(QPainter& painter, const QRect& cell, const QModelIndex& index);
+  static void paintState(QPainter& painter, const QStyleOptionViewItem& option, const QModelIndex& index);
 };
 
 }  // namespace evical::ui

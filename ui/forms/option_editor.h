@@ -4,6 +4,7 @@
 
 #include "core/base/option_row.h"
 
+#include <QSlider>
 #include <QWidget>
 
 class QCheckBox;
@@ -58,6 +59,34 @@ class OptionEditor : public QWidget {
   OptionSlider* slider_ = nullptr;  // for numbers
   QLabel *dot_, *name_, *help_, *idle_, *problem_;
   QToolButton* reset_;
+};
+
+// Slider for a number over its range, next to its input field: logarithmic if the range spans several powers
+// of ten, and in integers if the option is one.
+
+class OptionSlider : public QSlider {
+  Q_OBJECT
+
+ public:
+  // False for choices and for unbounded ranges.
+  static bool fits(const OptionRow& row);
+
+  OptionSlider(const OptionRow& row, QWidget* parent);
+
+  void setShown(const QString& number);  // does not signal
+
+ signals:
+  void turning(const QString& number);  // during a drag
+  void turned(const QString& number);   // at the end of a drag, or by keys
+
+ protected:
+  void wheelEvent(QWheelEvent* event) override;  // the form scrolls
+
+ private:
+  QString numberAt(int position) const;
+
+  double minimum_, maximum_;
+  bool whole_, powers_;
 };
 
 }  // namespace evical::ui

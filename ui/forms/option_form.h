@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/base/option_row.h"
+#include "ui/forms/option_editor.h"
 
 #include <QStringList>
 #include <QWidget>
@@ -15,6 +16,9 @@
 class QHBoxLayout;
 class QLabel;
 class QLineEdit;
+class QToolButton;
+class QVBoxLayout;
+class QLabel;
 class QToolButton;
 class QVBoxLayout;
 
@@ -58,6 +62,33 @@ class OptionForm : public QWidget {
   QVBoxLayout* groups_layout_;
   std::vector<OptionGroup*> groups_;
   std::map<QString, OptionEditor*> editors_;
+};
+
+// Options of one stage under a heading that collapses them.
+
+class OptionGroup : public QWidget {
+  Q_OBJECT
+
+ public:
+  OptionGroup(const QString& title, QWidget* parent);
+
+  void add(OptionEditor* editor);
+  // Shows the matching options; expands during a search. Expert options at their defaults are shown with
+  // `with_expert`, or if a search finds them.
+  void filter(const QString& search, bool only_changed, bool with_expert);
+  void showChangedCount();
+  bool anyShown() const { return any_shown_; }
+  const std::vector<OptionEditor*>& editors() const { return editors_; }
+
+ private:
+  void showBody();
+
+  QToolButton* heading_;
+  QLabel* badge_;
+  QWidget* body_;
+  QVBoxLayout* body_layout_;
+  std::vector<OptionEditor*> editors_;
+  bool any_shown_ = true, searching_ = false;
 };
 
 }  // namespace evical::ui

@@ -4,8 +4,10 @@
 // of plus and minus one sigma.
 #pragma once
 
+#include "core/data/calibration_result.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 
+#include <QString>
 #include <QWidget>
 
 #include <memory>
@@ -70,5 +72,16 @@ class ConvergenceScreen : public QWidget {
   QLabel *camera_label_ = nullptr, *summary_ = nullptr, *stages_ = nullptr;
   QTimer* redraw_ = nullptr;
 };
+
+// Stages of the optimisation as text.
+
+struct StageWords {
+  QString name;  // "Stage 2: + 1 quantity"
+  QString help;  // "Stage 2: + gyroscope scale and misalignment"
+};
+std::vector<StageWords> stageWords(const std::vector<IterationRecord>& iterations);
+
+QString stagesHelp();  // reason for the jump of the cost between stages
+QString neededHelp();  // lines and bands in the charts of parameters
 
 }  // namespace evical::ui

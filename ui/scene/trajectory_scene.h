@@ -5,7 +5,6 @@
 #include "core/data/board_observations.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "ui/scene/colour_scale.h"
 #include "ui/scene/frustum_events.h"
 #include "ui/scene/placed_board.h"
 #include "ui/scene/trajectory_track.h"
@@ -17,9 +16,27 @@
 #include <optional>
 #include <vector>
 
+class QPainter;
+class QRectF;
 class vtkRenderer;
 
 namespace evical::ui {
+
+// Mapping of values to colours, and its colour bar.
+
+struct ColourScale {
+  QString title;  // with unit
+  double high = 1.0;
+  bool dark = false;  // for a dark background
+
+  // Values outside 0 to high are clamped; NaN gets a faint colour that is not part of the scale.
+  QColor colourOf(double value) const;
+};
+
+// End of a scale from 0: a round number that 98 of 100 values do not exceed; NaN does not count.
+double scaleEnd(std::vector<double> values);
+
+void paintColourBar(QPainter& painter, const QRectF& area, const ColourScale& scale);
 
 enum class SceneLayer {
   Board,

@@ -5,6 +5,7 @@
 #include <QColor>
 #include <QIcon>
 #include <QPalette>
+#include <QProxyStyle>
 #include <QString>
 
 #include <array>
@@ -43,5 +44,22 @@ QIcon icon(const QString& name);
 // The same in a given colour, for states: good, warning, bad.
 QIcon icon(const QString& name, const QColor& colour);
 QIcon icon(const QString& name, QPalette::ColorRole role);
+
+// Fusion style with outlines that are visible in dark themes, where its own are darker than the window.
+
+class OutlinedStyle final : public QProxyStyle {
+ public:
+  OutlinedStyle();
+
+  void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override;
+  void drawComplexControl(ComplexControl control, const QStyleOptionComplex* option, QPainter* painter,
+                          const QWidget* widget) const override;
+};
+
+// A few rules that modernise Fusion. Everything else follows the palette.
+
+// Frames with the property `card` are panels, labels with the property `role` are titles, hints or problems.
+QString styleSheetOf(const Theme& theme);
 
 }  // namespace evical::ui

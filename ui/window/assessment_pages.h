@@ -3,6 +3,8 @@
 // paths and files.
 #pragma once
 
+class QWidget;
+
 namespace evical::ui {
 
 class MaintainScreen;
@@ -16,5 +18,12 @@ void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFil
 void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& workbench,
                   SessionFiles& files);
 void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files);
+
+// Proposals for the old result: the shown run, then the stored runs; and the dialogs that choose one.
+
+class OldResultRow;
+struct Workbench;
+
+void wireOldResult(OldResultRow& row, QWidget& page, Workbench& workbench);
 
 }  // namespace evical::ui

@@ -11,6 +11,7 @@
 #include <vector>
 
 class QStackedWidget;
+class QObject;
 
 namespace evical::ui {
 
@@ -69,5 +70,14 @@ QKeySequence keyOfPage(std::size_t index);
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);
 
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files);
+
+// Content of the screens during the calibration of a camera alone, and its result.
+
+class LensFiles;
+struct Pages;
+struct Workbench;
+
+// Call after the other pages are wired: the slots for a camera alone must run after those for a rig.
+void wireLensPages(const Pages& pages, Workbench& workbench, LensFiles& files);
 
 }  // namespace evical::ui

@@ -4,7 +4,6 @@
 #include "core/base/how_to.h"
 #include "core/data/calibration_stage.h"
 #include "core/frontend/front_end_options.h"
-#include "core/pipeline/check/camera_motion.h"
 #include "core/pipeline/pass/event_intake.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/pass/session_recording.h"
@@ -14,6 +13,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace evical {
@@ -90,6 +90,24 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
   pass.imus = std::move(samples.imus);
   pass.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
   return pass;
+}
+
+CameraMotion::CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options,
+                           std::int64_t start_ns)
+    : lens_(lens),
+      options_(*options.egomotion),
+      start_ns_(start_ns),
+      slopes_(lens.resolution_px, *options.edge_slopes, options.egomotion->window_s,
+              [this](std::int64_t begin_ns, std::span<const EdgeSlope> slopes) {
+                std::vector<WindowMotion>& windows = record_.windows;
+                windows.push_back(estimateWindowMotion(slopes, lens_, {start_ns_, begin_ns}, options_));
+                if (windows.back().use == WindowUse::Used)
+                  record_.slopes.add(windows.size() - 1, begin_ns, slopes, options_);
+              }) {}
+
+CameraRecord CameraMotion::finish() {
+  slopes_.finish();
+  return std::move(record_);
 }
 
 }  // namespace evical

@@ -5,9 +5,15 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
 #include "core/egomotion/camera_record.h"
+#include "core/egomotion/egomotion_options.h"
+#include "core/egomotion/lens_rays.h"
+#include "core/frontend/edge_crossings.h"
+#include "core/frontend/edge_slopes.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/pipeline/session/session.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace evical {
@@ -24,5 +30,27 @@ struct BoardlessPass {
 // Uses the session's lenses, which must all be known. Memory does not grow with the number of events. Throws
 // BadInput for streams that are missing, empty, or do not fit the session, and Cancelled.
 BoardlessPass readWithoutBoard(const Session& session, const RunContext& context);
+
+// Rotation of a camera over time from its events: bursts, slopes of their times, and the motion in each
+// window.
+
+class CameraMotion {
+ public:
+  // `start_ns`: start of the recording, the origin of the windows' times.
+  CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options, std::int64_t start_ns);
+
+  // Adds bursts from BurstExtractor.
+  void add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns) {
+    slopes_.add(bursts, complete_until_ns);
+  }
+  CameraRecord finish();
+
+ private:
+  LensRays lens_;
+  EgomotionOptions options_;
+  std::int64_t start_ns_;
+  CameraRecord record_;
+  EdgeSlopeFinder slopes_;
+};
 
 }  // namespace evical

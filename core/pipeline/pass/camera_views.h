@@ -6,10 +6,15 @@
 #include "core/data/board_observations.h"
 #include "core/data/camera_lens.h"
 #include "core/data/recording_fault.h"
+#include "core/frames/frame_tracker.h"
+#include "core/frames/views_from_frames.h"
 #include "core/pipeline/pass/camera_batch.h"
 #include "core/pipeline/session/session.h"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -32,5 +37,62 @@ struct ViewRequest {
   const RunContext& context;
 };
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request);
+
+// Views of the board from frames, which were chosen by their rate: decoded, searched, tracked.
+
+class FrameViews final : public CameraViews {
+ public:
+  FrameViews(const CameraBatch& first, const ViewRequest& request);
+
+  // Throws BadInput if images have another size than the session's, if their size changes, or if none can be
+  // read.
+  void consume(const CameraBatch& batch) override;
+  const BoardObservations& soFar() const override { return so_far_; }
+  BoardObservations finish(std::vector<RecordingFault>& faults) override;
+  Resolution resolution_px() const override { return resolution_px_; }
+
+ private:
+  void see(const Frame& frame, double time_s);
+  void checkSize(const GrayImage& image);
+
+  const SessionCamera& camera_;
+  const RunContext& context_;
+  std::int64_t start_ns_;
+  std::optional<CameraIntrinsics> lens_;
+  FrameTracker tracker_;
+  Resolution resolution_px_;
+  BoardObservations so_far_;  // without views, which are added at the end
+  std::uint64_t decoded_ = 0, unreadable_ = 0;
+  std::string first_problem_;
+};
+
+// Views from points of the board that another program has measured: points with the same timestamp form a
+// view.
+
+class PointViews final : public CameraViews {
+ public:
+  PointViews(const CameraBatch& first, const ViewRequest& request);
+
+  // Throws BadInput if points do not belong to this board or this sensor.
+  void consume(const CameraBatch& batch) override;
+  const BoardObservations& soFar() const override { return so_far_; }
+  BoardObservations finish(std::vector<RecordingFault>& faults) override;
+
+ private:
+  FoundPoints pointsOf(const CameraBatch& batch);
+  bool belongs(const MeasuredPoint& point);
+  void checkShare() const;
+
+  const Board& board_;
+  std::string stream_;
+  Resolution resolution_px_;
+  std::int64_t start_ns_;
+  double unsaid_sigma_px_;
+  std::optional<CameraIntrinsics> lens_;
+  BoardObservations so_far_;  // without views, which are added at the end
+  std::vector<PointsInFrame> frames_;
+  std::uint64_t seen_ = 0, unknown_ = 0, outside_ = 0, twice_ = 0;
+  int largest_ = 0;  // largest index that the board does not have
+};
 
 }  // namespace evical

@@ -5,6 +5,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/progress.h"
+#include "core/base/yaml_node.h"
 #include "core/data/intrinsics_result.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -30,5 +32,11 @@ struct RestoredDetections {
 // range. Cameras that the session does not have are ignored.
 RestoredDetections restoreDetections(const std::filesystem::path& folder, const Session& session,
                                      const RunContext& context);
+
+// Intrinsics that were calibrated first, with all data for reports, as YAML.
+
+// Without the intrinsics themselves. One key per line, each indented by `indent` blanks.
+std::string foundIntrinsicsYaml(const IntrinsicsResult& found, int indent);
+IntrinsicsResult foundIntrinsicsFrom(const YamlNode& map, const CameraIntrinsics& intrinsics);
 
 }  // namespace evical

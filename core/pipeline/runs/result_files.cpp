@@ -8,10 +8,8 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/saved_detections.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/html/html_report.h"
-#include "core/report/residuals_csv.h"
 
 #include <fmt/format.h>
 

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/event.h"
 #include "core/synthetic/scenario.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace evical {
@@ -20,5 +23,13 @@ struct SimulationSummary {
 // recording. The format is one of recordingFormats(); empty: the scenario's.
 SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
                            const RunContext& context, const std::string& format_name = {});
+
+// Events of all event cameras of a scenario as one stream in time order, with one thread per camera.
+
+// Calls `sink` in the caller's thread with packets of about 10 ms; rethrows exceptions of `sink` and the
+// simulations.
+void simulateCameras(const Scenario& scenario,
+                     const std::function<void(std::size_t camera, EventSpan events)>& sink,
+                     const RunContext& context);
 
 }  // namespace evical

@@ -6,16 +6,40 @@
 #include "core/data/event.h"
 #include "core/recording/block_decoder.h"
 #include "core/recording/prophesee/evt3_decoder.h"
-#include "core/recording/ros/host_clock.h"
 #include "core/recording/ros/ros_messages.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace evical::ros {
+
+// Offset of a sensor's clock to that of the host that received its data, from stamps at the arrival of
+// packets. Delays vary, so the earliest packets determine it.
+
+// host_time = sensor_time + offset, at the middle of the recording; drift_ppm is its change.
+struct HostClockOffset {
+  double offset_s = 0.0;
+  std::optional<double> drift_ppm;  // nullopt for short recordings
+};
+
+class HostClock {
+ public:
+  void add(std::int64_t sensor_ns, std::int64_t host_ns);
+
+  // nullopt before the first packet.
+  std::optional<HostClockOffset> offset() const;
+
+ private:
+  struct Earliest {
+    std::int64_t sensor_ns = 0, offset_ns = 0;
+  };
+  std::map<std::int64_t, Earliest> earliest_;  // of some seconds each
+};
 
 enum class Encoding { Unknown, Evt2, Evt21, Evt3, Mono, Trigger, Libcaer, LibcaerCmp };
 Encoding encodingOf(std::string_view name);

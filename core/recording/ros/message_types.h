@@ -4,6 +4,7 @@
 #include "core/data/recording.h"
 #include "core/recording/ros/message_cursor.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,5 +31,16 @@ Content contentOf(std::string_view type, std::string_view md5, std::string_view 
 
 // Why messages that may be of a sensor are not read; empty for others.
 std::string whyUnread(std::string_view topic, std::string_view type, std::string_view definition);
+
+// Serialised layout of a ROS message definition, to recognise copies of a type under another name.
+
+// The name of a type without its package: "Imu" of "sensor_msgs/Imu".
+inline std::string_view lastPart(std::string_view type) {
+  return type.substr(type.rfind('/') + 1);
+}
+
+// Fields in order with nested types expanded and without their names: "(uint32 seq,...) header,uint32
+// height,...". nullopt if the definition names a type that it does not define; empty for an empty one.
+std::optional<std::string> messageLayout(std::string_view definition);
 
 }  // namespace evical::ros

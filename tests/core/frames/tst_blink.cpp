@@ -1,6 +1,6 @@
 // A blinking light: detected by its rhythm, split into half periods, distinguished from weak flicker.
 #include "core/frames/blink.h"
-#include "core/frames/half_periods.h"
+#include "core/frames/flash_gathering.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>

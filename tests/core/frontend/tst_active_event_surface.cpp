@@ -1,4 +1,4 @@
-#include "core/frontend/active_event_surface.h"
+#include "core/frontend/normal_flow.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"

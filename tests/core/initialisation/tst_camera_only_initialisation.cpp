@@ -1,7 +1,7 @@
 #include "core/base/error.h"
+#include "core/initialisation/camera_only_initialisation.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/initialise.h"
-#include "core/initialisation/non_overlapping_cameras.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"

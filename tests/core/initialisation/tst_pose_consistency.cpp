@@ -1,4 +1,4 @@
-#include "core/initialisation/pose_consistency.h"
+#include "core/initialisation/camera_alignment.h"
 
 #include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"

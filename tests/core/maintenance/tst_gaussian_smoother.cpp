@@ -1,5 +1,5 @@
 // Smoothed signals do not depend on sample times; slopes are those of the smoothed signal; gaps are detected.
-#include "core/maintenance/gaussian_smoother.h"
+#include "core/maintenance/imu_pairs.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // Stops: their detection, and the accelerometer calibration from them, with correct sigmas over seeds.
 #include "core/recording/recording_reader.h"
-#include "core/synthetic/drive_motion.h"
 #include "core/synthetic/drive_simulator.h"
 #include "tests/core/maintenance/drive_data.h"
 #include "tests/support/test_program.h"

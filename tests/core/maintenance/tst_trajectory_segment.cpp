@@ -3,7 +3,6 @@
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/maintenance/trajectory_segment.h"
-#include "core/synthetic/drive_motion.h"
 #include "core/synthetic/drive_simulator.h"
 #include "core/synthetic/random.h"
 #include "tests/core/maintenance/drive_data.h"

@@ -1,6 +1,5 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
-#include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/result_table.h"
 #include "core/report/truth_comparison.h"

@@ -1,7 +1,7 @@
 // Simulated drives: rates and accelerations are the derivatives of the pose, the rig is at rest during stops,
 // and attitudes cover all directions.
 #include "core/geometry/so3.h"
-#include "core/synthetic/drive_motion.h"
+#include "core/synthetic/drive_simulator.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>

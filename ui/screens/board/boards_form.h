@@ -4,10 +4,16 @@
 
 #include "core/pipeline/session/session.h"
 
+#include <QStringList>
 #include <QWidget>
 
+#include <cstddef>
+#include <set>
 #include <utility>
 #include <vector>
+
+class QTabBar;
+class QToolButton;
 
 namespace evical::ui {
 
@@ -45,6 +51,30 @@ class BoardsForm : public QWidget {
   std::size_t chosen_ = 0;
   BoardChooser* chooser_;
   BoardForm* form_;
+};
+
+// Chooses the board in the form by name, adds one, removes one. A single board needs no choice.
+
+class BoardChooser : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit BoardChooser(QWidget* parent = nullptr);
+
+  void setBoards(const QStringList& names, std::size_t chosen);
+  // Boards with a problem.
+  void setWrong(const std::set<std::size_t>& wrong);
+  // Reason why no board can be added; empty: one can.
+  void setFull(const QString& why);
+
+ signals:
+  void chosen(std::size_t index);
+  void addRequested();
+  void removeRequested();  // of the chosen board
+
+ private:
+  QTabBar* tabs_;
+  QToolButton *add_, *remove_;
 };
 
 }  // namespace evical::ui

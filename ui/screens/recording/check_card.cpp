@@ -2,7 +2,6 @@
 #include "ui/screens/recording/check_card.h"
 
 #include "ui/forms/form_words.h"
-#include "ui/screens/recording/light_mark.h"
 #include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
@@ -11,6 +10,8 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QPainter>
+#include <QPolygonF>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
@@ -311,6 +312,45 @@ QString CheckCard::text() const {
   for (const QLabel* const each : findChildren<QLabel*>())
     if (each->isVisibleTo(this) && !each->text().isEmpty()) lines << each->text();
   return lines.join('\n');
+}
+
+QString lightWord(Light light) {
+  return light == Light::Good   ? QObject::tr("good")
+         : light == Light::Fair ? QObject::tr("fair")
+                                : QObject::tr("poor");
+}
+
+LightMark::LightMark(QWidget* parent) : QWidget(parent) {
+  setFixedSize(sizeHint());
+  setLight(light_);
+}
+
+void LightMark::setLight(Light light) {
+  light_ = light;
+  setAccessibleName(lightWord(light));
+  setToolTip(lightWord(light));
+  update();
+}
+
+void LightMark::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  const QRectF box = QRectF(rect()).adjusted(1.0, 1.0, -1.0, -1.0);
+  switch (light_) {
+    case Light::Good:
+      painter.setBrush(theme().good);
+      painter.drawEllipse(box);
+      return;
+    case Light::Fair:
+      painter.setBrush(theme().warning);
+      painter.drawPolygon(QPolygonF{{box.center().x(), box.top()}, box.bottomRight(), box.bottomLeft()});
+      return;
+    case Light::Poor:
+      painter.setBrush(theme().bad);
+      painter.drawRect(box.adjusted(1.0, 1.0, -1.0, -1.0));
+      return;
+  }
 }
 
 }  // namespace evical::ui

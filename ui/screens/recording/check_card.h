@@ -5,6 +5,8 @@
 #include "core/pipeline/rig/recording_assessment.h"
 
 #include <QFrame>
+#include <QString>
+#include <QWidget>
 
 #include <optional>
 
@@ -67,6 +69,27 @@ class CheckCard : public QFrame {
   QGridLayout* grid_;
   bool idle_ = true;  // no check
   bool following_ = false, assessed_ = false;
+};
+
+// Light that differs by shape as well as by colour: a disc, a triangle, a square.
+
+QString lightWord(Light light);  // "good", "fair", "poor"
+
+class LightMark : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit LightMark(QWidget* parent = nullptr);
+
+  void setLight(Light light);
+  Light light() const { return light_; }
+  QSize sizeHint() const override { return {14, 14}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  Light light_ = Light::Fair;
 };
 
 }  // namespace evical::ui

@@ -59,4 +59,20 @@ class StartScreen : public QWidget {
   QProgressBar* demo_progress_;
 };
 
+// Pictures of two of the three steps on the start page: a sheet with a board, and the events of a moving
+// board. The step between them is a MotionPicture.
+
+class StartPicture : public QWidget {
+ public:
+  enum class Shows { Sheet, Events };
+  StartPicture(Shows shows, QWidget* parent) : QWidget(parent), shows_(shows) {}
+  QSize sizeHint() const override { return {300, 300}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  Shows shows_;
+};
+
 }  // namespace evical::ui

@@ -1,6 +1,6 @@
 // Trajectories of other programs, as `maintain` reads them.
 #include "core/base/error.h"
-#include "core/pipeline/maintain/trajectory_file.h"
+#include "core/pipeline/maintain/maintained_trajectory.h"
 #include "tests/support/test_program.h"
 
 #include <QFile>

@@ -1,5 +1,5 @@
 // If the desktop's numbers have decimal commas, files are read and written with decimal points.
-#include "core/pipeline/maintain/trajectory_file.h"
+#include "core/pipeline/maintain/maintained_trajectory.h"
 #include "core/pipeline/session/session.h"
 #include "core/recording/recording_reader.h"
 #include "core/synthetic/scenario_yaml.h"
