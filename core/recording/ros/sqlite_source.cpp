@@ -60,6 +60,28 @@ std::uint64_t statedBytes(const std::filesystem::path& path) {
 
 constexpr std::int64_t kLargestId = std::int64_t{1} << 40;
 
+// Limits of the lists of topics and definitions: a column's default value makes rows long that take no space in the file.
+class ListedText {
+ public:
+  explicit ListedText(std::string file) : file_(std::move(file)) {}
+
+  // Throws CalibrationError (BadInput).
+  void add(std::size_t bytes) {
+    constexpr std::uint64_t kMost_bytes = std::uint64_t{1} << 26, kMostRows = 10'000;
+    bytes_ += bytes;
+    if (++rows_ <= kMostRows && bytes_ <= kMost_bytes) return;
+    throw badInput(
+        file_,
+        fmt::format("lists more than {} topics or message types, or more than {} MB of their texts",
+                    kMostRows, kMost_bytes >> 20),
+        "Copy the recording again; if it is right, write its wanted topics into a new one");
+  }
+
+ private:
+  std::string file_;
+  std::uint64_t bytes_ = 0, rows_ = 0;
+};
+
 }  // namespace
 
 class SqliteSource::Database {
@@ -190,9 +212,11 @@ bool SqliteSource::hasTimeIndex() {
 void SqliteSource::listTopics() {
   const std::map<std::string, std::string> known = definitions();
   Statement statement(*database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  ListedText listed(path_.string());
   while (statement.step()) {
     SourceTopic entry;
     entry.topic = {statement.text(1), statement.text(2), "", "", Serialization::Cdr};
+    listed.add(entry.topic.name.size() + entry.topic.type.size());
     if (const auto found = known.find(entry.topic.type); found != known.end())
       entry.topic.definition = found->second;
     if (const std::string format = statement.text(3); format != "cdr") {
@@ -218,7 +242,12 @@ std::map<std::string, std::string> SqliteSource::definitions() {
   Statement statement(*database_,
                       "SELECT topic_type, encoded_message_definition FROM message_definitions "
                       "WHERE encoding='ros2msg'");
-  while (statement.step()) found[statement.text(0)] = statement.text(1);
+  ListedText listed(path_.string());
+  while (statement.step()) {
+    std::string definition = statement.text(1);
+    listed.add(definition.size());
+    found[statement.text(0)] = std::move(definition);
+  }
   return found;
 }
 

@@ -483,6 +483,24 @@ bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& c
   return isTime(time_ns);
 }
 
+std::string timeOutOfRange(const std::vector<std::string_view>& cells, const TextColumns& columns) {
+  const TimeColumn& part = columns.time.front();
+  double number = 0.0;
+  std::int64_t time_ns = 0;
+  if (cells.size() < columns.count() || parseTimes(cells, columns, time_ns) ||
+      !parseCell(cells[part.column], columns.style, number))
+    return "";
+  for (std::int64_t unit_ns = part.unit_ns / 1000; unit_ns > 0; unit_ns /= 1000) {
+    const double in_unit_ns = number * static_cast<double>(unit_ns);
+    if (std::abs(in_unit_ns) < static_cast<double>(kLatestTime_ns))
+      return fmt::format(
+          "{} is no time in {}, but one in {}: name the column's unit in the header or in the "
+          "session (columns)",
+          cells[part.column], timeUnitName(part.unit_ns), timeUnitName(unit_ns));
+  }
+  return "";
+}
+
 TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view names,
                         const std::string& file) {
   TableHead head(!names.empty());

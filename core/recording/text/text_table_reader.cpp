@@ -258,6 +258,11 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
       source.next_point = point;
       return;
     }
+    constexpr std::size_t kMost = std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1;
+    if (points.size() == kMost)
+      throw badInput(fmt::format("{} (line {})", streams_[stream].name, source.lines.number()),
+                     fmt::format("more than {} points have the same time", kMost),
+                     "Give each view a time of its own");
     points.push_back(point);
   }
   finish(source, stream);
@@ -349,6 +354,12 @@ bool TextTableReader::parseImu(const Source& source, std::string_view line, RawI
 
 void TextTableReader::addBadLine(Source& source, std::size_t stream) {
   if (++source.bad_lines > kMostBadLines) return;
+  const std::string time = timeOutOfRange(parts_, source.columns);
+  if (!time.empty()) {
+    faults_.push_back({streams_[stream].name, FaultKind::Unit, 0.0,
+                       fmt::format("Line {}: {}; it is left out.", source.lines.number(), time)});
+    return;
+  }
   const bool last = source.lines.atEnd();
   faults_.push_back(
       {streams_[stream].name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,

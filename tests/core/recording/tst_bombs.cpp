@@ -193,6 +193,28 @@ void defaultMessages(const fs::path& path) {
                     std::string(600'000, '0') + "'");
 }
 
+// The same in a list: `columns` are those of the table's rows, and `added` is another column with a long default value.
+void defaultRows(const fs::path& path, const std::string& table, const std::string& columns,
+                 const std::string& values, const std::string& added) {
+  const std::string long_text(500'000, 'a');
+  writeDatabase(path,
+                "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data "
+                "BLOB); CREATE TABLE " +
+                    table + "(id INTEGER PRIMARY KEY, " + columns +
+                    "); WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 9000) "
+                    "INSERT INTO " +
+                    table + " SELECT i, " + values + " FROM n; ALTER TABLE " + table + " ADD COLUMN " +
+                    added + " TEXT DEFAULT '" + long_text + "'");
+}
+void defaultNames(const fs::path& path) {
+  defaultRows(path, "topics", "type TEXT, serialization_format TEXT", "'sensor_msgs/msg/Imu', 'cdr'", "name");
+}
+void defaultDefinitions(const fs::path& path) {
+  defaultRows(path, "message_definitions", "topic_type TEXT, encoding TEXT", "'a/msg/B' || i, 'ros2msg'",
+              "encoded_message_definition");
+  writeDatabase(path, kTopics);
+}
+
 using Write = void (*)(const fs::path&);
 using Bytes = std::string (*)();
 
@@ -250,6 +272,8 @@ class TestBombs : public QObject {
     QTest::newRow("generated column") << Write{computedMessages} << "messages computes its values";
     QTest::newRow("zstd messages") << Write{packedMessages} << "unpacks to more than";
     QTest::newRow("default value") << Write{defaultMessages} << "unpacks to more than";
+    QTest::newRow("default names") << Write{defaultNames} << "lists more than .* 64 MB of their texts";
+    QTest::newRow("default definitions") << Write{defaultDefinitions} << "more than 64 MB of their texts";
   }
   void databases_costLittle() {
     QFETCH(Write, write);

@@ -79,6 +79,8 @@ class TestTextTables : public QObject {
   void wideTables_areRefusedBriefly();
   void tablesWithoutHeader_haveTheUnitThatFits_data();
   void tablesWithoutHeader_haveTheUnitThatFits();
+  void timesOfAnotherUnit_areNamed();
+  void pointsOfOneTime_areLimited();
   void decimalPixels_areRefused_data();
   void decimalPixels_areRefused();
 
@@ -582,6 +584,29 @@ void TestTextTables::tablesWithoutHeader_haveTheUnitThatFits() {
   const Recording read = readRecording(*reader);
   const std::int64_t last_ns = events ? read.events.at(199).time_ns : read.imu_samples.at(199).time_ns;
   QCOMPARE(qlonglong(last_ns), 199 * step * unit_ns);
+}
+
+// Milliseconds since 1970 are too many seconds for any time.
+void TestTextTables::timesOfAnotherUnit_areNamed() {
+  std::string text;
+  for (int i = 0; i < 50; ++i) text += fmt::format("{}.500 {} 5 1\n", 1'700'000'000'000 + i, i);
+  writeFile(path("events.txt"), text);
+  const auto reader = openRecording(path("events.txt"));
+  readRecording(*reader);
+  const auto& faults = reader->faults();
+  const auto unit = std::ranges::find(faults, FaultKind::Unit, &RecordingFault::kind);
+  QVERIFY(unit != faults.end());
+  QVERIFY2(unit->text.find("Line 1: 1700000000000.500 is no time in s, but one in ms") == 0,
+           unit->text.c_str());
+}
+
+// A board has no more points; without a limit, the whole file would be one view.
+void TestTextTables::pointsOfOneTime_areLimited() {
+  std::string text = "time_s,point,x_px,y_px\n";
+  for (int i = 0; i < 70'000; ++i) text += "0.1,0,1.0,2.0\n";
+  writeFile(path("points.csv"), text);
+  const auto reader = openRecording(path("points.csv"));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, readRecording(*reader));
 }
 
 void TestTextTables::decimalPixels_areRefused_data() {
