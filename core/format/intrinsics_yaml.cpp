@@ -7,12 +7,14 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/sphere_lens.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -159,6 +161,26 @@ CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
 
 // sensor_msgs/CameraInfo as written by camera_calibration_parsers, or printed by `rostopic echo` or `ros2
 // topic echo`.
+// The lens of a camera_info is that of the whole sensor, but its pictures may be binned, or show a part.
+void refusePartOfImage(const YamlNode& map, const Resolution& size_px) {
+  constexpr const char* kAdvice = "Give the lens of the pictures as they were recorded";
+  for (const char* const key : {"binning_x", "binning_y"})
+    if (const auto binning = map.find(key); binning && binning->integer(0, kMostPixels) > 1)
+      throw binning->error(fmt::format("is {}: the pictures have fewer pixels than the lens is for",
+                                       binning->integer(0, kMostPixels)),
+                           kAdvice);
+  const auto roi = map.find("roi");
+  if (!roi || !roi->isMap()) return;
+  const auto numberOf = [&](const char* key) {
+    const auto number = roi->find(key);
+    return number ? number->integer(0, kMostPixels) : 0;
+  };
+  const int width_px = numberOf("width"), height_px = numberOf("height");
+  if (numberOf("x_offset") > 0 || numberOf("y_offset") > 0 ||
+      (width_px > 0 && width_px != size_px.width_px) || (height_px > 0 && height_px != size_px.height_px))
+    throw roi->error("is a part of the image, but the lens is that of the whole one", kAdvice);
+}
+
 CameraIntrinsics readCameraInfo(const YamlNode& map) {
   const bool parsers = map.has("camera_matrix");
   const YamlNode distortion = numbersOf(anyOf(map, {"distortion_coefficients", "D", "d"}));
@@ -170,6 +192,7 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   const char* prefix = parsers ? "image_" : "";
   camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
                           map[fmt::format("{}height", prefix)].integer(1, kMostPixels)};
+  refusePartOfImage(map, camera.resolution_px);
   return camera;
 }
 
@@ -380,6 +403,47 @@ CameraIntrinsics readIntrinsics(const YamlNode& map) {
   return camera;
 }
 
+namespace {
+
+// Follows rays from the optical axis towards a place on the image's border: how much the lens magnifies there must change
+// little. Lenses of real cameras lie far within these limits, also badly calibrated ones.
+void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Vector2d& border_px,
+                                 const std::string& place) {
+  constexpr double kStep_rad = 0.01, kWidest_rad = 1.4, kWeakest = 0.1, kStrongest = 4.0, kMostOfTheWay = 0.6;
+  constexpr const char* kAdvice = "Check the model, the order and the unit of the coefficients";
+  const Eigen::Vector2d way_px = border_px - camera.principal_point_px;
+  const Eigen::Vector2d away = way_px.cwiseQuotient(camera.focal_length_px).normalized();
+  Eigen::Vector2d last_px = camera.principal_point_px;
+  double middle_px = 0.0;  // pixels per step on the axis
+  for (double angle_rad = kStep_rad; angle_rad < kWidest_rad; angle_rad += kStep_rad) {
+    const Eigen::Vector2d aside = std::sin(angle_rad) * away;
+    const auto pixel = project(camera, {aside.x(), aside.y(), std::cos(angle_rad)});
+    const double share = (last_px - camera.principal_point_px).norm() / way_px.norm();
+    if (share >= 1.0) return;
+    if (!pixel && share < kMostOfTheWay)
+      throw badInput(
+          place,
+          fmt::format("the distortion folds the image at {:.0f} deg off the axis", angle_rad * kDegPerRad),
+          kAdvice);
+    if (!pixel) return;
+    const double step_px = (*pixel - last_px).norm();
+    if (middle_px == 0.0) middle_px = step_px;
+    last_px = *pixel;
+    // A pinhole without distortion magnifies as the derivative of the tangent.
+    const double pinhole =
+        camera.model == CameraModel::PinholeRadtan ? std::pow(std::cos(angle_rad - 0.5 * kStep_rad), 2) : 1.0;
+    if (step_px > kWeakest * middle_px && step_px * pinhole < kStrongest * middle_px) continue;
+    throw badInput(
+        place,
+        fmt::format("the distortion is implausible: at {:.0f} deg off the axis, the lens magnifies "
+                    "{:.2g} times as much as on it",
+                    angle_rad * kDegPerRad, step_px / middle_px),
+        kAdvice);
+  }
+}
+
+}  // namespace
+
 void validateImported(const CameraIntrinsics& camera, const std::string& place) {
   validate(withAnySize(camera), place);
   constexpr double kLeastFocal_px = 5.0, kMostFocal_px = 1e7;  // a telescope has less
@@ -390,8 +454,14 @@ void validateImported(const CameraIntrinsics& camera, const std::string& place) 
                      "Give it in pixels");
   const Resolution size = camera.resolution_px;
   if (centre.x() > 0.0 && centre.y() > 0.0 &&
-      (!size.known() || (centre.x() < size.width_px && centre.y() < size.height_px)))
+      (!size.known() || (centre.x() < size.width_px && centre.y() < size.height_px))) {
+    if (!size.known()) return;
+    const Eigen::Vector2d last(size.width_px - 1, size.height_px - 1);
+    for (const double x : {0.0, 0.5, 1.0})
+      for (const double y : {0.0, 0.5, 1.0})
+        if (x != 0.5 || y != 0.5) refuseImplausibleDistortion(camera, {x * last.x(), y * last.y()}, place);
     return;
+  }
   throw badInput(
       place,
       fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image{}", centre.x(), centre.y(),

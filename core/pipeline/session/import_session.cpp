@@ -151,6 +151,17 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
   }
 }
 
+// Square pixels have nearly the same focal lengths. Numbers in the order fx cx fy cy have not.
+void noteOblongPixels(const std::string& name, const CameraIntrinsics& camera,
+                      std::vector<std::string>& notes) {
+  constexpr double kMost = 1.3;
+  const double factor = camera.focal_length_px.maxCoeff() / camera.focal_length_px.minCoeff();
+  if (factor > kMost)
+    notes.push_back(fmt::format(
+        "{}: fx and fy differ by a factor of {:.1f}: check the order of the numbers (fx fy cx cy)", name,
+        factor));
+}
+
 ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,
                                const std::filesystem::path& output) {
   const std::vector<ImportedIntrinsics> cameras = intrinsicsOf(sources);
@@ -164,6 +175,7 @@ ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,
       if (other.path == path)
         throw badInput(camera.name, "is the name of two cameras", "Import the files one by one");
     imported.files.push_back({path, intrinsicsYaml(camera.intrinsics, 0)});
+    noteOblongPixels(camera.name, camera.intrinsics, imported.notes);
   }
   notePriors(sources, imported.notes);
   return imported;
@@ -186,6 +198,8 @@ ImportedSession sessionOf(const std::vector<ImportSource>& sources, const Import
   }
   setRecording(request, imported);
   Session& session = imported.session;
+  for (const SessionCamera& camera : session.cameras)
+    if (camera.intrinsics) noteOblongPixels(camera.name, *camera.intrinsics, imported.notes);
   if (request.radius_m) session.board.radius_m = *request.radius_m;
   validate(session.board);
   if (session.reference.empty())

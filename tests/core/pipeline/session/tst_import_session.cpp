@@ -270,6 +270,48 @@ class TestImportSession : public QObject {
             << filled(text, focal, centre);
     }
   }
+  void impossibleLenses_areNamed_data() {
+    QTest::addColumn<QString>("content");
+    QTest::addColumn<QString>("says");
+    const QString kalibr =
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [%1]\n  distortion_model: %2\n"
+        "  distortion_coeffs: [%3]\n  resolution: [640, 480]\n";
+    const char* const kLens = "460, 459, 320, 240";
+    QTest::newRow("strong") << filled(kalibr, kLens, "radtan").arg("-28, 700, 0, 0")
+                            << "distortion is implausible";
+    QTest::newRow("degrees") << filled(kalibr, kLens, "equidistant").arg("5, 5, 5, 5")
+                             << "distortion is implausible";
+    QTest::newRow("folded") << filled(kalibr, kLens, "radtan").arg("-1.8, 0.9, 0, 0") << "the distortion ";
+    QTest::newRow("order") << filled(kalibr, "460, 320, 459, 240", "radtan").arg("0, 0, 0, 0")
+                           << "noted: cam0: fx and fy differ by a factor of 1.4";
+    const QString ros =
+        "image_width: 640\nimage_height: 480\ndistortion_model: plumb_bob\ncamera_matrix: {rows: 3, cols: "
+        "3, data: [460, 0, 320, 0, 460, 240, 0, 0, 1]}\ndistortion_coefficients: {rows: 1, cols: 5, data: "
+        "[-0.3, 0.1, 0, 0, 0]}\n";
+    QTest::newRow("binning") << ros + "binning_x: 2\nbinning_y: 2\n"
+                             << "is 2: the pictures have fewer pixels";
+    QTest::newRow("part") << ros + "roi: {x_offset: 100, y_offset: 50, height: 100, width: 100}\n"
+                          << "is a part of the image";
+    QTest::newRow("right") << ros +
+                                  "binning_x: 1\nbinning_y: 0\nroi: {x_offset: 0, y_offset: 0, height: "
+                                  "480, width: 640, do_rectify: false}\n"
+                           << "";
+    QTest::newRow("fisheye")
+        << filled(kalibr, "200, 200, 320, 240", "equidistant").arg("-0.02, 0.01, -0.008, 0.002") << "";
+  }
+  void impossibleLenses_areNamed() {
+    QFETCH(QString, content);
+    QFETCH(QString, says);
+    QString said;
+    try {
+      for (const std::string& note :
+           importFiles({{write("lens.yaml", content.toStdString())}, "", {}, std::nullopt}, "out.yaml").notes)
+        if (note.find("differ") != std::string::npos) said = "noted: " + QString::fromStdString(note);
+    } catch (const CalibrationError& error) {
+      said = error.what();
+    }
+    QVERIFY2(said.isEmpty() == says.isEmpty() && said.contains(says), qPrintable(said));
+  }
   void implausibleLenses_areRefused() {
     QFETCH(QString, content);
     const ImportRequest request{{write("bad.yaml", content.toStdString())}, "", {}, std::nullopt};
