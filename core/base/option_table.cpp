@@ -76,12 +76,19 @@ std::string numberText(std::int64_t value) {
   return fmt::format("{}", value);
 }
 
+template <class Number>
+std::string rangeText(const char* what, Number minimum, Number maximum, const char* unit) {
+  if (minimum == std::numeric_limits<Number>::lowest() && maximum == std::numeric_limits<Number>::max())
+    return fmt::format("Give {}", what);
+  return fmt::format("Give {} from {} to {}", what, minimum, withUnit(numberText(maximum), unit));
+}
+
 double parseReal(const std::string& name, std::string_view text, double minimum, double maximum,
                  const char* unit) {
   double value = 0.0;
   if (!parseWhole(text, value) || !std::isfinite(value))
     throw badInput(name, fmt::format("'{}' is not a number", text),
-                   fmt::format("Give a number from {} to {}", minimum, withUnit(numberText(maximum), unit)));
+                   rangeText("a number", minimum, maximum, unit));
   checkRange(name, value, minimum, maximum, unit);
   return value;
 }
@@ -90,9 +97,8 @@ std::int64_t parseInteger(const std::string& name, std::string_view text, std::i
                           std::int64_t maximum, const char* unit) {
   std::int64_t value = 0;
   if (!parseWhole(text, value))
-    throw badInput(
-        name, fmt::format("'{}' is not a whole number", text),
-        fmt::format("Give a whole number from {} to {}", minimum, withUnit(numberText(maximum), unit)));
+    throw badInput(name, fmt::format("'{}' is not a whole number", text),
+                   rangeText("a whole number", minimum, maximum, unit));
   checkRange(name, value, minimum, maximum, unit);
   return value;
 }
@@ -111,7 +117,8 @@ std::size_t parseChoice(const std::string& name, std::string_view text,
     if (text == choices[i]) return i;
   const std::vector<std::string> known(choices.begin(), choices.end());
   const std::string nearest = nearestName(text, known);
-  throw badInput(name, fmt::format("'{}' is not one of {}", text, joined(known)),
+  throw badInput(name,
+                 fmt::format("'{}' is not {}{}", text, known.size() == 1 ? "" : "one of ", joined(known)),
                  nearest.empty() ? "" : fmt::format("Did you mean '{}'?", nearest));
 }
 

@@ -113,7 +113,13 @@ YamlNode YamlNode::load(const std::filesystem::path& file) {
 YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
   requireFewValues(text, file);
   try {
-    return {std::make_shared<const Node>(Node{{YAML::Load(text), 1}}), file, ""};
+    std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    std::erase_if(documents, [](const YAML::Node& document) { return document.IsNull(); });
+    if (documents.size() > 1)
+      throw badInput(file, fmt::format("has {} YAML documents, separated by ---", documents.size()),
+                     "Keep one of them");
+    return {std::make_shared<const Node>(Node{{documents.empty() ? YAML::Node() : documents.front(), 1}}),
+            file, ""};
   } catch (const YAML::DeepRecursion& problem) {
     throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1), "is nested too deeply",
                    "Check that it is the right file");
