@@ -35,6 +35,7 @@ class TestBadRecording : public QObject {
   void init_ofNoSession_writesNone_data();
   void init_ofNoSession_writesNone();
   void coarseStamps_areSaid();
+  void pictures_thatAllCannotBeRead_areNamed();
 };
 
 void TestBadRecording::recording_thatIsMissing_isNamed() {
@@ -272,6 +273,24 @@ void TestBadRecording::coarseStamps_areSaid() {
   const auto match = QRegularExpression("left\\.time_offset.* (-?\\d+\\.\\d+)\\n").match(compared.output);
   QVERIFY2(match.hasMatch(), qPrintable(compared.output));
   QVERIFY2(std::abs(match.captured(1).toDouble()) < 2.0, qPrintable(compared.output));  // sigmas
+}
+
+// Two pictures with a header that states 2^31 - 1 pixels each way.
+void TestBadRecording::pictures_thatAllCannotBeRead_areNamed() {
+  QTemporaryDir folder;
+  QDir(folder.path()).mkdir("pictures");
+  const QByteArray huge = QByteArray::fromHex("89504e470d0a1a0a0000000d494844527fffffff7fffffff0800000000") +
+                          QByteArray(64, '\0');
+  for (const char* name : {"1700000000000000000.png", "1700000000050000000.png"})
+    writeFile(folder.filePath(QString("pictures/") + name), huge);
+  writeFile(
+      folder.filePath("session.yaml"),
+      "evical_session: 1\nrecording: pictures\nboard: {type: checkerboard, rows: 6, cols: 7, spacing_m: "
+      "0.05}\ncameras:\n  cam: {stream: pictures}\nreference: cam\n");
+  const Outcome outcome =
+      runProgram({"intrinsics", folder.filePath("session.yaml"), "-o", folder.filePath("out")});
+  QVERIFY2(outcome.exit_code == 1 || outcome.exit_code == 2, qPrintable(outcome.errors));
+  VERIFY_SAYS(outcome, "frame at 0.000 s: claims a size of .*implausible");
 }
 
 EVICAL_TEST(TestBadRecording)

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 namespace evical {
@@ -101,7 +102,10 @@ void FrameViews::see(const Frame& frame, double time_s) {
   try {
     image = decodeFrame(frame, fmt::format("{}: frame at {:.3f} s", camera_.stream, time_s));
   } catch (const CalibrationError& error) {
-    if (unreadable_++ == 0) first_problem_ = error.what();
+    if (unreadable_++ == 0) {
+      first_problem_ = error.what();
+      first_error_ = std::current_exception();
+    }
     constexpr std::uint64_t kEnough = 10;
     if (decoded_ == 0 && unreadable_ >= kEnough) throw;
     tracker_.skipUnreadable(time);
@@ -129,6 +133,7 @@ void FrameViews::checkSize(const GrayImage& image) {
 }
 
 BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {
+  if (decoded_ == 0 && first_error_) std::rethrow_exception(first_error_);
   if (unreadable_ > 0)
     faults.push_back({camera_.stream, FaultKind::Corrupt, 0.0,
                       fmt::format("{}: {} of {} frames cannot be read: {}", camera_.stream, unreadable_,

@@ -64,6 +64,7 @@ class FrameViews final : public CameraViews {
   BoardObservations so_far_;  // without views, which are added at the end
   std::uint64_t decoded_ = 0, unreadable_ = 0;
   std::string first_problem_;
+  std::exception_ptr first_error_;
 };
 
 // Views from points of the board that another program has measured: points with the same timestamp form a
