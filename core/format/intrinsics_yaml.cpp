@@ -406,7 +406,7 @@ CameraIntrinsics readIntrinsics(const YamlNode& map) {
 namespace {
 
 // Follows rays from the optical axis towards a place on the image's border: how much the lens magnifies there must change
-// little. Lenses of real cameras lie far within these limits, also badly calibrated ones.
+// little. Real lenses are far within these limits, also badly calibrated ones.
 void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Vector2d& border_px,
                                  const std::string& place) {
   constexpr double kStep_rad = 0.01, kWidest_rad = 1.4, kWeakest = 0.1, kStrongest = 4.0, kMostOfTheWay = 0.6;

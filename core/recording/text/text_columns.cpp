@@ -494,7 +494,7 @@ std::string timeOutOfRange(const std::vector<std::string_view>& cells, const Tex
     const double in_unit_ns = number * static_cast<double>(unit_ns);
     if (std::abs(in_unit_ns) < static_cast<double>(kLatestTime_ns))
       return fmt::format(
-          "{} is no time in {}, but one in {}: name the column's unit in the header or in the "
+          "{} is too large for a time in {}, but not in {}: name the column's unit in the header or in the "
           "session (columns)",
           cells[part.column], timeUnitName(part.unit_ns), timeUnitName(unit_ns));
   }

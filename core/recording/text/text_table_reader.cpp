@@ -262,7 +262,7 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
     if (points.size() == kMost)
       throw badInput(fmt::format("{} (line {})", streams_[stream].name, source.lines.number()),
                      fmt::format("more than {} points have the same time", kMost),
-                     "Give each view a time of its own");
+                     "Give each view another time");
     points.push_back(point);
   }
   finish(source, stream);

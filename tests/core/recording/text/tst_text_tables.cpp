@@ -596,7 +596,7 @@ void TestTextTables::timesOfAnotherUnit_areNamed() {
   const auto& faults = reader->faults();
   const auto unit = std::ranges::find(faults, FaultKind::Unit, &RecordingFault::kind);
   QVERIFY(unit != faults.end());
-  QVERIFY2(unit->text.find("Line 1: 1700000000000.500 is no time in s, but one in ms") == 0,
+  QVERIFY2(unit->text.find("Line 1: 1700000000000.500 is too large for a time in s, but not in ms") == 0,
            unit->text.c_str());
 }
 
