@@ -35,6 +35,7 @@ void addTo(double* __restrict sums, double factor, const double* __restrict row,
 }
 
 constexpr Eigen::Index kMotions = 6;
+constexpr double kLarge = 1e100;  // a product of pivots, before its logarithm is taken
 
 // Whitened derivatives of a view's centres by motions of the camera.
 Eigen::MatrixXd motionsOf(std::span<const FieldSize::Circle> view) {
@@ -164,31 +165,38 @@ void FieldSize::add(std::span<const Circle> view) {
   addSeparated(others.bottomRows(2 * n - kMotions));
 }
 
-// `left`: columns of the modes, and the errors.
+// `left`: columns of the modes, and the errors. For any size, a tridiagonal system is as good as eigenvectors, which take five
+// times as long.
 void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
-  constexpr double kNone = 1e-6;  // of the strongest
   const auto field = left.leftCols(left.cols() - 1);
   const auto error = left.rightCols<1>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(field.transpose() * field);
-  const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (field.transpose() * error);
+  const Eigen::MatrixXd products = field.transpose() * field;
+  const Eigen::Tridiagonalization<Eigen::MatrixXd> tridiagonal(products);
+  Eigen::VectorXd with_errors = field.transpose() * error;
+  with_errors.applyOnTheLeft(tridiagonal.matrixQ().transpose());
+  views_.push_back({tridiagonal.diagonal(), tridiagonal.subDiagonal(), std::move(with_errors)});
   count_ += static_cast<double>(left.rows());
-  rest_ += error.squaredNorm();
-  for (Eigen::Index k = 0; k < along.size(); ++k) {
-    const double strength = eigen.eigenvalues()[k];
-    if (strength <= kNone * eigen.eigenvalues().maxCoeff()) continue;
-    strengths_.push_back(strength);
-    squares_.push_back(along[k] * along[k] / strength);
-    rest_ -= squares_.back();
-  }
+  squares_ += error.squaredNorm();
 }
 
-// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior.
+// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior. The errors of a
+// view have the covariance I + size^2 M M^T of its modes M: by the products, e^T e - size^2 b^T (I + size^2 T)^-1 b.
 double FieldSize::misfit(double size) const {
-  double sum = rest_, logs = 0.0;
-  for (std::size_t k = 0; k < strengths_.size(); ++k) {
-    const double variance = 1.0 + size * size * strengths_[k];
-    sum += squares_[k] / variance;
-    logs += std::log(variance);
+  const double size2 = size * size;
+  double sum = squares_, logs = 0.0;
+  for (const Products& view : views_) {
+    double pivot = 1.0, reduced = 0.0, determinant = 1.0;
+    for (Eigen::Index k = 0; k < view.diagonal.size(); ++k) {
+      const double coupling = k == 0 ? 0.0 : size2 * view.below[k - 1];
+      reduced = view.with_errors[k] - coupling / pivot * reduced;
+      pivot = 1.0 + size2 * view.diagonal[k] - coupling * coupling / pivot;
+      sum -= size2 * reduced * reduced / pivot;
+      determinant *= pivot;
+      if (determinant < kLarge) continue;
+      logs += std::log(determinant);
+      determinant = 1.0;
+    }
+    logs += std::log(determinant);
   }
   return count_ * std::log(sum / count_) + logs + std::pow(std::log(size) / prior_sigma_, 2);
 }

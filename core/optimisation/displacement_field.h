@@ -74,8 +74,12 @@ class FieldSize {
 
   const FieldModes& root_;
   double prior_sigma_;
-  std::vector<double> strengths_, squares_;  // of the modes that remain: eigenvalue, and error squared
-  double rest_ = 0.0, count_ = 0.0;          // squared errors that no mode explains, and all numbers
+  // Of each view, what remains of the modes: their tridiagonal products, and their products with the errors.
+  struct Products {
+    Eigen::VectorXd diagonal, below, with_errors;
+  };
+  std::vector<Products> views_;
+  double squares_ = 0.0, count_ = 0.0;  // of all errors: sum of squares, and numbers
 };
 
 }  // namespace evical
