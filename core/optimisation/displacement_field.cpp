@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr Eigen::Index kMostModes = 32;
+constexpr Eigen::Index kMostModes = 32, kMotions = 6;
 
 // (1 / sqrt(1 + l) - 1) / l, also for small l.
 double gainOf(double l) {
@@ -33,9 +33,6 @@ void addTo(double* __restrict sums, const Factors& factors, const double* __rest
 void addTo(double* __restrict sums, double factor, const double* __restrict row, Eigen::Index count) {
   for (Eigen::Index k = 0; k < count; ++k) sums[k] += factor * row[k];
 }
-
-constexpr Eigen::Index kMotions = 6;
-constexpr double kLarge = 1e100;  // a product of pivots, before its logarithm is taken
 
 // Whitened derivatives of a view's centres by motions of the camera.
 Eigen::MatrixXd motionsOf(std::span<const FieldSize::Circle> view) {
@@ -165,38 +162,31 @@ void FieldSize::add(std::span<const Circle> view) {
   addSeparated(others.bottomRows(2 * n - kMotions));
 }
 
-// `left`: columns of the modes, and the errors. For any size, a tridiagonal system is as good as eigenvectors, which take five
-// times as long.
+// `left`: columns of the modes, and the errors. Eigenvectors instead of tridiagonal products take five times as long.
 void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
   const auto field = left.leftCols(left.cols() - 1);
   const auto error = left.rightCols<1>();
-  const Eigen::MatrixXd products = field.transpose() * field;
-  const Eigen::Tridiagonalization<Eigen::MatrixXd> tridiagonal(products);
-  Eigen::VectorXd with_errors = field.transpose() * error;
-  with_errors.applyOnTheLeft(tridiagonal.matrixQ().transpose());
-  views_.push_back({tridiagonal.diagonal(), tridiagonal.subDiagonal(), std::move(with_errors)});
+  const Eigen::Tridiagonalization<Eigen::MatrixXd> tridiagonal(field.transpose() * field);
+  views_.push_back({tridiagonal.diagonal(), tridiagonal.subDiagonal(),
+                    tridiagonal.matrixQ().transpose() * (field.transpose() * error)});
   count_ += static_cast<double>(left.rows());
   squares_ += error.squaredNorm();
 }
 
-// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior. The errors of a
-// view have the covariance I + size^2 M M^T of its modes M: by the products, e^T e - size^2 b^T (I + size^2 T)^-1 b.
+// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior.
+// A view's errors have the covariance I + size^2 M M^T; M^T M = Q T Q^T, so their square is e^T e - size^2 b^T (I + size^2 T)^-1 b.
 double FieldSize::misfit(double size) const {
   const double size2 = size * size;
   double sum = squares_, logs = 0.0;
   for (const Products& view : views_) {
-    double pivot = 1.0, reduced = 0.0, determinant = 1.0;
+    double pivot = 1.0, reduced = 0.0;
     for (Eigen::Index k = 0; k < view.diagonal.size(); ++k) {
       const double coupling = k == 0 ? 0.0 : size2 * view.below[k - 1];
       reduced = view.with_errors[k] - coupling / pivot * reduced;
       pivot = 1.0 + size2 * view.diagonal[k] - coupling * coupling / pivot;
       sum -= size2 * reduced * reduced / pivot;
-      determinant *= pivot;
-      if (determinant < kLarge) continue;
-      logs += std::log(determinant);
-      determinant = 1.0;
+      logs += std::log(pivot);
     }
-    logs += std::log(determinant);
   }
   return count_ * std::log(sum / count_) + logs + std::pow(std::log(size) / prior_sigma_, 2);
 }

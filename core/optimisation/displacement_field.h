@@ -74,8 +74,7 @@ class FieldSize {
 
   const FieldModes& root_;
   double prior_sigma_;
-  // Of each view, what remains of the modes: their tridiagonal products, and their products with the errors.
-  struct Products {
+  struct Products {  // of a view's modes: tridiagonal, and with the errors (b)
     Eigen::VectorXd diagonal, below, with_errors;
   };
   std::vector<Products> views_;
