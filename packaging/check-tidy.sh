@@ -3,9 +3,9 @@
 #   packaging/check-tidy.sh                    all sources
 #   packaging/check-tidy.sh SOURCE...          these sources
 #   packaging/check-tidy.sh --changed [BASE]   sources that differ from commit BASE, or include a header that differs
-#   packaging/check-tidy.sh --recent           the same from the state one day before the last commit, for 6 minutes: those that
-#                                              differ come first
-# BASE is by default $EVICAL_BASE, or the branch's merge base with its upstream. packaging/nightly.sh checks all sources.
+#   packaging/check-tidy.sh --recent           the same for 6 minutes, by default from the state one day before the last commit:
+#                                              those that differ come first
+# BASE is $EVICAL_BASE, else the branch's merge base with its upstream. packaging/nightly.sh checks all sources.
 # EVICAL_TIDY_TIMES=1 prints the time of each unit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,20 +17,23 @@ if [ "$version" != 14 ]; then
   exit 0
 fi
 
-default_base() {
+# $EVICAL_BASE if it is a commit, else the output of this command.
+base_or() { # COMMAND...
   if [ -n "${EVICAL_BASE:-}" ] && git rev-parse -q --verify "$EVICAL_BASE^{commit}" >/dev/null; then
     echo "$EVICAL_BASE"
   else
-    git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD
+    "$@"
   fi
 }
+start_of_branch() { git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD; }
+a_day_before() { git rev-list -1 --before=$(($(git log -1 --format=%ct) - 86400)) HEAD; }
 
 cmake --fresh --preset ci -B build/tidy -DEVICAL_UNITY=OFF >/dev/null
 limit=()
 case "${1:-}" in
-  --changed) base=${2:-$(default_base)} ;;
+  --changed) base=${2:-$(base_or start_of_branch)} ;;
   --recent)
-    base=$(git rev-list -1 --before=$(($(git log -1 --format=%ct) - 86400)) HEAD)
+    base=$(base_or a_day_before)
     limit=(--limit 360)
     ;;
 esac

@@ -1,4 +1,4 @@
-// Text access to the rows of one options struct (option_field.h): set from text, validated against type,
+// Rows of one options struct, and text access to them: set from text, validated against type,
 // range and each other, listed for users. All values are passed as text, so that session files, --set and
 // forms share one code path.
 #pragma once

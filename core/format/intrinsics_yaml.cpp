@@ -163,12 +163,14 @@ CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
 // topic echo`.
 // The lens of a camera_info is that of the whole sensor, but its pictures may be binned, or show a part.
 void refusePartOfImage(const YamlNode& map, const Resolution& size_px) {
-  constexpr const char* kAdvice = "Give the lens of the pictures as they were recorded";
-  for (const char* const key : {"binning_x", "binning_y"})
-    if (const auto binning = map.find(key); binning && binning->integer(0, kMostPixels) > 1)
-      throw binning->error(fmt::format("is {}: the pictures have fewer pixels than the lens is for",
-                                       binning->integer(0, kMostPixels)),
+  constexpr const char* kAdvice = "Give the lens of the recorded pictures";
+  for (const char* const key : {"binning_x", "binning_y"}) {
+    const auto binning = map.find(key);
+    const int pixels = binning ? binning->integer(0, kMostPixels) : 0;
+    if (pixels > 1)
+      throw binning->error(fmt::format("is {}: the pictures have fewer pixels than the lens is for", pixels),
                            kAdvice);
+  }
   const auto roi = map.find("roi");
   if (!roi || !roi->isMap()) return;
   const auto numberOf = [&](const char* key) {
@@ -453,20 +455,19 @@ void validateImported(const CameraIntrinsics& camera, const std::string& place) 
       throw badInput(place, fmt::format("the focal length of {:.3g} px is implausible", each),
                      "Give it in pixels");
   const Resolution size = camera.resolution_px;
-  if (centre.x() > 0.0 && centre.y() > 0.0 &&
-      (!size.known() || (centre.x() < size.width_px && centre.y() < size.height_px))) {
-    if (!size.known()) return;
-    const Eigen::Vector2d last(size.width_px - 1, size.height_px - 1);
-    for (const double x : {0.0, 0.5, 1.0})
-      for (const double y : {0.0, 0.5, 1.0})
-        if (x != 0.5 || y != 0.5) refuseImplausibleDistortion(camera, {x * last.x(), y * last.y()}, place);
-    return;
-  }
-  throw badInput(
-      place,
-      fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image{}", centre.x(), centre.y(),
-                  size.known() ? fmt::format(" of {} x {}", size.width_px, size.height_px) : ""),
-      "Check that the resolution and the intrinsics belong together");
+  const bool inside = centre.x() > 0.0 && centre.y() > 0.0 &&
+                      (!size.known() || (centre.x() < size.width_px && centre.y() < size.height_px));
+  if (!inside)
+    throw badInput(
+        place,
+        fmt::format("the principal point ({:.1f}, {:.1f}) is outside the image{}", centre.x(), centre.y(),
+                    size.known() ? fmt::format(" of {} x {}", size.width_px, size.height_px) : ""),
+        "Check that the resolution and the intrinsics belong together");
+  if (!size.known()) return;
+  const Eigen::Vector2d last(size.width_px - 1, size.height_px - 1);
+  for (const double x : {0.0, 0.5, 1.0})
+    for (const double y : {0.0, 0.5, 1.0})
+      if (x != 0.5 || y != 0.5) refuseImplausibleDistortion(camera, {x * last.x(), y * last.y()}, place);
 }
 
 std::array<double, 4> cameraMatrixNumbers(std::span<const double> k, const std::string& place) {

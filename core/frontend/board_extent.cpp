@@ -71,19 +71,22 @@ class ExtentJudge {
         options_(options),
         centre_sigma_px_(options.extent.least_sigma_px),
         radius_sigma_px_(options.extent.least_sigma_px) {
+    // Of the board's fit, in squares of a circle's sigma.
+    Eigen::Matrix<double, 8, 8> information = 1e-6 * Eigen::Matrix<double, 8, 8>::Identity();
     double centres_px2 = 0.0, radii_px2 = 0.0, radii_px = 0.0, count = 0.0;
     for (const CircleObservation& circle : trace.circles) {
       const auto place = imageOfCircle(trace.motion->ideal_from_board, scene, circle.circle);
       if (!place) continue;
       const Deviation deviation = deviationOf(circle, *place, *trace.motion, trace.report.time_s);
       const PlaneFlowBasis basis = trace.motion->frame.basis(place->centre_px);
-      information_ += basis.transpose() * basis;
+      information += basis.transpose() * basis;
       centres_px2 += 0.5 * deviation.centre_px.squaredNorm();
       radii_px2 += deviation.radius_px * deviation.radius_px;
       radii_px += deviation.radius_px;
       ++count;
     }
     if (count == 0.0) return;
+    fit_.compute(information);
     radius_px_ = radii_px / count;
     radius_sigma_px_ = std::max(radius_sigma_px_, std::sqrt(radii_px2 / count - radius_px_ * radius_px_));
     centre_sigma_px_ = std::max(centre_sigma_px_, std::sqrt(centres_px2 / count));
@@ -111,10 +114,10 @@ class ExtentJudge {
     return motion;
   }
 
-  // Of a circle's place by the board's fit, per axis: beyond the board, errors of the fit are larger than those of its circles.
+  // Sigma per axis of a circle's place by the board's fit, whose errors are larger than those of the circles beyond the board.
   double placeSigma_px(const Eigen::Vector2d& pixel) const {
     const PlaneFlowBasis basis = trace_.motion->frame.basis(pixel);
-    const double fit = (basis * information_.ldlt().solve(basis.transpose())).trace();
+    const double fit = (basis * fit_.solve(basis.transpose())).trace();
     return centre_sigma_px_ * std::sqrt(1.0 + 0.5 * fit);
   }
 
@@ -187,8 +190,7 @@ class ExtentJudge {
   const BoardScene& scene_;
   const FrontEndOptions& options_;
   double centre_sigma_px_, radius_sigma_px_, radius_px_ = 0.0;  // of the board's own circles
-  Eigen::Matrix<double, 8, 8> information_ =
-      1e-6 * Eigen::Matrix<double, 8, 8>::Identity();  // of the board's fit, in squares of a circle's sigma
+  Eigen::LDLT<Eigen::Matrix<double, 8, 8>> fit_;                // of its information
 };
 
 }  // namespace

@@ -1,28 +1,17 @@
 // Lines and text in sensor pixels on an enlarged picture of the sensor. Only stage_drawing.cpp includes this.
 #pragma once
 
+#include "core/frontend/rgb_image.h"
+
 #include "core/geometry/resolution.h"
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace evical {
-
-// A picture, and its output as a PNG file.
-
-struct RgbImage {
-  int width_px = 0;
-  int height_px = 0;
-  std::vector<std::uint8_t> rgb;  // row by row
-};
-
-// Throws CalibrationError (BadInput) if the file cannot be written.
-void writePng(const std::filesystem::path& path, const RgbImage& image);
 
 struct Colour {
   std::uint8_t r, g, b;

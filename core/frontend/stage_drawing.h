@@ -4,7 +4,7 @@
 
 #include "core/frontend/board_search.h"
 #include "core/frontend/circle_pairs.h"
-#include "core/frontend/drawing_canvas.h"
+#include "core/frontend/rgb_image.h"
 #include "core/frontend/window_trace.h"
 
 #include <string>

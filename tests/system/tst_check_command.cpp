@@ -82,7 +82,6 @@ class TestCheckCommand : public QObject {
     QDir().mkpath(path("edited"));
     QVERIFY(QFile::copy(result() + "/run.data", path("edited/run.data")));
     writeFile(path("edited/result.yaml"), readFile(result() + "/result.yaml") + "# by hand\n");
-    const auto errorsOf = [&](const QStringList& arguments) { return runProgram(arguments).errors; };
     for (const QString& folder : {path("edited"), result()}) {
       const bool edited = folder != result();
       const QString named = edited ? "warning: " + folder + "/result.yaml: run.data is not used: it belongs"
@@ -91,7 +90,7 @@ class TestCheckCommand : public QObject {
            {QStringList{"check", folder, recording()} + kCoarse,
             QStringList{"compare", folder, simulated("short") + "/truth.yaml"},
             QStringList{"export", folder, "--to", "kalibr", "-o", path("exported")}}) {
-        const QString errors = errorsOf(arguments);
+        const QString errors = runProgram(arguments).errors;
         QVERIFY2(errors.contains(named) == edited, qPrintable(arguments.join(' ') + ": " + errors));
       }
     }

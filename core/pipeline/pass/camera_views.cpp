@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <utility>
 
 namespace evical {
@@ -102,10 +101,7 @@ void FrameViews::see(const Frame& frame, double time_s) {
   try {
     image = decodeFrame(frame, fmt::format("{}: frame at {:.3f} s", camera_.stream, time_s));
   } catch (const CalibrationError& error) {
-    if (unreadable_++ == 0) {
-      first_problem_ = error.what();
-      first_error_ = std::current_exception();
-    }
+    if (unreadable_++ == 0) first_error_ = error;
     constexpr std::uint64_t kEnough = 10;
     if (decoded_ == 0 && unreadable_ >= kEnough) throw;
     tracker_.skipUnreadable(time);
@@ -133,11 +129,11 @@ void FrameViews::checkSize(const GrayImage& image) {
 }
 
 BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {
-  if (decoded_ == 0 && first_error_) std::rethrow_exception(first_error_);
+  if (decoded_ == 0 && first_error_) throw CalibrationError(*first_error_);
   if (unreadable_ > 0)
     faults.push_back({camera_.stream, FaultKind::Corrupt, 0.0,
                       fmt::format("{}: {} of {} frames cannot be read: {}", camera_.stream, unreadable_,
-                                  unreadable_ + decoded_, first_problem_)});
+                                  unreadable_ + decoded_, first_error_->what())});
   BoardObservations observations = tracker_.finish();
   observations.kind = CameraKind::Frames;
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())

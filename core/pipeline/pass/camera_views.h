@@ -2,6 +2,7 @@
 // another program. Used by the window thread.
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/data/board_observations.h"
 #include "core/data/camera_lens.h"
@@ -63,8 +64,7 @@ class FrameViews final : public CameraViews {
   Resolution resolution_px_;
   BoardObservations so_far_;  // without views, which are added at the end
   std::uint64_t decoded_ = 0, unreadable_ = 0;
-  std::string first_problem_;
-  std::exception_ptr first_error_;
+  std::optional<CalibrationError> first_error_;
 };
 
 // Views from points of the board that another program has measured: points with the same timestamp form a

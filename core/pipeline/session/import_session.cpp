@@ -151,7 +151,7 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
   }
 }
 
-// Square pixels have nearly the same focal lengths. Numbers in the order fx cx fy cy have not.
+// Square pixels have nearly the same focal lengths. Numbers in the order fx cx fy cy do not.
 void noteOblongPixels(const std::string& name, const CameraIntrinsics& camera,
                       std::vector<std::string>& notes) {
   constexpr double kMost = 1.3;

@@ -486,13 +486,14 @@ bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& c
 std::string timeOutOfRange(const std::vector<std::string_view>& cells, const TextColumns& columns) {
   const TimeColumn& part = columns.time.front();
   double number = 0.0;
-  std::int64_t time_ns = 0;
-  if (cells.size() < columns.count() || parseTimes(cells, columns, time_ns) ||
-      !parseCell(cells[part.column], columns.style, number))
+  const auto isTooLarge = [&](std::int64_t unit_ns) {
+    return std::abs(number * static_cast<double>(unit_ns)) >= static_cast<double>(kLatestTime_ns);
+  };
+  if (cells.size() < columns.count() || !parseCell(cells[part.column], columns.style, number) ||
+      !isTooLarge(part.unit_ns))
     return "";
   for (std::int64_t unit_ns = part.unit_ns / 1000; unit_ns > 0; unit_ns /= 1000) {
-    const double in_unit_ns = number * static_cast<double>(unit_ns);
-    if (std::abs(in_unit_ns) < static_cast<double>(kLatestTime_ns))
+    if (!isTooLarge(unit_ns))
       return fmt::format(
           "{} is too large for a time in {}, but not in {}: name the column's unit in the header or in the "
           "session (columns)",

@@ -77,9 +77,9 @@ void splitColumns(std::string_view line, const TextStyle& style, std::vector<std
 // parseNumber and parseTime in the table's style. A time may also be a date of ISO 8601 (UTC without a
 // zone).
 bool parseCell(std::string_view text, const TextStyle& style, double& number);
-// Why a time is not parsed although it is a number: the unit that would fit is another one; else empty.
-std::string timeOutOfRange(const std::vector<std::string_view>& cells, const TextColumns& columns);
 bool parseTimes(const std::vector<std::string_view>& cells, const TextColumns& columns,
                 std::int64_t& time_ns);
+// That the time is too large for its unit, with the unit that would fit; else empty.
+std::string timeOutOfRange(const std::vector<std::string_view>& cells, const TextColumns& columns);
 
 }  // namespace evical

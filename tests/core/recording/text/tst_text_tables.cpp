@@ -593,20 +593,23 @@ void TestTextTables::timesOfAnotherUnit_areNamed() {
   writeFile(path("events.txt"), text);
   const auto reader = openRecording(path("events.txt"));
   readRecording(*reader);
-  const auto& faults = reader->faults();
-  const auto unit = std::ranges::find(faults, FaultKind::Unit, &RecordingFault::kind);
-  QVERIFY(unit != faults.end());
+  const auto unit = std::ranges::find(reader->faults(), FaultKind::Unit, &RecordingFault::kind);
+  QVERIFY(unit != reader->faults().end());
   QVERIFY2(unit->text.find("Line 1: 1700000000000.500 is too large for a time in s, but not in ms") == 0,
            unit->text.c_str());
+  const auto time = [](int i) { return i == 20 ? "17,x" : fmt::format("17,{}", i * 5'000'000); };
+  writeFile(path("imu.csv"), table("secs,nsecs,ax,ay,az,gx,gy,gz", 50, time));
+  const auto imu = openRecording(path("imu.csv"));
+  QCOMPARE(readRecording(*imu).imu_samples.size(), std::size_t{49});
+  QVERIFY(
+      std::ranges::none_of(imu->faults(), [](const auto& fault) { return fault.kind == FaultKind::Unit; }));
 }
 
 // A board has no more points; without a limit, the whole file would be one view.
 void TestTextTables::pointsOfOneTime_areLimited() {
   std::string text = "time_s,point,x_px,y_px\n";
   for (int i = 0; i < 70'000; ++i) text += "0.1,0,1.0,2.0\n";
-  writeFile(path("points.csv"), text);
-  const auto reader = openRecording(path("points.csv"));
-  QVERIFY_THROWS_EXCEPTION(CalibrationError, readRecording(*reader));
+  QVERIFY_THROWS_EXCEPTION(CalibrationError, recordingOf(text, "points.csv"));
 }
 
 void TestTextTables::decimalPixels_areRefused_data() {
